@@ -1,0 +1,31 @@
+# Flags shared by every target of the project. They are private to it: nothing leaks to whoever links a library.
+add_library(sunfleck_flags INTERFACE)
+target_compile_options(sunfleck_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+                       # Vulkan structs are filled field by field after their type
+                       -Wno-missing-field-initializers -Werror)
+# g++ 12 warns of overlapping copies inside std::string's own operator+ (GCC bug 105651).
+target_compile_options(sunfleck_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+if(SUNFLECK_SANITIZE)
+  target_compile_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
+endif()
+
+# sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries])
+# A static library with the project's flags; headers are included by their path from the project's root.
+function(sunfleck_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}")
+  target_include_directories(${name} SYSTEM PUBLIC "${SUNFLECK_VOLK_INCLUDE}")
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE sunfleck_flags ${ARG_PRIVATE_LINK})
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# sunfleck_program(name SOURCES ... LINK libraries)
+function(sunfleck_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE sunfleck_flags ${ARG_LINK})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+endfunction()

@@ -1,0 +1,217 @@
+#include "editor/command_line/common.h"
+
+#include "engine/core/log.h"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <unistd.h>
+
+namespace sunfleck::command_line {
+namespace {
+
+volatile std::sig_atomic_t interrupt_count = 0;
+
+// Built-in scenes lie beside the program: ../scenes in a build, ../share/sunfleck/scenes when installed.
+std::filesystem::path scene_folder() {
+    if (const char* environment = std::getenv("SUNFLECK_SCENES"))
+        return environment;
+    std::error_code code;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
+    for (const char* place : {"../scenes", "../share/sunfleck/scenes"}) {
+        const std::filesystem::path folder = program.parent_path() / place;
+        if (std::filesystem::is_directory(folder, code))
+            return folder;
+    }
+    return program.parent_path() / "../scenes";
+}
+
+} // namespace
+
+void add_scene_options(CLI::App& app, SceneOptions& options) {
+    app.add_option("SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")
+        ->required();
+    app.add_option("--size", options.size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (degrees)");
+    app.add_option("--movers", options.movers, "per_pixel: movers receive light; static: they also reflect it")
+        ->check(CLI::IsMember({"per_pixel", "static"}))
+        ->capture_default_str();
+    app.add_option_function<std::string>(
+           "--motion", [&options](const std::string& text) { options.motion = text == "on"; },
+           "on: frame k shows step k; off: movers stay at step 0 (default on)")
+        ->check(CLI::IsMember({"on", "off"}));
+    app.add_option("--orbit", options.orbit_degrees, "Degrees that the camera turns about its target each frame")
+        ->check(CLI::Range(-360.0, 360.0))
+        ->capture_default_str();
+    app.add_option("--frames", options.frames, "Frames to render after the warm-up; the last is written")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    app.add_option("--warmup", options.warmup, "Frames before those")->check(CLI::Range(0, 1000000))->capture_default_str();
+    app.add_option("--seed", options.seed, "Another seed gives another set of samples")->capture_default_str();
+    app.add_option("--bounces", options.bounces, "Reflections before the surface that is shown")
+        ->check(CLI::Range(0, 64))
+        ->capture_default_str();
+    app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
+    app.add_option("--device", options.device, "Vulkan device by number or part of its name");
+    app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
+}
+
+Result<Size> parse_size(const std::string& text) {
+    unsigned width = 0, height = 0;
+    char extra = 0;
+    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &extra) != 2 || width < 1 || height < 1 ||
+        width > 16384 || height > 16384 || text.find('-') != std::string::npos)
+        return Error{"--size '" + text + "': WIDTHxHEIGHT from 1x1 to 16384x16384 is needed"};
+    return Size{width, height};
+}
+
+std::vector<std::string> built_in_scene_names() {
+    std::vector<std::string> names;
+    std::error_code code;
+    for (const auto& entry : std::filesystem::directory_iterator(scene_folder(), code)) {
+        const std::string file = entry.path().filename().string();
+        if (const std::size_t end = file.find(".scene.json"); end != std::string::npos)
+            names.push_back(file.substr(0, end));
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Result<std::filesystem::path> find_scene(const std::string& scene) {
+    std::error_code code;
+    if (scene.find('/') == std::string::npos && scene.find('.') == std::string::npos) {
+        const std::filesystem::path built_in = scene_folder() / (scene + ".scene.json");
+        if (std::filesystem::exists(built_in, code))
+            return built_in;
+        std::string names;
+        for (const std::string& name : built_in_scene_names())
+            names += (names.empty() ? "" : ", ") + name;
+        if (!std::filesystem::exists(scene, code))
+            return Error{"no built-in scene is called '" + scene + "' (there are: " + names + "), and no such file exists"};
+    }
+    if (!std::filesystem::exists(scene, code))
+        return Error{"scene file '" + scene + "' does not exist"};
+    return std::filesystem::path(scene);
+}
+
+scene::CameraView camera_of_frame(const scene::CameraView& start, const SceneOptions& options, std::uint32_t frame) {
+    return start.orbited(glm::radians(options.orbit_degrees) * float(frame));
+}
+
+Status apply_setting(gi::Settings& settings, const std::string& assignment) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos)
+        return Error{"--set '" + assignment + "': name=value is needed"};
+    const std::string name = assignment.substr(0, equals);
+    const Field* field = gi::Settings::description().find(name);
+    if (field == nullptr) {
+        std::string names;
+        for (const Field& known : gi::Settings::description().fields)
+            names += (names.empty() ? "" : ", ") + std::string(known.name);
+        return Error{"--set: no setting is called '" + name + "' (there are: " + names + ")"};
+    }
+    return field_from_text(*field, &settings, assignment.substr(equals + 1));
+}
+
+Json settings_json(const gi::Settings& settings) {
+    Json json = Json::object();
+    for (const Field& field : gi::Settings::description().fields) {
+        const std::string text = field_to_text(field, &settings);
+        const bool is_text = field.kind == FieldKind::choice || field.kind == FieldKind::text;
+        json[std::string(field.name)] = is_text ? Json(text) : Json::parse(text);
+    }
+    return json;
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty())
+        return 0.0;
+    std::sort(values.begin(), values.end());
+    const double place = share * double(values.size() - 1);
+    const std::size_t below = std::size_t(place);
+    const std::size_t above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - double(below)) * (values[above] - values[below]);
+}
+
+double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+
+namespace {
+
+Json medians(const std::vector<std::map<std::string, double>>& frames) {
+    std::map<std::string, std::vector<double>> by_name;
+    for (const auto& frame : frames)
+        for (const auto& [name, value] : frame)
+            by_name[name].push_back(value);
+    Json json = Json::object();
+    for (const auto& [name, values] : by_name)
+        json[name] = median(values);
+    return json;
+}
+
+} // namespace
+
+Json measurement_json(const gpu::Device& device, const Measurement& measurement) {
+    const gi::Counters& counters = measurement.counters;
+    Json json;
+    json["device"] = device.traits().name;
+    json["driver"] = device.traits().driver;
+    json["scene"] = measurement.scene;
+    json["settings"] = settings_json(measurement.settings);
+    json["settings"]["width"] = measurement.size.width;
+    json["settings"]["height"] = measurement.size.height;
+    json["frames"] = measurement.frame_ms.size();
+    json["frame_ms"] = {{"median", median(measurement.frame_ms)},
+                        {"p95", percentile(measurement.frame_ms, 0.95)},
+                        {"min", percentile(measurement.frame_ms, 0.0)},
+                        {"max", percentile(measurement.frame_ms, 1.0)}};
+    json["cpu_ms"] = medians(measurement.cpu_ms);
+    json["gpu_ms"] = medians(measurement.gpu_ms);
+    json["counters"] = {{"light_samples", counters.light_samples},
+                        {"light_samples_direct", counters.light_samples_direct},
+                        {"shadow_map_updates", counters.shadow_map_updates},
+                        {"shadow_map_faces", counters.shadow_map_faces},
+                        {"shadow_map_vertices", counters.shadow_map_vertices},
+                        {"shadow_maps_stale", counters.shadow_maps_stale},
+                        {"render_passes", counters.light_batches},
+                        {"clamped_flux", counters.clamped_flux},
+                        {"clamped_irradiance", counters.clamped_irradiance}};
+    json["memory_bytes"] = Json::object();
+    for (const auto& [what, bytes] : measurement.memory)
+        json["memory_bytes"][what] = bytes;
+    return json;
+}
+
+int fail(const Error& error) {
+    std::fprintf(stderr, "error: %s\n", error.message.c_str());
+    return 1;
+}
+
+Progress::~Progress() {
+    if (drawn_ && ::isatty(2))
+        std::fputc('\n', stderr);
+}
+
+void Progress::show(double share, const std::string& detail) {
+    const int tenth = int(share * 10.0);
+    if (::isatty(2)) {
+        const int filled = int(share * 30.0);
+        std::fprintf(stderr, "\r%s [%-30.*s] %3.0f %%  %s   ", what_.c_str(), filled,
+                     "##############################", share * 100.0, detail.c_str());
+        drawn_ = true;
+    } else if (tenth != last_tenth_) {
+        std::fprintf(stderr, "%s: %d %%  %s\n", what_.c_str(), tenth * 10, detail.c_str());
+    }
+    last_tenth_ = tenth;
+}
+
+bool interrupted() { return interrupt_count > 0; }
+
+void watch_interrupts() {
+    std::signal(SIGINT, [](int) {
+        interrupt_count = interrupt_count + 1;
+        if (interrupt_count > 1) // pressed again: at once
+            std::_Exit(130);
+    });
+}
+
+} // namespace sunfleck::command_line

@@ -1,0 +1,100 @@
+// What the commands share: where built-in scenes are, options of scene and camera, the statistics' JSON, progress.
+#pragma once
+
+#include "gi_module/settings.h"
+#include "viewer/scene_renderer.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace sunfleck::command_line {
+
+using Json = nlohmann::ordered_json;
+
+// A command is added to the program and, when chosen, run; it returns the exit status.
+struct Command {
+    CLI::App* app;
+    std::function<int()> run;
+};
+
+// Options that name a scene, a camera and a time, on `render` and `reference` alike.
+struct SceneOptions {
+    std::string scene;
+    std::string camera;
+    std::string size = "1280x720";
+    std::string movers = "per_pixel";
+    bool motion = true;
+    float orbit_degrees = 0.0f; // per frame
+    std::uint32_t frames = 1;
+    std::uint32_t warmup = 3;
+    std::uint32_t seed = 1;
+    std::uint32_t bounces = 5;
+    float ev100 = -1000.0f; // the scene's own
+    std::string device;
+    bool validation = false;
+};
+void add_scene_options(CLI::App& app, SceneOptions& options);
+
+struct Size {
+    std::uint32_t width, height;
+};
+Result<Size> parse_size(const std::string& text);
+
+// A path as it is, or the file of a built-in scene of that name.
+Result<std::filesystem::path> find_scene(const std::string& scene);
+std::vector<std::string> built_in_scene_names();
+
+// The camera of frame `frame` (counted from the first warm-up frame).
+scene::CameraView camera_of_frame(const scene::CameraView& start, const SceneOptions& options, std::uint32_t frame);
+// The step that movers show in that frame.
+inline std::uint64_t step_of_frame(const SceneOptions& options, std::uint32_t frame) {
+    return options.motion ? frame : 0;
+}
+
+// --set name=value over the lighting settings.
+Status apply_setting(gi::Settings& settings, const std::string& assignment);
+Json settings_json(const gi::Settings& settings);
+
+// Frames that were measured, in the shape that --stats and bench --json share.
+struct Measurement {
+    std::string scene;
+    gi::Settings settings;
+    Size size{};
+    std::vector<double> frame_ms;
+    std::vector<std::map<std::string, double>> cpu_ms, gpu_ms;
+    gi::Counters counters; // of the last frame
+    std::map<std::string, std::uint64_t> memory;
+    std::uint32_t render_passes = 0;
+};
+Json measurement_json(const gpu::Device& device, const Measurement& measurement);
+double median(std::vector<double> values);
+double percentile(std::vector<double> values, double share);
+
+// Prints "error: ..." once and returns 1.
+int fail(const Error& error);
+
+// A line on standard error that shows how far the work is; silent where standard error is no terminal, but for a line
+// every ten percent.
+class Progress {
+public:
+    explicit Progress(std::string what) : what_(std::move(what)) {}
+    ~Progress();
+    void show(double share, const std::string& detail);
+
+private:
+    std::string what_;
+    int last_tenth_ = -1;
+    bool drawn_ = false;
+};
+
+// True once the user pressed Ctrl-C.
+bool interrupted();
+void watch_interrupts();
+
+Command make_render_command(CLI::App& program);
+Command make_reference_command(CLI::App& program);
+Command make_compare_command(CLI::App& program);
+Command make_bench_command(CLI::App& program);
+Command make_info_command(CLI::App& program);
+
+} // namespace sunfleck::command_line

@@ -1,0 +1,158 @@
+// sunfleck reference: the path tracer, progressive; can be interrupted and goes on where it was.
+#include "editor/command_line/common.h"
+
+#include "engine/core/file.h"
+#include "engine/render/tone_map.h"
+#include "engine/simulation/path_movers.h"
+#include "gi_module/reference/path_tracer.h"
+
+#include <chrono>
+
+namespace sunfleck::command_line {
+namespace {
+
+using namespace gi::reference;
+
+struct ReferenceOptions {
+    SceneOptions scene;
+    std::string output;
+    std::uint32_t samples = 256;
+    std::string view = "final";
+    bool antialiasing = false;
+    bool unlimited = false;
+    std::string statistics;
+    std::uint32_t threads = 0;
+};
+
+std::uint64_t hash_text(const std::string& text) {
+    std::uint64_t hash = 0xcbf29ce484222325ull;
+    for (const char c : text)
+        hash = (hash ^ std::uint8_t(c)) * 0x100000001b3ull;
+    return hash;
+}
+
+io::Picture to_picture(const Accumulation& accumulation, bool display, bool irradiance, float ev100) {
+    io::Picture picture;
+    picture.width = accumulation.width;
+    picture.height = accumulation.height;
+    picture.pixels.resize(std::size_t(picture.width) * picture.height);
+    const double scale = accumulation.samples > 0 ? 1.0 / accumulation.samples : 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const vec3 mean(accumulation.sums[i * 3] * scale, accumulation.sums[i * 3 + 1] * scale,
+                        accumulation.sums[i * 3 + 2] * scale);
+        if (display)
+            picture.pixels[i] = vec4(shared::display_from_radiance(irradiance ? mean / pi : mean,
+                                                                   shared::exposure_factor(ev100)), 1.0f);
+        else
+            picture.pixels[i] = vec4(mean, irradiance && accumulation.covered[i] == 0 ? 0.0f : 1.0f);
+    }
+    return picture;
+}
+
+Result<Accumulation> start_or_resume(const std::string& state_file, std::uint64_t hash) {
+    std::error_code code;
+    if (!std::filesystem::exists(state_file, code))
+        return Accumulation{};
+    SUNFLECK_ASSIGN(Accumulation accumulation, load_accumulation(state_file, hash));
+    std::fprintf(stderr, "going on from %u samples per pixel in '%s'\n", accumulation.samples, state_file.c_str());
+    return accumulation;
+}
+
+Status run(const ReferenceOptions& options) {
+    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
+    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    SUNFLECK_TRY([&]() -> Status {
+        SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes));
+        return {};
+    }());
+    viewer::add_default_light(registry);
+    const std::uint32_t last_frame = options.scene.warmup + options.scene.frames - 1;
+    simulation::set_movers_to_step(registry, step_of_frame(options.scene, last_frame));
+    SUNFLECK_ASSIGN(const auto rays, raytrace::RayScene::create());
+    SUNFLECK_TRY(rays->update(registry, meshes));
+    const Bounds bounds = viewer::scene_bounds(registry, meshes);
+    SUNFLECK_ASSIGN(const scene::CameraView start, viewer::find_camera(registry, bounds, options.scene.camera));
+    const scene::CameraView camera = camera_of_frame(start, options.scene, last_frame);
+    const PathTracer tracer(*rays, gi::collect_emitters(registry, meshes, bounds));
+
+    ReferenceSettings settings;
+    settings.width = size.width;
+    settings.height = size.height;
+    settings.bounces = options.unlimited ? unlimited_bounces : options.scene.bounces;
+    settings.seed = options.scene.seed;
+    settings.antialiasing = options.antialiasing;
+    settings.view = options.view == "irradiance" ? ReferenceView::irradiance
+                    : options.view == "direct"   ? ReferenceView::direct
+                    : options.view == "indirect" ? ReferenceView::indirect
+                                                 : ReferenceView::radiance;
+    SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
+    const std::string state_file = options.output + ".state";
+    const std::uint64_t hash = hash_text(
+        scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" + options.view +
+        "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
+        std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
+        std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
+    SUNFLECK_ASSIGN(Accumulation accumulation, start_or_resume(state_file, hash));
+
+    const auto began = std::chrono::steady_clock::now();
+    const std::uint64_t rays_before = accumulation.rays;
+    Progress progress("reference");
+    while (accumulation.samples < options.samples) {
+        // Few samples first, so that an early interrupt has something to show.
+        const std::uint32_t batch = std::min({std::max(1u, accumulation.samples), 16u,
+                                              options.samples - accumulation.samples});
+        const bool complete = tracer.accumulate(accumulation, camera, settings, batch, interrupted);
+        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+        char detail[96];
+        std::snprintf(detail, sizeof detail, "%u of %u spp, %.2f million rays/s", accumulation.samples, options.samples,
+                      double(accumulation.rays - rays_before) / elapsed.count() * 1e-6);
+        progress.show(double(accumulation.samples) / options.samples, detail);
+        if (!complete) {
+            SUNFLECK_TRY(save_accumulation(state_file, accumulation, hash));
+            return Error{"interrupted; the same command goes on from '" + state_file + "'"};
+        }
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    const float ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(registry);
+    SUNFLECK_TRY(io::write_picture(options.output, to_picture(accumulation, kind == io::PictureKind::png,
+                                                              settings.view != ReferenceView::radiance, ev100)));
+    std::error_code code;
+    std::filesystem::remove(state_file, code);
+    if (!options.statistics.empty()) {
+        const Json json = {{"scene", options.scene.scene},
+                           {"samples_per_pixel", accumulation.samples},
+                           {"seconds", seconds},
+                           {"rays", accumulation.rays},
+                           {"rays_per_second", double(accumulation.rays - rays_before) / seconds}};
+        SUNFLECK_TRY(write_file(options.statistics, json.dump(2) + "\n"));
+    }
+    return {};
+}
+
+} // namespace
+
+Command make_reference_command(CLI::App& program) {
+    auto options = std::make_shared<ReferenceOptions>();
+    CLI::App* app = program.add_subcommand("reference", "Renders a scene with the path tracer: the truth, slowly");
+    app->footer("Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
+                "Ctrl-C saves what is there; the same command goes on from it.");
+    add_scene_options(*app, options->scene);
+    app->add_option("-o,--output", options->output, "Picture to write: .exr (scene-linear) or .png (tone-mapped)")
+        ->required();
+    app->add_option("--spp", options->samples, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->capture_default_str();
+    app->add_option("--view", options->view, "What to show")
+        ->check(CLI::IsMember({"final", "irradiance", "direct", "indirect"}))->capture_default_str();
+    app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
+    app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
+    app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");
+    return {app, [options] {
+                watch_interrupts();
+                const Status status = run(*options);
+                return status ? 0 : fail(status.error());
+            }};
+}
+
+} // namespace sunfleck::command_line

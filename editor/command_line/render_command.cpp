@@ -1,0 +1,148 @@
+// sunfleck render: a picture of a scene by the real-time path.
+#include "editor/command_line/common.h"
+
+#include "engine/core/file.h"
+#include "engine/core/log.h"
+
+namespace sunfleck::command_line {
+namespace {
+
+struct RenderOptions {
+    SceneOptions scene;
+    std::string output;
+    std::string direct = "brute_force", indirect = "brute_force", specular = "none", source = "random_walk";
+    std::uint32_t lights = 300;
+    float direct_share = 0.25f;
+    std::string view = "final";
+    std::vector<std::string> settings;
+    std::string statistics;
+    bool print_graph = false;
+};
+
+const std::map<std::string, std::uint32_t> views = {
+    {"final", shared::view_final},       {"irradiance", shared::view_irradiance},
+    {"direct", shared::view_irradiance}, {"indirect", shared::view_irradiance},
+    {"normals", shared::view_normals},   {"albedo", shared::view_albedo},
+    {"depth", shared::view_depth},       {"surfaces", shared::view_surfaces},
+    {"motion", shared::view_motion},     {"samples", shared::view_final}};
+
+Result<gi::Settings> make_settings(const RenderOptions& options) {
+    gi::Settings settings;
+    SUNFLECK_TRY(apply_setting(settings, "direct=" + options.direct));
+    SUNFLECK_TRY(apply_setting(settings, "indirect=" + options.indirect));
+    SUNFLECK_TRY(apply_setting(settings, "movers=" + options.scene.movers));
+    settings.lights = options.lights;
+    settings.direct_share = options.direct_share;
+    settings.bounces = options.scene.bounces;
+    settings.seed = options.scene.seed;
+    settings.count_clamped = !options.statistics.empty();
+    for (const std::string& assignment : options.settings)
+        SUNFLECK_TRY(apply_setting(settings, assignment));
+    if (options.view == "direct")
+        settings.indirect = gi::IndirectTechnique::none;
+    if (options.view == "indirect")
+        settings.direct = gi::DirectTechnique::none;
+    return settings;
+}
+
+Status run(const RenderOptions& options) {
+    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
+    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    SUNFLECK_ASSIGN(const gi::Settings settings, make_settings(options));
+    SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
+    SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
+    SUNFLECK_ASSIGN(const io::ImportReport report, renderer->load(path));
+    for (const std::string& note : report.notes)
+        log_warning(note);
+    SUNFLECK_TRY(renderer->lighting().set_settings(settings));
+    const Bounds bounds = viewer::scene_bounds(renderer->registry(), renderer->meshes());
+    SUNFLECK_ASSIGN(const scene::CameraView camera,
+                    viewer::find_camera(renderer->registry(), bounds, options.scene.camera));
+
+    viewer::FrameRequest request;
+    request.width = size.width;
+    request.height = size.height;
+    request.view = views.at(options.view);
+    request.tone_map = kind == io::PictureKind::png;
+    request.show_samples = options.view == "samples";
+    request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer->registry());
+    Measurement measurement;
+    const std::uint32_t total = options.scene.warmup + options.scene.frames;
+    Progress progress("rendering");
+    for (std::uint32_t frame = 0; frame < total; ++frame) {
+        request.camera = camera_of_frame(camera, options.scene, frame);
+        request.step = step_of_frame(options.scene, frame);
+        SUNFLECK_TRY(renderer->render_and_wait(request));
+        if (interrupted())
+            return Error{"interrupted; nothing was written"};
+        if (frame >= options.scene.warmup) {
+            const viewer::FrameStatistics& statistics = renderer->statistics();
+            measurement.frame_ms.push_back(statistics.frame_ms);
+            measurement.cpu_ms.push_back(statistics.cpu_ms);
+            measurement.gpu_ms.push_back(statistics.gpu_ms);
+            measurement.counters = statistics.counters;
+        }
+        if (total > 20)
+            progress.show(double(frame + 1) / total, "");
+    }
+    SUNFLECK_ASSIGN(const io::Picture picture, renderer->read_back());
+    SUNFLECK_TRY(io::write_picture(options.output, picture));
+    if (options.print_graph)
+        std::fputs(renderer->print_graph().c_str(), stdout);
+    if (!options.statistics.empty()) {
+        // What the GPU counted reaches the CPU one frame later.
+        const gi::Counters last = measurement.counters;
+        SUNFLECK_TRY(renderer->render_and_wait(request));
+        measurement.counters = renderer->statistics().counters;
+        measurement.counters.shadow_map_updates = last.shadow_map_updates;
+        measurement.counters.shadow_map_faces = last.shadow_map_faces;
+        measurement.counters.shadow_map_vertices = last.shadow_map_vertices;
+        measurement.scene = options.scene.scene;
+        measurement.settings = settings;
+        measurement.size = size;
+        measurement.memory = device->memory().usage();
+        SUNFLECK_TRY(write_file(options.statistics, measurement_json(*device, measurement).dump(2) + "\n"));
+    }
+    if (device->validation_messages() > 0)
+        return Error{std::to_string(device->validation_messages()) + " validation messages (see above)"};
+    return {};
+}
+
+} // namespace
+
+Command make_render_command(CLI::App& program) {
+    auto options = std::make_shared<RenderOptions>();
+    CLI::App* app = program.add_subcommand("render", "Renders a scene and writes the last frame as PNG or EXR");
+    app->footer("Example: sunfleck render four_pillars -o out.png --lights 300 --camera bench_1 --stats out.json\n"
+                "A scene that names no light is lit by a sky of 0.3 W/(sr m2) and a sun of 2 W/m2.");
+    add_scene_options(*app, options->scene);
+    app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
+        ->required();
+    app->add_option("--direct", options->direct, "Technique for direct light")
+        ->check(CLI::IsMember({"brute_force", "none"}))->capture_default_str();
+    app->add_option("--indirect", options->indirect, "Technique for reflected light")
+        ->check(CLI::IsMember({"brute_force", "none"}))->capture_default_str();
+    app->add_option("--specular", options->specular, "Technique for mirrors and glass")
+        ->check(CLI::IsMember({"none"}))->capture_default_str();
+    app->add_option("--source", options->source, "Where light samples come from")
+        ->check(CLI::IsMember({"random_walk"}))->capture_default_str();
+    app->add_option("--lights", options->lights, "Number of light samples, exactly")
+        ->check(CLI::Range(0, 65536))->capture_default_str();
+    app->add_option("--direct-share", options->direct_share, "Share of the samples on emitters")
+        ->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    std::vector<std::string> names;
+    for (const auto& [name, view] : views)
+        names.push_back(name);
+    app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(names))->capture_default_str();
+    app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
+    app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
+    app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
+    return {app, [options] {
+                watch_interrupts();
+                const Status status = run(*options);
+                return status ? 0 : fail(status.error());
+            }};
+}
+
+} // namespace sunfleck::command_line

@@ -1,0 +1,23 @@
+// Log messages go to one sink that the program installs; without one they go to standard error.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace sunfleck {
+
+enum class LogLevel { debug, information, warning, error };
+
+using LogSink = std::function<void(LogLevel, std::string_view)>;
+
+// Installs the sink of the whole process. Not thread safe: call it before other threads log.
+void set_log_sink(LogSink sink);
+
+// Thread safe as far as the sink is; the default sink is.
+void log_message(LogLevel level, std::string_view message);
+
+inline void log_information(std::string_view message) { log_message(LogLevel::information, message); }
+inline void log_warning(std::string_view message) { log_message(LogLevel::warning, message); }
+inline void log_error(std::string_view message) { log_message(LogLevel::error, message); }
+
+} // namespace sunfleck

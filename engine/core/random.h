@@ -1,0 +1,50 @@
+// Random numbers as pure functions of (seed, index, dimension): no state, no clock, the same on every machine.
+#pragma once
+
+#include <cstdint>
+
+namespace sunfleck {
+
+// PCG output permutation used as a hash. M. Jarzynski, M. Olano, "Hash Functions for GPU Rendering", JCGT 2020.
+constexpr std::uint32_t pcg_hash(std::uint32_t value) {
+    const std::uint32_t state = value * 747796405u + 2891336453u;
+    const std::uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) { return pcg_hash(a ^ (pcg_hash(b) + 0x9e3779b9u)); }
+
+// The 24 highest bits as a float in [0, 1).
+constexpr float to_unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+
+// Owen-scrambled Sobol point, bits of dimension `dimension` (any number of dimensions). Dimensions come in groups of
+// four, the first four Sobol dimensions each; groups after the first are padded by shuffling the index with a nested
+// uniform scramble, which keeps each group a (0,m,2)-like net on its own.
+// B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
+std::uint32_t sobol_owen_bits(std::uint32_t seed, std::uint32_t index, std::uint32_t dimension);
+
+enum class SequenceKind { pseudo_random, sobol };
+
+// One stream of numbers: element `index` of the sequence, dimension after dimension.
+class RandomSequence {
+public:
+    RandomSequence(SequenceKind kind, std::uint32_t seed, std::uint32_t index)
+        : kind_(kind), seed_(seed), index_(index) {}
+
+    float next() { return at(dimension_++); }
+    float at(std::uint32_t dimension) const {
+        if (kind_ == SequenceKind::sobol)
+            return to_unit_float(sobol_owen_bits(seed_, index_, dimension));
+        return to_unit_float(hash_combine(hash_combine(hash_combine(seed_, 0x51ed270bu), index_), dimension));
+    }
+    // Jumps to a dimension, so that a walk's bounces use the same dimensions whatever came before.
+    void seek(std::uint32_t dimension) { dimension_ = dimension; }
+
+private:
+    SequenceKind kind_;
+    std::uint32_t seed_;
+    std::uint32_t index_;
+    std::uint32_t dimension_ = 0;
+};
+
+} // namespace sunfleck

@@ -1,0 +1,156 @@
+// One dense array per component type, with the ticks of each element's addition and last change.
+#pragma once
+
+#include "engine/ecs/entity.h"
+
+#include <cassert>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace sunfleck::ecs {
+
+class Registry;
+
+struct Removal {
+    Entity entity;
+    Tick tick;
+};
+
+// Listeners to one kind of event, called in the order in which they connected. A listener must not add or remove
+// components of the pool that calls it; defer such changes.
+class Signal {
+public:
+    using Listener = std::function<void(Registry&, Entity)>;
+    std::uint32_t connect(Listener listener) {
+        listeners_.push_back({++last_id_, std::move(listener)});
+        return last_id_;
+    }
+    void disconnect(std::uint32_t id) {
+        std::erase_if(listeners_, [id](const auto& entry) { return entry.first == id; });
+    }
+    void emit(Registry& registry, Entity entity) const {
+        for (const auto& [id, listener] : listeners_)
+            listener(registry, entity);
+    }
+    bool empty() const { return listeners_.empty(); }
+
+private:
+    std::vector<std::pair<std::uint32_t, Listener>> listeners_;
+    std::uint32_t last_id_ = 0;
+};
+
+// What every pool shares, whatever its type: the sparse set of entities and the bookkeeping of changes.
+class PoolBase {
+public:
+    static constexpr std::uint32_t absent = 0xffffffffu;
+
+    virtual ~PoolBase() = default;
+
+    std::size_t size() const { return entities_.size(); }
+    const std::vector<Entity>& entities() const { return entities_; }
+    bool contains(Entity entity) const {
+        const std::uint32_t position = position_of(entity.index);
+        return position != absent && entities_[position] == entity;
+    }
+    // Place in the dense arrays, or `absent`. Does not check the generation.
+    std::uint32_t position_of(std::uint32_t index) const { return index < sparse_.size() ? sparse_[index] : absent; }
+
+    Tick added_tick(std::size_t position) const { return added_[position]; }
+    Tick changed_tick(std::size_t position) const { return changed_[position]; }
+    std::span<const Removal> removals() const { return removals_; }
+    void forget_removals_until(Tick tick) {
+        std::erase_if(removals_, [tick](const Removal& removal) { return removal.tick <= tick; });
+    }
+
+    // For snapshots: null where the component is not described, and then it is not saved.
+    virtual const TypeDescription* description() const = 0;
+    virtual const void* address(std::size_t position) const = 0;
+    virtual void* emplace_default(Entity entity, Tick tick) = 0;
+
+    void erase(Entity entity, Tick tick) {
+        const std::uint32_t position = sparse_[entity.index];
+        const std::uint32_t last = std::uint32_t(entities_.size() - 1);
+        move_values_last_to(position);
+        entities_[position] = entities_[last];
+        added_[position] = added_[last];
+        changed_[position] = changed_[last];
+        sparse_[entities_[position].index] = position;
+        sparse_[entity.index] = absent;
+        entities_.pop_back();
+        added_.pop_back();
+        changed_.pop_back();
+        removals_.push_back({entity, tick});
+    }
+
+    void swap_positions(std::uint32_t a, std::uint32_t b) {
+        if (a == b)
+            return;
+        swap_values(a, b);
+        std::swap(entities_[a], entities_[b]);
+        std::swap(added_[a], added_[b]);
+        std::swap(changed_[a], changed_[b]);
+        sparse_[entities_[a].index] = a;
+        sparse_[entities_[b].index] = b;
+    }
+
+    void stamp(Entity entity, Tick tick) { changed_[sparse_[entity.index]] = tick; }
+
+    Signal added, changed, removed;
+    // Set by the group that owns the order of this pool.
+    void* owner = nullptr;
+
+protected:
+    void insert(Entity entity, Tick tick) {
+        if (entity.index >= sparse_.size())
+            sparse_.resize(std::max<std::size_t>(entity.index + 1, sparse_.size() * 2), absent);
+        sparse_[entity.index] = std::uint32_t(entities_.size());
+        entities_.push_back(entity);
+        added_.push_back(tick);
+        changed_.push_back(tick);
+    }
+    virtual void move_values_last_to(std::uint32_t position) = 0;
+    virtual void swap_values(std::uint32_t a, std::uint32_t b) = 0;
+
+private:
+    std::vector<std::uint32_t> sparse_;
+    std::vector<Entity> entities_;
+    std::vector<Tick> added_;
+    std::vector<Tick> changed_;
+    std::vector<Removal> removals_;
+};
+
+template <typename T>
+class Pool final : public PoolBase {
+public:
+    T& emplace(Entity entity, T value, Tick tick) {
+        insert(entity, tick);
+        values_.push_back(std::move(value));
+        return values_.back();
+    }
+    T& value(std::size_t position) { return values_[position]; }
+    const T& value(std::size_t position) const { return values_[position]; }
+    T* data() { return values_.data(); }
+    const T* data() const { return values_.data(); }
+
+    const TypeDescription* description() const override {
+        if constexpr (Described<T>)
+            return &T::description();
+        else
+            return nullptr;
+    }
+    const void* address(std::size_t position) const override { return &values_[position]; }
+    void* emplace_default(Entity entity, Tick tick) override { return &emplace(entity, T{}, tick); }
+
+private:
+    void move_values_last_to(std::uint32_t position) override {
+        if (position + 1 != values_.size())
+            values_[position] = std::move(values_.back());
+        values_.pop_back();
+    }
+    void swap_values(std::uint32_t a, std::uint32_t b) override { std::swap(values_[a], values_[b]); }
+
+    std::vector<T> values_;
+};
+
+} // namespace sunfleck::ecs

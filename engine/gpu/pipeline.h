@@ -1,0 +1,100 @@
+// Compute and graphics pipelines. Each has one descriptor set whose bindings are numbered in the order in which they
+// are listed, and push constants visible to all its stages.
+#pragma once
+
+#include "engine/gpu/device.h"
+#include "engine/gpu/shader_library.h"
+
+#include <memory>
+#include <vector>
+
+namespace sunfleck::gpu {
+
+// How a shader sees a binding.
+enum class BindingKind { uniform_buffer, storage_buffer, texel_buffer, storage_image, sampled_image };
+
+struct ComputeDescription {
+    std::string shader; // path in the shader library
+    std::vector<BindingKind> bindings;
+    std::uint32_t push_constant_bytes = 0;
+    std::vector<std::uint32_t> specialization; // values of constant_id 0, 1, ...
+    std::string name;                          // for validation messages; empty takes the shader's path
+};
+
+struct VertexAttribute {
+    std::uint32_t buffer = 0; // each buffer holds one attribute, tightly packed
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    std::uint32_t stride = 0;
+};
+
+struct GraphicsDescription {
+    std::string vertex_shader;
+    std::string fragment_shader; // empty: depth only
+    std::vector<BindingKind> bindings;
+    std::uint32_t push_constant_bytes = 0;
+    std::vector<std::uint32_t> specialization;
+    std::vector<VertexAttribute> attributes;
+    std::vector<VkFormat> colour_formats;
+    VkFormat depth_format = VK_FORMAT_UNDEFINED;
+    VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    VkCullModeFlags cull = VK_CULL_MODE_NONE;
+    VkCompareOp depth_compare = VK_COMPARE_OP_GREATER; // reverse Z
+    bool depth_write = true;
+    bool depth_clamp = false;
+};
+
+class Pipeline {
+public:
+    VkPipeline handle() const { return handle_; }
+    VkPipelineLayout layout() const { return layout_; }
+    VkDescriptorSetLayout set_layout() const { return set_layout_; }
+    VkPipelineBindPoint bind_point() const { return bind_point_; }
+    const std::vector<BindingKind>& bindings() const { return bindings_; }
+    VkShaderStageFlags push_stages() const { return push_stages_; }
+
+private:
+    friend class PipelineStore;
+    VkPipeline handle_ = VK_NULL_HANDLE;
+    VkPipelineLayout layout_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
+    VkShaderStageFlags push_stages_ = 0;
+    std::vector<BindingKind> bindings_;
+};
+
+// Owns pipelines; the pointers it returns stay valid, and change their content at refresh.
+class PipelineStore {
+public:
+    PipelineStore(Device& device, ShaderLibrary& shaders) : device_(device), shaders_(shaders) {}
+    ~PipelineStore();
+    PipelineStore(const PipelineStore&) = delete;
+    PipelineStore& operator=(const PipelineStore&) = delete;
+
+    Result<const Pipeline*> compute(const ComputeDescription& description);
+    Result<const Pipeline*> graphics(const GraphicsDescription& description);
+
+    // Makes all pipelines anew from the library's current code. On failure every pipeline stays as it was. The GPU must
+    // be idle.
+    Status refresh();
+
+private:
+    struct Entry {
+        Pipeline pipeline;
+        ComputeDescription compute;
+        GraphicsDescription graphics;
+    };
+    Status make_layout(Pipeline& pipeline, const std::vector<BindingKind>& bindings, std::uint32_t push_bytes,
+                       VkShaderStageFlags stages);
+    Result<VkPipeline> build(const Entry& entry);
+    Result<VkPipeline> build_compute(const Entry& entry);
+    Result<VkPipeline> build_graphics(const Entry& entry);
+    Result<VkShaderModule> make_module(const std::string& path);
+    Result<const Pipeline*> finish(std::unique_ptr<Entry> entry);
+    void destroy(Entry& entry);
+
+    Device& device_;
+    ShaderLibrary& shaders_;
+    std::vector<std::unique_ptr<Entry>> entries_;
+};
+
+} // namespace sunfleck::gpu

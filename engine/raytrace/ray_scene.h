@@ -1,0 +1,78 @@
+// Rays against the registry's geometry, by Embree. Static geometry is one scene built once; movers are instances whose
+// transforms follow the registry. Queries are thread safe between updates.
+#pragma once
+
+#include "engine/core/result.h"
+#include "engine/scene/components.h"
+#include "engine/scene/mesh_store.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+
+namespace sunfleck::raytrace {
+
+struct Ray {
+    vec3 origin{0.0f};
+    vec3 direction{0.0f, 0.0f, 1.0f}; // need not be unit length; distances are multiples of it
+    float minimum = 0.0f;
+    float maximum = 1e30f;
+};
+
+struct Hit {
+    float distance = 0.0f; // in multiples of the ray's direction
+    std::uint32_t instance = 0;
+    std::uint32_t primitive = 0;
+    float u = 0.0f, v = 0.0f; // barycentric weights of the second and third vertex
+};
+
+// What stands at a hit, in world space.
+struct SurfacePoint {
+    vec3 position{0.0f};
+    vec3 geometric_normal{0.0f}; // of the triangle's front side
+    vec3 shading_normal{0.0f};   // interpolated, on the geometric normal's side
+    const scene::Material* material = nullptr;
+    ecs::Entity entity;
+};
+
+// Which geometry a ray can meet.
+enum class Scope { everything, static_only };
+
+inline constexpr std::size_t packet_size = 16;
+struct ShadowPacket {
+    std::array<Ray, packet_size> rays;
+    std::uint32_t active = 0xffffu; // bit i: ray i takes part
+};
+
+class RayScene {
+public:
+    static Result<std::unique_ptr<RayScene>> create();
+    ~RayScene();
+    RayScene(const RayScene&) = delete;
+    RayScene& operator=(const RayScene&) = delete;
+
+    // Follows the registry: builds what is new, moves movers, drops what is gone. World transforms must be up to date.
+    // The static scene is rebuilt only if static geometry changed.
+    Status update(ecs::Registry& registry, const scene::MeshStore& meshes);
+
+    std::optional<Hit> closest_hit(const Ray& ray, Scope scope = Scope::everything) const;
+    bool occluded(const Ray& ray, Scope scope = Scope::everything) const;
+    // Bit i is set if ray i is occluded. Same answers as `occluded` one by one.
+    std::uint32_t occluded(const ShadowPacket& packet, Scope scope = Scope::everything) const;
+
+    SurfacePoint surface(const Ray& ray, const Hit& hit) const;
+
+    // How often static geometry was built, for tests of "built once".
+    std::uint32_t static_builds() const;
+    // Raised when static geometry or a static entity's material changed.
+    std::uint64_t static_generation() const;
+    // Area of all static triangles, m2.
+    float static_area() const;
+
+private:
+    RayScene();
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace sunfleck::raytrace

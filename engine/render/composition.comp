@@ -1,0 +1,74 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/core/octahedral.h"
+#include "engine/core/shader_language.h"
+#include "engine/render/composition_shared.h"
+#include "engine/render/tone_map.h"
+#include "engine/scene/instance_shared.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 0) uniform sampler2D irradiance_image;
+layout(set = 0, binding = 1) uniform sampler2D depth_image;
+layout(set = 0, binding = 2) uniform usampler2D normals_image;
+layout(set = 0, binding = 3) uniform usampler2D surface_image;
+layout(set = 0, binding = 4) uniform sampler2D albedo_image;
+layout(set = 0, binding = 5) uniform sampler2D motion_image;
+layout(set = 0, binding = 6) readonly buffer Rows { InstanceRow rows[]; };
+layout(set = 0, binding = 7) writeonly uniform image2D output_image;
+layout(push_constant) uniform Constants { CompositionConstants constants; };
+
+const float pi = 3.14159265358979;
+
+vec3 surface_radiance(ivec2 pixel, uint surface) {
+    const vec3 irradiance = texelFetch(irradiance_image, pixel, 0).rgb;
+    const vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
+    return albedo / pi * irradiance + rows[(surface & 0x7fffffffu) - 1u].emission.rgb;
+}
+
+vec3 surface_colour(uint surface) {
+    const uint h = (surface & 0x7fffffffu) * 2654435761u;
+    return vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (pixel.x >= int(constants.width) || pixel.y >= int(constants.height))
+        return;
+    const uint surface = texelFetch(surface_image, pixel, 0).r;
+    const bool hit = surface != 0u;
+    const bool emitter = (surface & 0x80000000u) != 0u;
+    vec4 value = vec4(0.0, 0.0, 0.0, hit ? 1.0 : 0.0);
+    bool radiance = false;
+    if (constants.view == view_final) {
+        value.rgb = hit ? surface_radiance(pixel, surface)
+                        : vec3(constants.sky_red, constants.sky_green, constants.sky_blue);
+        value.a = 1.0;
+        radiance = true;
+    } else if (constants.view == view_irradiance) {
+        if (hit && !emitter)
+            value.rgb = texelFetch(irradiance_image, pixel, 0).rgb;
+        else
+            value.a = 0.0;
+        radiance = constants.tone_map != 0u;
+        if (radiance)
+            value.rgb /= pi;
+    } else if (constants.view == view_normals && hit) {
+        value.rgb = unpack_normal(texelFetch(normals_image, pixel, 0).r) * 0.5 + 0.5;
+    } else if (constants.view == view_albedo && hit) {
+        value.rgb = texelFetch(albedo_image, pixel, 0).rgb;
+    } else if (constants.view == view_depth && hit) {
+        value.rgb = vec3(texelFetch(depth_image, pixel, 0).r);
+    } else if (constants.view == view_surfaces && hit) {
+        value.rgb = surface_colour(surface);
+    } else if (constants.view == view_motion && hit) {
+        value.rgb = vec3(texelFetch(motion_image, pixel, 0).rg * 10.0 + 0.5, 0.5);
+    }
+    if (constants.tone_map != 0u) {
+        if (radiance)
+            value.rgb = display_from_radiance(value.rgb, constants.exposure);
+        else
+            value.rgb = clamp(value.rgb, vec3(0.0), vec3(1.0));
+        value.a = 1.0;
+    }
+    imageStore(output_image, pixel, value);
+}

@@ -1,0 +1,28 @@
+#ifndef SUNFLECK_ENGINE_RENDER_COMPOSITION_SHARED_H
+#define SUNFLECK_ENGINE_RENDER_COMPOSITION_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+// What the composition shows.
+SHARED_CONSTANT uint view_final = 0u;
+SHARED_CONSTANT uint view_irradiance = 1u;
+SHARED_CONSTANT uint view_normals = 2u;
+SHARED_CONSTANT uint view_albedo = 3u;
+SHARED_CONSTANT uint view_depth = 4u;
+SHARED_CONSTANT uint view_surfaces = 5u;
+SHARED_CONSTANT uint view_motion = 6u;
+
+struct CompositionConstants {
+    uint view;
+    uint tone_map;   // 0: scene-linear output, 1: exposure, tone curve and sRGB
+    float exposure;  // exposure_factor(EV100)
+    uint width;
+    uint height;
+    float sky_red, sky_green, sky_blue; // radiance where nothing is, W/(sr m2)
+};
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::CompositionConstants) == 32);
+#endif
+#endif

@@ -1,0 +1,80 @@
+#include "engine/render/g_buffer.h"
+
+namespace sunfleck::render {
+
+Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
+    gpu::GraphicsDescription description;
+    description.vertex_shader = "engine/render/g_buffer.vert";
+    description.fragment_shader = "engine/render/g_buffer.frag";
+    description.bindings = {gpu::BindingKind::uniform_buffer, gpu::BindingKind::storage_buffer};
+    description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}, {1, VK_FORMAT_R32G32B32_SFLOAT, 12}};
+    description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
+    description.depth_format = depth_format;
+    GBufferPass pass;
+    SUNFLECK_ASSIGN(pass.pipeline_, pipelines.graphics(description));
+    return pass;
+}
+
+GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
+                         std::uint32_t width, std::uint32_t height) const {
+    GBuffer target;
+    target.width = width;
+    target.height = height;
+    target.depth = graph.create_image("depth", depth_format, width, height);
+    target.normals = graph.create_image("normals", normals_format, width, height);
+    target.surface = graph.create_image("surface ids", surface_format, width, height);
+    target.albedo = graph.create_image("albedo", albedo_format, width, height);
+    target.motion = graph.create_image("motion", motion_format, width, height);
+    graph.add_pass("g-buffer")
+        .write(target.depth, gpu::Usage::depth_attachment)
+        .write(target.normals, gpu::Usage::colour_attachment)
+        .write(target.surface, gpu::Usage::colour_attachment)
+        .write(target.albedo, gpu::Usage::colour_attachment)
+        .write(target.motion, gpu::Usage::colour_attachment)
+        .execute([this, &scene, camera, target](gpu::PassContext& context) {
+            return record(context, scene, camera, target);
+        });
+    return target;
+}
+
+Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
+                           const GBuffer& target) const {
+    const auto attachment = [&](gpu::ResourceId id, VkImageLayout layout) {
+        VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+        info.imageView = context.graph.view(id);
+        info.imageLayout = layout;
+        info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+        return info;
+    };
+    const VkImageLayout colour = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    const VkRenderingAttachmentInfo colours[] = {attachment(target.normals, colour), attachment(target.surface, colour),
+                                                 attachment(target.albedo, colour), attachment(target.motion, colour)};
+    const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea.extent = {target.width, target.height};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 4;
+    rendering.pColorAttachments = colours;
+    rendering.pDepthAttachment = &depth;
+    const VolkDeviceTable& vk = context.device.vk;
+    vk.vkCmdBeginRendering(context.commands, &rendering);
+    const VkViewport viewport{0, 0, float(target.width), float(target.height), 0, 1};
+    vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
+    vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+    Status status;
+    if (!scene.draws().empty()) {
+        const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
+        status = context.resources.bind(context.commands, *pipeline_, bindings);
+        const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle()};
+        const VkDeviceSize offsets[] = {0, 0};
+        vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);
+        vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+        for (const scene::DrawItem& item : scene.draws())
+            vk.vkCmdDrawIndexed(context.commands, item.index_count, 1, item.first_index, item.vertex_offset, item.row);
+    }
+    vk.vkCmdEndRendering(context.commands);
+    return status;
+}
+
+} // namespace sunfleck::render

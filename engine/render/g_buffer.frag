@@ -1,0 +1,34 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "engine/core/octahedral.h"
+#include "engine/scene/camera_shared.h"
+#include "engine/scene/instance_shared.h"
+
+layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
+
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec3 in_normal;
+layout(location = 2) in vec4 in_previous;
+layout(location = 3) in vec4 in_current;
+layout(location = 4) flat in uint in_row;
+
+layout(location = 0) out uvec2 out_normals; // x: shading normal, y: geometric normal (octahedral, 16 bits each)
+layout(location = 1) out uint out_surface;  // row + 1; the top bit marks area lights
+layout(location = 2) out vec4 out_albedo;
+layout(location = 3) out vec2 out_motion;   // in units of the picture: where the point was, minus where it is
+
+void main() {
+    // Surfaces are two-sided: the geometric normal faces the camera, the shading normal is on its side.
+    const vec3 to_camera = camera.position.xyz - in_position;
+    vec3 geometric = normalize(cross(dFdx(in_position), dFdy(in_position)));
+    if (dot(geometric, to_camera) < 0.0)
+        geometric = -geometric;
+    vec3 shading = normalize(in_normal);
+    if (dot(shading, geometric) < 0.0)
+        shading = -shading;
+    out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
+    out_surface = (in_row + 1u) | (rows[in_row].emission.w > 0.0 ? 0x80000000u : 0u);
+    out_albedo = vec4(rows[in_row].base_colour.rgb, 1.0);
+    out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
+}

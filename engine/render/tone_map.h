@@ -1,0 +1,27 @@
+// Filmic tone curve and sRGB transfer, shared by shaders and C++ (the reference writes PNGs too).
+#ifndef SUNFLECK_ENGINE_RENDER_TONE_MAP_H
+#define SUNFLECK_ENGINE_RENDER_TONE_MAP_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+// Factor from scene radiance, W/(sr m2), to the exposed value that the tone curve takes: luminous efficacy 683 lm/W over
+// the saturation luminance 1.2 * 2^EV100 (ISO 12232 with q = 0.65).
+SHARED_FUNCTION float exposure_factor(float ev100) { return 683.0f / (1.2f * exp2(ev100)); }
+
+// Rational fit of the ACES filmic curve: K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
+SHARED_FUNCTION vec3 filmic_curve(vec3 x) {
+    return clamp((x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f), vec3(0.0f), vec3(1.0f));
+}
+
+// IEC 61966-2-1, per channel.
+SHARED_FUNCTION float srgb_from_linear(float x) {
+    return x <= 0.0031308f ? 12.92f * x : 1.055f * pow(x, 1.0f / 2.4f) - 0.055f;
+}
+
+SHARED_FUNCTION vec3 display_from_radiance(vec3 radiance, float exposure) {
+    vec3 c = filmic_curve(max(radiance, vec3(0.0f)) * exposure);
+    return vec3(srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z));
+}
+
+SHARED_END
+#endif

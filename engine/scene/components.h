@@ -1,0 +1,137 @@
+// The components of a scene. Radiometric RGB, linear Rec. 709; metres, seconds, radians. World space unless said.
+#pragma once
+
+#include "engine/ecs/registry.h"
+
+#include <string>
+
+namespace sunfleck::scene {
+
+struct Name {
+    std::string name;
+    static const TypeDescription& description();
+};
+
+// Relative to the parent, or to the world without one.
+struct Transform {
+    vec3 position{0.0f};
+    quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
+    vec3 scale{1.0f};
+    static const TypeDescription& description();
+
+    mat4 matrix() const {
+        return glm::translate(mat4(1.0f), position) * glm::mat4_cast(rotation) * glm::scale(mat4(1.0f), scale);
+    }
+};
+
+struct Parent {
+    ecs::Entity parent;
+    static const TypeDescription& description();
+};
+
+// Derived by update_world_transforms; never edited or saved.
+struct WorldTransform {
+    mat4 matrix{1.0f};
+};
+
+struct MeshInstance {
+    std::uint32_t mesh = 0; // index in the MeshStore
+    static const TypeDescription& description();
+};
+
+// BSDF of the entity's mesh: Lambertian and GGX as in glTF 2.0, or smooth glass where transmission is above zero.
+struct Material {
+    vec3 base_colour{0.8f};
+    float metallic = 0.0f;
+    float roughness = 1.0f;
+    vec3 emission{0.0f}; // radiance, W/(sr m2), on the front side
+    float transmission = 0.0f;
+    float index_of_refraction = 1.5f;
+    bool specular = false; // dielectric GGX layer over the diffuse base; off: purely Lambertian unless metallic
+    static const TypeDescription& description();
+};
+
+struct Camera {
+    float vertical_field_of_view = 0.9f;
+    static const TypeDescription& description();
+};
+
+struct Exposure {
+    float ev100 = 8.0f;
+    static const TypeDescription& description();
+};
+
+enum class AreaShape : std::uint32_t { rectangle, disc, sphere };
+
+// An emitter of simple shape: rectangle and disc lie in the local XY plane and radiate along +Z; the sphere radiates
+// outwards. Its entity also has the mesh of the shape, with the same emission, for cameras and rays to see.
+struct AreaLight {
+    AreaShape shape = AreaShape::rectangle;
+    float width = 1.0f;  // rectangle, along X
+    float height = 1.0f; // rectangle, along Y
+    float radius = 0.5f; // disc and sphere
+    vec3 radiance{1.0f}; // W/(sr m2), Lambertian
+    static const TypeDescription& description();
+};
+
+struct PointLight {
+    vec3 intensity{1.0f}; // radiant intensity, W/sr
+    static const TypeDescription& description();
+};
+
+// Radiates along the local -Z axis; intensity falls between the cones as in KHR_lights_punctual.
+struct SpotLight {
+    vec3 intensity{1.0f}; // radiant intensity on the axis, W/sr
+    float inner_angle = 0.3f;
+    float outer_angle = 0.6f;
+    static const TypeDescription& description();
+};
+
+// Light from infinity, travelling along the local -Z axis.
+struct DirectionalLight {
+    vec3 irradiance{1.0f}; // on a plane that faces it, W/m2
+    static const TypeDescription& description();
+};
+
+// Light from all directions where nothing is hit.
+struct Environment {
+    vec3 radiance{0.0f}; // W/(sr m2)
+    static const TypeDescription& description();
+};
+
+enum class MoverPath : std::uint32_t { none, line, circle, spin };
+
+// The entity moves. Its pose is a function of the simulation step alone, around the transform that it was given.
+struct Mover {
+    MoverPath path = MoverPath::none;
+    vec3 travel{1.0f, 0.0f, 0.0f}; // line: half of the way, there and back, m
+    vec3 centre{0.0f};             // circle: about this point, in the plane across `axis`
+    vec3 axis{0.0f, 1.0f, 0.0f};   // circle and spin
+    float period = 8.0f;           // s for one round or one way there and back
+    float phase = 0.0f;            // share of a period
+    float spin_period = 0.0f;      // s for a turn about its own vertical axis; 0 does not turn
+    static const TypeDescription& description();
+};
+
+// Where the mover stood when the simulation began; made by the simulation.
+struct MoverOrigin {
+    Transform transform;
+};
+
+// True if neither the entity nor an ancestor has a Mover.
+bool is_static(const ecs::Registry& registry, ecs::Entity entity);
+
+// Brings WorldTransform up to date for all entities with a Transform; unchanged ones keep their change tick. A cycle of
+// parents is cut where it closes.
+void update_world_transforms(ecs::Registry& registry);
+
+// The entity's place in the world, computed from the hierarchy.
+mat4 world_matrix(const ecs::Registry& registry, ecs::Entity entity);
+
+// First entity of that name, by index; null if there is none.
+ecs::Entity find_by_name(ecs::Registry& registry, std::string_view name);
+
+// Registers every component of this header.
+void register_components(ecs::Registry& registry);
+
+} // namespace sunfleck::scene

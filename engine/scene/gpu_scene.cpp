@@ -1,0 +1,98 @@
+#include "engine/scene/gpu_scene.h"
+
+namespace sunfleck::scene {
+namespace {
+
+template <typename T>
+Result<gpu::Buffer> make_geometry_buffer(gpu::Device& device, gpu::Submission& submission, const char* name,
+                                         const std::vector<T>& values, VkBufferUsageFlags usage) {
+    gpu::BufferDescription description;
+    description.name = name;
+    description.size = values.size() * sizeof(T);
+    description.usage = usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    SUNFLECK_ASSIGN(gpu::Buffer buffer, gpu::Buffer::create(device, description));
+    SUNFLECK_TRY(gpu::upload_now(device, submission, buffer, std::as_bytes(std::span(values))));
+    return buffer;
+}
+
+} // namespace
+
+Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission) {
+    if (ranges_.size() == meshes.size() && positions_)
+        return {};
+    std::vector<vec3> positions, normals;
+    std::vector<std::uint32_t> indices;
+    ranges_.clear();
+    for (std::uint32_t i = 0; i < meshes.size(); ++i) {
+        const Mesh& mesh = meshes[i];
+        ranges_.push_back({std::uint32_t(indices.size()), std::uint32_t(mesh.indices.size()),
+                           std::uint32_t(mesh.positions.size()), std::int32_t(positions.size())});
+        positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
+        normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
+        indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+    }
+    SUNFLECK_TRY(device_.wait_idle());
+    SUNFLECK_ASSIGN(positions_, make_geometry_buffer(device_, submission, "mesh positions", positions,
+                                                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+    SUNFLECK_ASSIGN(normals_, make_geometry_buffer(device_, submission, "mesh normals", normals,
+                                                   VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
+    SUNFLECK_ASSIGN(indices_, make_geometry_buffer(device_, submission, "mesh indices", indices,
+                                                   VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+    return {};
+}
+
+Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources) {
+    draws_.clear();
+    removed_bounds_.clear();
+    static_bounds_ = bounds_ = {};
+    for (auto& [entity, previous] : previous_)
+        previous.seen = false;
+    std::vector<shared::InstanceRow> rows;
+    registry.view<MeshInstance, WorldTransform>().each(
+        [&](ecs::Entity entity, const MeshInstance& instance, const WorldTransform& transform) {
+            if (instance.mesh >= ranges_.size())
+                return;
+            const MeshRange& range = ranges_[instance.mesh];
+            const Material* material = registry.try_get<Material>(entity);
+            const Material fallback;
+            const Material& surface = material != nullptr ? *material : fallback;
+            DrawItem item;
+            item.entity = entity;
+            item.first_index = range.first_index;
+            item.index_count = range.index_count;
+            item.vertex_offset = range.vertex_offset;
+            item.vertex_count = range.vertex_count;
+            item.row = std::uint32_t(rows.size());
+            item.bounds = transform_bounds(transform.matrix, meshes.bounds(instance.mesh));
+            item.is_static = is_static(registry, entity);
+            bounds_.add(item.bounds);
+            if (item.is_static)
+                static_bounds_.add(item.bounds);
+
+            Previous& previous = previous_[entity];
+            const bool known = !previous.bounds.empty();
+            item.moved = !known || previous.model != transform.matrix;
+            item.previous_bounds = previous.bounds;
+            shared::InstanceRow row;
+            row.model = transform.matrix;
+            row.previous_model = known ? previous.model : transform.matrix;
+            // The transposed inverse up to a factor, which also serves singular and mirroring matrices.
+            const mat3 m(transform.matrix);
+            const mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+            row.normal_matrix = mat4(glm::determinant(m) < 0.0f ? -cofactors : cofactors);
+            row.base_colour = vec4(surface.base_colour, 1.0f);
+            row.emission = vec4(surface.emission, registry.has<AreaLight>(entity) ? 1.0f : 0.0f);
+            rows.push_back(row);
+            previous = {transform.matrix, item.bounds, true};
+            draws_.push_back(item);
+        });
+    std::erase_if(previous_, [&](const auto& entry) {
+        if (!entry.second.seen)
+            removed_bounds_.push_back(entry.second.bounds);
+        return !entry.second.seen;
+    });
+    SUNFLECK_ASSIGN(rows_, resources.upload(std::span<const shared::InstanceRow>(rows)));
+    return {};
+}
+
+} // namespace sunfleck::scene

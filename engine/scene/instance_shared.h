@@ -1,0 +1,19 @@
+// One row of the instance buffer, as shaders read it.
+#ifndef SUNFLECK_ENGINE_SCENE_INSTANCE_SHARED_H
+#define SUNFLECK_ENGINE_SCENE_INSTANCE_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+struct InstanceRow {
+    mat4 model;          //   0: object to world
+    mat4 previous_model; //  64: the same in the previous frame
+    mat4 normal_matrix;  // 128: cofactors of `model`, for normals (upper 3x3)
+    vec4 base_colour;    // 192: rgb
+    vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
+};
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::InstanceRow) == 224);
+#endif
+#endif

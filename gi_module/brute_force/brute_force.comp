@@ -1,0 +1,192 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Every light sample, with its shadow map, at every pixel: thesis sec. 4.3, the equation of L(x) without A(x). This is
+// the baseline that each optimisation must equal in picture and beat in time, so it takes the fastest shape that we know:
+// several pixels an invocation share each light's loads, and a batch has one class of lights, so the loop has no branch.
+#include "engine/core/octahedral.h"
+#include "engine/scene/camera_shared.h"
+#include "gi_module/brute_force/brute_force_shared.h"
+#include "gi_module/shadows/octahedral_map.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint pixels = 8;
+layout(constant_id = 1) const uint light_class = light_class_surface;
+layout(constant_id = 2) const uint maps = maps_texel_buffer;
+layout(constant_id = 3) const uint filtered = 0;
+layout(constant_id = 4) const uint count_clamped = 0;
+layout(constant_id = 5) const uint storage_lights = 0;
+layout(constant_id = 6) const uint map_bits = 16;
+
+layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 1) uniform sampler2D depth_image;
+layout(set = 0, binding = 2) uniform usampler2D normals_image;
+layout(set = 0, binding = 3) uniform Lights { LightRow uniform_lights[lights_per_batch]; };
+layout(set = 0, binding = 4) readonly buffer StoredLights { LightRow stored_lights[]; };
+layout(set = 0, binding = 5) uniform samplerBuffer map_texels;
+layout(set = 0, binding = 6) readonly buffer MapWords { uint map_words[]; };
+layout(set = 0, binding = 7) buffer Accumulation { vec4 accumulation[]; }; // rgb W/m2; a: clamped away, luminance
+layout(set = 0, binding = 8) writeonly uniform image2D output_image;
+layout(set = 0, binding = 9) buffer ClampedSums { vec4 clamped_sums[]; }; // a work group: flux W, irradiance, pixels, area
+layout(push_constant) uniform Constants { BruteForceConstants constants; };
+
+shared vec4 group_sums[64];
+
+struct Pixel {
+    vec3 position;
+    vec3 normal;
+    vec3 geometric_normal;
+};
+
+float map_value(uint slot, ivec2 texel) {
+    const int resolution = int(constants.map_resolution);
+    const int place = (int(slot) * resolution + texel.y) * resolution + texel.x;
+    if (maps == maps_texel_buffer)
+        return texelFetch(map_texels, place).r;
+    if (map_bits == 32)
+        return uintBitsToFloat(map_words[place]);
+    const uint word = map_words[place >> 1];
+    return float((place & 1) != 0 ? word >> 16 : word & 0xffffu) / 65535.0;
+}
+
+// 1 if nothing in the map is nearer to the light than the receiver, whose stored value with its bias is `receiver`.
+float visibility(uint slot, vec2 uv, float receiver, float filter_bias) {
+    const float resolution = float(constants.map_resolution);
+    const vec2 place = (uv * 0.5 + 0.5) * resolution;
+    const ivec2 last = ivec2(int(constants.map_resolution) - 1);
+    if (filtered == 0)
+        return receiver >= map_value(slot, clamp(ivec2(place), ivec2(0), last)) ? 1.0 : 0.0;
+    // Bilinear blend of the four nearest texels' answers; their centres are up to three times as far as the nearest.
+    const vec2 corner = floor(place - 0.5);
+    const vec2 weight = place - 0.5 - corner;
+    const ivec2 texel = ivec2(corner);
+    const float biased = receiver + 2.0 * filter_bias;
+    vec4 lit;
+    lit.x = biased >= map_value(slot, clamp(texel, ivec2(0), last)) ? 1.0 : 0.0;
+    lit.y = biased >= map_value(slot, clamp(texel + ivec2(1, 0), ivec2(0), last)) ? 1.0 : 0.0;
+    lit.z = biased >= map_value(slot, clamp(texel + ivec2(0, 1), ivec2(0), last)) ? 1.0 : 0.0;
+    lit.w = biased >= map_value(slot, clamp(texel + ivec2(1, 1), ivec2(0), last)) ? 1.0 : 0.0;
+    return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y);
+}
+
+// Irradiance of one light at one pixel as a factor of its intensity; y: what the bound of the geometry term took away.
+vec2 light_factor(LightRow light, Pixel pixel) {
+    const uint slot = uint(light.intensity_slot.w);
+    const vec3 v = pixel.position - light.position_bound.xyz;
+    const float along = dot(light.normal_offset.xyz, v);
+    const float resolution = float(constants.map_resolution);
+    if (light_class == light_class_directional) {
+        const float cosine = -dot(pixel.normal, light.normal_offset.xyz);
+        const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
+        float factor = geometric_cosine > 0.0 ? max(cosine, 0.0) : 0.0;
+        if (maps != maps_none) {
+            const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
+            const float bias = orthographic_texel_reach(resolution) / max(geometric_cosine, 1e-6);
+            factor *= visibility(slot, uv, 1.0 - along * light.normal_offset.w + bias + depth_step(map_bits), bias);
+        }
+        return vec2(factor, 0.0);
+    }
+    const float squared_distance = max(dot(v, v), 1e-12);
+    const float receiver_distance = -dot(pixel.normal, v);           // |v| times the receiver's cosine
+    const float plane_distance = -dot(pixel.geometric_normal, v);    // of the light to the receiver's plane
+    const float lit_side = plane_distance > 0.0 ? max(receiver_distance, 0.0) : 0.0;
+    vec2 factor;
+    if (light_class == light_class_surface) {
+        const float inverse = 1.0 / squared_distance;
+        const float term = max(along, 0.0) * lit_side * inverse * inverse;
+        factor.x = min(term, light.position_bound.w);
+        factor.y = term - factor.x;
+    } else {
+        const float inverse_distance = inversesqrt(squared_distance);
+        const float cone = clamp(along * inverse_distance * light.tangent_scale.w + light.normal_offset.w, 0.0, 1.0);
+        factor = vec2(cone * cone * lit_side * inverse_distance * inverse_distance * inverse_distance, 0.0);
+    }
+    if (maps != maps_none) {
+        const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
+        const bool hemisphere = light_class == light_class_surface;
+        const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
+        const float reach = hemisphere ? hemisphere_texel_reach(resolution) : sphere_texel_reach(resolution);
+        const float bias = shadow_near * reach / max(plane_distance, 1e-9);
+        const float receiver = min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits);
+        factor *= visibility(slot, place.xy, receiver, bias);
+    }
+    return factor;
+}
+
+// Area of the surface that a pixel shows, m2.
+float pixel_area(Pixel pixel, vec2 centre) {
+    const vec3 ray = camera_ray(camera, centre);
+    const float distance_along = dot(pixel.position - camera.position.xyz, camera.forward.xyz);
+    const float facing = max(abs(dot(pixel.geometric_normal, ray)), 1e-3);
+    const float plane_area = 4.0 * length(camera.right.xyz) * length(camera.down.xyz) /
+                             (camera.forward.w * camera.right.w);
+    return distance_along * distance_along * plane_area / facing;
+}
+
+void main() {
+    const int row = int(gl_GlobalInvocationID.y);
+    const int first_column = int(gl_WorkGroupID.x * kernel_lanes * pixels + gl_LocalInvocationID.x);
+    Pixel surface[pixels];
+    bool covered[pixels];
+    vec3 sum[pixels];
+    float clamped[pixels];
+    bool any_covered = false;
+    [[unroll]] for (uint k = 0; k < pixels; ++k) {
+        const ivec2 pixel = ivec2(first_column + int(k * kernel_lanes), row);
+        const ivec2 inside = min(pixel, ivec2(constants.width, constants.height) - 1);
+        const float depth = texelFetch(depth_image, inside, 0).r;
+        const uvec2 normals = texelFetch(normals_image, inside, 0).rg;
+        covered[k] = depth > 0.0;
+        any_covered = any_covered || covered[k];
+        surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
+        surface[k].normal = unpack_normal(normals.x);
+        surface[k].geometric_normal = unpack_normal(normals.y);
+        sum[k] = vec3(0.0);
+        clamped[k] = 0.0;
+        if (constants.first_batch == 0u && pixel == inside) {
+            const vec4 before = accumulation[row * int(constants.width) + pixel.x];
+            sum[k] = before.rgb;
+            clamped[k] = before.a;
+        }
+    }
+    if (any_covered) {
+        for (uint i = 0; i < constants.light_count; ++i) {
+            LightRow light;
+            if (storage_lights != 0)
+                light = stored_lights[i];
+            else
+                light = uniform_lights[i];
+            [[unroll]] for (uint k = 0; k < pixels; ++k) {
+                const vec2 factor = light_factor(light, surface[k]);
+                sum[k] += light.intensity_slot.rgb * factor.x;
+                if (count_clamped != 0)
+                    clamped[k] += dot(light.intensity_slot.rgb, vec3(0.2126, 0.7152, 0.0722)) * factor.y;
+            }
+        }
+    }
+    vec4 sums = vec4(0.0);
+    [[unroll]] for (uint k = 0; k < pixels; ++k) {
+        const ivec2 pixel = ivec2(first_column + int(k * kernel_lanes), row);
+        if (pixel.x < int(constants.width) && pixel.y < int(constants.height)) {
+            if (constants.last_batch == 0u)
+                accumulation[pixel.y * int(constants.width) + pixel.x] = vec4(sum[k], clamped[k]);
+            else
+                imageStore(output_image, pixel, covered[k] ? vec4(sum[k], 1.0) : vec4(0.0));
+            if (count_clamped != 0 && covered[k]) {
+                const float area = pixel_area(surface[k], vec2(pixel) + 0.5);
+                sums += vec4(clamped[k] * area, clamped[k], 1.0, area);
+            }
+        }
+    }
+    if (count_clamped == 0 || constants.last_batch == 0u)
+        return;
+    // One order of summation whatever the device: the first invocation adds the group's sums one by one.
+    group_sums[gl_LocalInvocationIndex] = sums;
+    barrier();
+    if (gl_LocalInvocationIndex == 0) {
+        vec4 total = vec4(0.0);
+        for (int i = 0; i < 64; ++i)
+            total += group_sums[i];
+        clamped_sums[gl_WorkGroupID.y * constants.group_columns + gl_WorkGroupID.x] = total;
+    }
+}

@@ -1,0 +1,84 @@
+// The baseline: every light sample with its shadow map at every pixel.
+#pragma once
+
+#include "gi_module/brute_force/brute_force_shared.h"
+#include "gi_module/shadows/shadow_maps.h"
+#include "gi_module/transport/g_buffer.h"
+
+#include <map>
+
+namespace sunfleck::gi {
+
+// The forms that the kernel can take. `bench kernel` tries them; default_shape picks the best known one.
+struct KernelShape {
+    std::uint32_t pixels = 8; // an invocation: 1, 2, 4, 8 or 16
+    std::uint32_t maps = shared::maps_texel_buffer;
+    bool storage_lights = false;
+    auto operator<=>(const KernelShape&) const = default;
+};
+
+// Samples of one class, at most shared::lights_per_batch of them.
+struct LightBatch {
+    std::uint32_t light_class = 0;
+    gpu::UploadSlice rows; // LightRow[lights_per_batch], the first `count` used
+    std::uint32_t count = 0;
+};
+
+struct BruteForceOptions {
+    bool shadows = true;
+    bool filter = false;
+    bool count_clamped = false;
+};
+
+// What the bound of the geometry term took away, over the pixels that show a surface.
+struct ClampedLight {
+    double flux = 0;            // W, luminance-weighted, over the visible surface
+    double mean_irradiance = 0; // W/m2, mean over pixels
+    std::uint64_t serial = 0;   // frame that it belongs to; 0: none yet
+};
+
+class BruteForce {
+public:
+    static Result<std::unique_ptr<BruteForce>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+    ~BruteForce();
+
+    static KernelShape default_shape(const gpu::DeviceTraits& traits);
+    void set_shape(const KernelShape& shape) { shape_ = shape; }
+    const KernelShape& shape() const { return shape_; }
+
+    // Called once a frame before add_pass; sizes the accumulation buffer and collects finished counters.
+    Status begin_frame(std::uint32_t width, std::uint32_t height, std::uint64_t serial, std::uint64_t completed_serial,
+                       gpu::FrameResources& resources);
+
+    // Adds one dispatch for each batch. `first` and `last` tell where this call stands among those of the frame: sums
+    // start with the first and reach `output` with the last. There is at least one batch; it may be empty.
+    Status add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
+                    const ShadowMaps& maps, std::span<const LightBatch> batches, const BruteForceOptions& options,
+                    bool first, bool last, gpu::ResourceId output);
+
+    const ClampedLight& clamped() const { return clamped_; }
+
+private:
+    BruteForce(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    Result<const gpu::Pipeline*> pipeline(std::uint32_t light_class, const BruteForceOptions& options,
+                                          std::uint32_t map_bits);
+
+    struct Readback {
+        gpu::Buffer sums;
+        std::uint64_t serial = 0;
+        std::uint32_t groups = 0;
+    };
+
+    gpu::Device& device_;
+    gpu::PipelineStore& pipelines_;
+    KernelShape shape_;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    std::map<std::vector<std::uint32_t>, const gpu::Pipeline*> kernels_; // by specialisation
+    gpu::Buffer accumulation_, unused_texels_;
+    std::vector<Readback> readbacks_;
+    std::size_t current_readback_ = 0;
+    std::uint64_t serial_ = 0;
+    ClampedLight clamped_;
+};
+
+} // namespace sunfleck::gi

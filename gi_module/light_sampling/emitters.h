@@ -1,0 +1,67 @@
+// All that emits light in a registry, in one form that samplers and the path tracer share.
+#pragma once
+
+#include "engine/scene/components.h"
+#include "engine/scene/mesh_store.h"
+#include "gi_module/transport/light_sample.h"
+
+#include <vector>
+
+namespace sunfleck::gi {
+
+enum class EmitterKind { rectangle, disc, sphere, mesh, point, spot, directional, environment };
+
+struct Emitter {
+    EmitterKind kind = EmitterKind::point;
+    ecs::Entity entity;
+    mat4 matrix{1.0f};      // local to world
+    vec3 radiance{0.0f};    // area kinds and environment, W/(sr m2)
+    vec3 intensity{0.0f};   // point and spot: W/sr; directional: irradiance W/m2
+    float width = 0.0f, height = 0.0f, radius = 0.0f; // world sizes of the analytic shapes
+    float area = 0.0f;      // m2, of the area kinds
+    vec3 flux{0.0f};        // W; of directional light and environment: what crosses the scene's bounding sphere
+    bool is_lamp = false;   // the surface of an AreaLight: views of irradiance leave it out
+    float inner_cosine = 1.0f, outer_cosine = 0.0f;
+    float scene_radius = 0.0f; // bounding sphere of the scene, for light from outside
+    vec3 scene_centre{0.0f};
+    // kind mesh: world-space triangles and the running sum of their areas
+    std::vector<vec3> corners; // three a triangle
+    std::vector<float> cumulative_area;
+
+    // A point source or a direction: one sample carries all of it.
+    bool is_delta() const {
+        return kind == EmitterKind::point || kind == EmitterKind::spot || kind == EmitterKind::directional;
+    }
+};
+
+// Where light leaves an emitter.
+struct EmittedPoint {
+    vec3 position{0.0f};
+    vec3 normal{0.0f};
+};
+
+// Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or negative,
+// and those of zero area, are left out; each of the latter two kinds is logged once as a warning.
+std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene);
+
+// Uniformly distributed over the emitter's surface (area kinds), or its position. u, v in [0, 1).
+EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v);
+
+// Cosine-weighted direction about `normal`. u, v in [0, 1).
+vec3 sample_cosine_direction(vec3 normal, float u, float v);
+vec3 sample_sphere_direction(float u, float v);
+
+// A ray of light leaving the emitter with density proportional to what it emits, so that each carries flux / paths.
+struct EmittedRay {
+    vec3 origin{0.0f};
+    vec3 normal{0.0f}; // of the surface at the origin, or zero
+    vec3 direction{0.0f};
+    // Flux that the ray carries is emitter.flux * weight / number of rays (1 but for spot lights).
+    float weight = 1.0f;
+};
+EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]);
+
+// Falloff of a spot light: clamp(cos * scale + offset, 0, 1)^2, as KHR_lights_punctual says.
+void spot_cone(const Emitter& emitter, float& scale, float& offset);
+
+} // namespace sunfleck::gi

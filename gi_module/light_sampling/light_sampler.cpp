@@ -1,0 +1,265 @@
+#include "gi_module/light_sampling/light_sampler.h"
+
+#include "engine/core/jobs.h"
+#include "engine/core/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr float lift_distance = 1e-3f;  // m
+constexpr float ray_offset = 1e-4f;     // m, off the surface that a walk leaves
+constexpr std::uint32_t walks_per_round = 256;
+constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
+
+SequenceKind sequence_kind(const Settings& settings) {
+    return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
+}
+
+raytrace::Scope walk_scope(const Settings& settings) {
+    return settings.movers == MoverHandling::as_static ? raytrace::Scope::everything : raytrace::Scope::static_only;
+}
+
+LightSample delta_sample(const Emitter& emitter) {
+    LightSample sample;
+    const EmittedPoint point = sample_emitter_point(emitter, 0.5f, 0.5f);
+    sample.emitter = emitter.entity;
+    sample.position = point.position;
+    sample.normal = point.normal;
+    sample.flux = emitter.flux;
+    if (emitter.kind == EmitterKind::point) {
+        sample.kind = SampleKind::point;
+    } else if (emitter.kind == EmitterKind::spot) {
+        sample.kind = SampleKind::spot;
+        sample.flux = emitter.intensity;
+        spot_cone(emitter, sample.cone_scale, sample.cone_offset);
+    } else {
+        sample.kind = SampleKind::directional;
+        sample.flux = emitter.intensity;
+    }
+    return sample;
+}
+
+// One of `count` samples that share the emitter.
+LightSample shared_sample(const Emitter& emitter, float count, const RandomSequence& random,
+                          const raytrace::RayScene& rays) {
+    LightSample sample;
+    sample.emitter = emitter.entity;
+    if (emitter.kind == EmitterKind::environment) {
+        sample.kind = SampleKind::directional;
+        sample.normal = sample_sphere_direction(random.at(0), random.at(1));
+        sample.position = emitter.scene_centre - emitter.scene_radius * sample.normal;
+        sample.flux = emitter.radiance * (4.0f * pi / count);
+        return sample;
+    }
+    const EmittedPoint point = sample_emitter_point(emitter, random.at(0), random.at(1));
+    sample.position = lift_sample(point.position, point.normal, rays, raytrace::Scope::everything);
+    sample.normal = point.normal;
+    sample.flux = emitter.flux / count;
+    return sample;
+}
+
+// Whole numbers proportional to `weights` that add up to `count`: largest remainders, first of equals.
+std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::vector<std::uint32_t> result(weights.size());
+    std::vector<std::pair<double, std::size_t>> remainders;
+    std::uint32_t given = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        // Each takes part, so that no light goes missing.
+        const double exact = std::max(1.0, weights[i] / total * count);
+        result[i] = std::uint32_t(exact);
+        remainders.emplace_back(exact - std::floor(exact), i);
+        given += result[i];
+    }
+    std::stable_sort(remainders.begin(), remainders.end(), [](auto& a, auto& b) { return a.first > b.first; });
+    for (std::size_t i = 0; given < count; i = (i + 1) % remainders.size(), ++given)
+        ++result[remainders[i].second];
+    while (given > count) {
+        --*std::max_element(result.begin(), result.end());
+        --given;
+    }
+    return result;
+}
+
+// Fewer samples than emitters: systematic sampling of emitters by flux.
+std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitters, std::uint32_t count,
+                                              const Settings& settings, const raytrace::RayScene& rays) {
+    std::vector<double> cumulative;
+    double total = 0;
+    for (const Emitter& emitter : emitters)
+        cumulative.push_back(total += double(luminance(emitter.flux)));
+    const double start = double(to_unit_float(hash_combine(settings.seed, 77)));
+    std::vector<LightSample> samples;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double target = (double(i) + start) / count * total;
+        const std::size_t chosen = std::min<std::size_t>(
+            std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin()),
+            emitters.size() - 1);
+        const Emitter& emitter = emitters[chosen];
+        const float expected = float(double(luminance(emitter.flux)) / total * count);
+        LightSample sample = emitter.is_delta()
+                                 ? delta_sample(emitter)
+                                 : shared_sample(emitter, 1.0f, {sequence_kind(settings), settings.seed, i}, rays);
+        sample.flux /= expected;
+        samples.push_back(sample);
+    }
+    return samples;
+}
+
+// The samples of one walk, for a flux of 1 W in all walks together (divided by their number later).
+std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::vector<double>& cumulative,
+                              std::uint32_t index, const Settings& settings, const raytrace::RayScene& rays) {
+    std::vector<LightSample> samples;
+    RandomSequence random(sequence_kind(settings), hash_combine(settings.seed, 0x1d1), index);
+    const float numbers[4] = {random.at(0), random.at(1), random.at(2), random.at(3)};
+    const double target = double(random.at(4)) * cumulative.back();
+    const std::size_t chosen = std::min<std::size_t>(
+        std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin()),
+        emitters.size() - 1);
+    const Emitter& emitter = emitters[chosen];
+    const EmittedRay emitted = sample_emitter_ray(emitter, numbers);
+    vec3 flux = emitter.flux * emitted.weight * float(cumulative.back() / double(luminance(emitter.flux)));
+    raytrace::Ray ray{emitted.origin + ray_offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
+    for (std::uint32_t bounce = 1; bounce <= settings.bounces; ++bounce) {
+        const auto hit = rays.closest_hit(ray, walk_scope(settings));
+        if (!hit)
+            break;
+        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        const bool front = glm::dot(point.geometric_normal, ray.direction) < 0.0f;
+        const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
+        const vec3 shading_normal = front ? point.shading_normal : -point.shading_normal;
+        flux *= point.material->base_colour;
+        const float largest = std::max({point.material->base_colour.x, point.material->base_colour.y,
+                                        point.material->base_colour.z});
+        random.seek(8 + bounce * 4);
+        const float u = random.next(), v = random.next(), survive = random.next();
+        if (settings.termination == Termination::russian_roulette) {
+            // The decision comes before the sample, so that samples carry nearly equal flux.
+            const float probability = std::clamp(largest, 0.05f, 1.0f);
+            if (survive >= probability)
+                break;
+            flux /= probability;
+        }
+        if (!(luminance(flux) > 0.0f))
+            break;
+        LightSample sample;
+        sample.position = lift_sample(point.position, normal, rays, walk_scope(settings));
+        sample.normal = shading_normal;
+        sample.flux = flux;
+        sample.bounce = bounce;
+        sample.emitter = emitter.entity;
+        samples.push_back(sample);
+        ray = {point.position + ray_offset * normal, sample_cosine_direction(shading_normal, u, v), 0.0f, 1e30f};
+        if (glm::dot(ray.direction, normal) <= 0.0f)
+            break; // below the true surface
+    }
+    return samples;
+}
+
+// Keeps `count` of the samples, evenly spread over them, and hands the flux of the others on.
+std::vector<LightSample> thin_out(std::vector<LightSample> samples, std::uint32_t count, std::uint32_t seed) {
+    if (samples.size() <= count)
+        return samples;
+    const double step = double(samples.size()) / count;
+    const double start = double(to_unit_float(hash_combine(seed, 991))) * step;
+    std::vector<LightSample> kept;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::size_t place = std::min(samples.size() - 1, std::size_t(start + i * step));
+        kept.push_back(samples[place]);
+        kept.back().flux *= float(step);
+    }
+    return kept;
+}
+
+} // namespace
+
+vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope) {
+    const raytrace::Ray ray{position + 1e-5f * normal, normal, 0.0f, 2.0f * lift_distance};
+    const auto hit = rays.closest_hit(ray, scope);
+    return position + normal * (hit ? 0.5f * hit->distance : lift_distance);
+}
+
+SampleBudget divide_samples(const Settings& settings, const std::vector<Emitter>& emitters) {
+    SampleBudget budget;
+    if (emitters.empty() || settings.lights == 0)
+        return budget;
+    const bool direct = settings.direct != DirectTechnique::none;
+    const bool indirect = settings.indirect != IndirectTechnique::none && settings.bounces > 0;
+    if (!direct && !indirect)
+        return budget;
+    std::uint32_t share = std::uint32_t(std::lround(double(settings.direct_share) * settings.lights));
+    const std::size_t deltas =
+        std::size_t(std::count_if(emitters.begin(), emitters.end(), [](const Emitter& e) { return e.is_delta(); }));
+    if (deltas == emitters.size())
+        share = std::min<std::uint32_t>(std::max<std::uint32_t>(share, std::uint32_t(deltas)), std::uint32_t(deltas));
+    else
+        share = std::max<std::uint32_t>(share, std::uint32_t(deltas) + 1); // no emitter goes without
+    if (!indirect)
+        share = deltas == emitters.size() ? std::uint32_t(deltas) : settings.lights;
+    budget.direct = direct ? std::min(share, settings.lights) : 0;
+    budget.indirect = indirect ? settings.lights - budget.direct : 0;
+    if (settings.lights == 1 && direct && indirect)
+        budget = {1, 0};
+    return budget;
+}
+
+std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std::uint32_t count,
+                                       const Settings& settings, const raytrace::RayScene& rays) {
+    if (count == 0 || emitters.empty())
+        return {};
+    if (count < emitters.size())
+        return sample_some_emitters(emitters, count, settings, rays);
+    std::vector<LightSample> samples;
+    std::vector<double> weights;
+    std::vector<const Emitter*> sharing;
+    for (const Emitter& emitter : emitters) {
+        if (emitter.is_delta()) {
+            samples.push_back(delta_sample(emitter));
+        } else {
+            sharing.push_back(&emitter);
+            weights.push_back(double(luminance(emitter.flux)));
+        }
+    }
+    if (sharing.empty())
+        return samples;
+    const std::vector<std::uint32_t> counts = apportion(weights, count - std::uint32_t(samples.size()));
+    for (std::size_t e = 0; e < sharing.size(); ++e) {
+        const std::uint32_t seed = hash_combine(settings.seed, 0xd000 + std::uint32_t(e));
+        for (std::uint32_t i = 0; i < counts[e]; ++i)
+            samples.push_back(
+                shared_sample(*sharing[e], float(counts[e]), {sequence_kind(settings), seed, i}, rays));
+    }
+    return samples;
+}
+
+std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
+                                         const Settings& settings, const raytrace::RayScene& rays) {
+    if (count == 0 || emitters.empty() || settings.bounces == 0)
+        return {};
+    std::vector<double> cumulative;
+    double total = 0;
+    for (const Emitter& emitter : emitters)
+        cumulative.push_back(total += double(luminance(emitter.flux)));
+    std::vector<LightSample> samples;
+    std::uint32_t walks = 0;
+    while (samples.size() < count && walks < walk_limit) {
+        // Rounds run in parallel; walks are then taken in order until there are enough.
+        std::vector<std::vector<LightSample>> round(walks_per_round);
+        parallel_for_chunks(walks_per_round, 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                round[i] = walk(emitters, cumulative, walks + std::uint32_t(i), settings, rays);
+        });
+        for (std::size_t i = 0; i < round.size() && samples.size() < count; ++i, ++walks)
+            samples.insert(samples.end(), round[i].begin(), round[i].end());
+    }
+    if (walks > 0)
+        for (LightSample& sample : samples)
+            sample.flux /= float(walks);
+    return thin_out(std::move(samples), count, settings.seed);
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,51 @@
+// The scattering functions of the reference path tracer, in the local frame of the shading normal (z up). glTF 2.0
+// appendix B: a Lambertian base under an optional dielectric GGX layer, metals as GGX alone; and smooth glass.
+#pragma once
+
+#include "engine/scene/components.h"
+
+namespace sunfleck::gi::reference {
+
+struct BsdfSample {
+    vec3 direction{0.0f}; // local, towards where the path goes on
+    vec3 weight{0.0f};    // f * |cos| / pdf
+    float pdf = 0.0f;     // solid angle; 0 for delta scattering
+    bool delta = false;
+};
+
+class Bsdf {
+public:
+    explicit Bsdf(const scene::Material& material);
+    // A Lambertian surface of albedo 1: what an irradiance meter has in place of a material.
+    static Bsdf white();
+
+    bool is_glass() const { return glass_; }
+
+    // f(outgoing, incoming), without the cosine. Both unit, above the surface (z > 0).
+    vec3 evaluate(vec3 outgoing, vec3 incoming) const;
+    // Density of sample() for `incoming`, per solid angle.
+    float density(vec3 outgoing, vec3 incoming) const;
+    // numbers: three in [0, 1). False: the path ends here.
+    bool sample(vec3 outgoing, const float numbers[3], BsdfSample& result) const;
+
+    // Glass: reflection or refraction chosen by Fresnel. `entering`: outgoing is on the outer side.
+    BsdfSample sample_glass(vec3 outgoing, bool entering, float number) const;
+
+private:
+    Bsdf() = default;
+    float specular_probability(vec3 outgoing) const;
+    vec3 fresnel(float cosine) const;
+
+    vec3 diffuse_{0.0f};
+    vec3 normal_reflectance_{0.0f}; // GGX at normal incidence
+    float alpha_ = 1.0f;
+    bool has_specular_ = false;
+    bool glass_ = false;
+    vec3 tint_{1.0f};
+    float index_of_refraction_ = 1.5f;
+};
+
+// Unpolarised Fresnel reflectance of a dielectric; eta: index on the far side over that on the near side.
+float fresnel_dielectric(float cosine, float eta);
+
+} // namespace sunfleck::gi::reference

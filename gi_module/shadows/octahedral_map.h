@@ -1,0 +1,74 @@
+// The projections of shadow maps, for shaders and C++ alike. Thesis sec. 4.2.1.
+//
+// Light space: d = (dot(tangent, v), dot(bitangent, v), dot(normal, v)) with v from the light to the point.
+//
+// Hemisphere (surface samples): the upper four faces of an octahedron fill the square: w = |x| + |y| + z,
+// (u, v) = (x + y, x - y) / w in [-1, 1]^2. On each face the map is a plane projection with w as its homogeneous
+// coordinate, so 1/w is linear across the map: planes are exact and rasterisation needs no subdivision. Faces meet on the
+// square's diagonals.
+// Sphere (point and spot lights): all eight faces; the upper four in the inner diamond, the lower four folded out to the
+// corners.
+// Orthographic (directional lights): (u, v) = (x, y) / radius.
+//
+// Stored value: near / w, reverse: 1 at the near distance, 0 at infinity; orthographic: 1 - z / (2 radius).
+#ifndef SUNFLECK_GI_SHADOWS_OCTAHEDRAL_MAP_H
+#define SUNFLECK_GI_SHADOWS_OCTAHEDRAL_MAP_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+// Blockers nearer than this (in w) count as being at this distance. Sets the 16-bit step: w^2 / (65535 * near), which is
+// 8 mm at 5 m.
+SHARED_CONSTANT float shadow_near = 0.05f;
+
+// xy: place on the map in [-1, 1]^2; z: 1 / w.
+SHARED_FUNCTION vec3 hemisphere_map(vec3 d) {
+    float inverse_w = 1.0f / (abs(d.x) + abs(d.y) + d.z);
+    return vec3((d.x + d.y) * inverse_w, (d.x - d.y) * inverse_w, inverse_w);
+}
+
+SHARED_FUNCTION vec3 sphere_map(vec3 d) {
+    float inverse_w = 1.0f / (abs(d.x) + abs(d.y) + abs(d.z));
+    vec2 p = vec2(d.x, d.y) * inverse_w;
+    if (d.z < 0.0f)
+        p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
+    return vec3(p, inverse_w);
+}
+
+// Signs of x, y, z on a face: hemisphere faces 0 to 3, sphere faces 0 to 7. Bit 0: x, bit 1: y, bit 2: z; set is negative.
+SHARED_FUNCTION vec3 face_signs(uint face) {
+    return vec3((face & 1u) != 0u ? -1.0f : 1.0f, (face & 2u) != 0u ? -1.0f : 1.0f, (face & 4u) != 0u ? -1.0f : 1.0f);
+}
+
+// Clip position (x, y, w) of d under one face's projection; equals the map above within the face and is linear in d.
+SHARED_FUNCTION vec3 hemisphere_face_clip(vec3 d, uint face) {
+    vec3 s = face_signs(face);
+    return vec3(d.x + d.y, d.x - d.y, s.x * d.x + s.y * d.y + d.z);
+}
+
+SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
+    vec3 s = face_signs(face);
+    float w = s.x * d.x + s.y * d.y + s.z * d.z;
+    if (s.z > 0.0f)
+        return vec3(d.x, d.y, w);
+    return vec3(s.x * (w - s.y * d.y), s.y * (w - s.x * d.x), w);
+}
+
+// --- Bias, derived and not tuned -----------------------------------------------------------------------------------
+// A look-up reads the texel centre c nearest to the receiver's direction q (both as points with w = 1). The receiver's
+// plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at most
+// |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x - y,
+// z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the sphere
+// map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that.
+// A receiver is lit if  near / w + near * texel_reach / h + step >= stored.  A blocker is missed only where its 1/w exceeds
+// the receiver's by less than that.
+SHARED_FUNCTION float hemisphere_texel_reach(float resolution) { return 1.41421356f / resolution; }
+SHARED_FUNCTION float sphere_texel_reach(float resolution) { return 2.44948974f / resolution; }
+// Orthographic: the plane's depth changes by tan(angle) a unit of length across the map, at most 1/cos(angle); half a
+// texel's diagonal is sqrt(2) * radius / resolution, in units of the stored value sqrt(1/2) / resolution.
+SHARED_FUNCTION float orthographic_texel_reach(float resolution) { return 0.70710678f / resolution; }
+
+// Largest error of a stored value: half a step of 16-bit depth for itself, and rounding of the receiver's.
+SHARED_FUNCTION float depth_step(uint bits) { return bits == 16u ? 1.0f / 65535.0f : 4e-7f; }
+
+SHARED_END
+#endif

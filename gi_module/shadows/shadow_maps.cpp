@@ -1,0 +1,213 @@
+#include "gi_module/shadows/shadow_maps.h"
+
+#include "gi_module/shadows/octahedral_map.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+// Enough layers that few submissions are needed, few enough that the staging image stays small in the cache.
+constexpr std::uint32_t staging_layers = 64;
+constexpr std::uint64_t staging_budget_bytes = std::uint64_t(64) << 20;
+
+VkFormat depth_format(std::uint32_t bits) { return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT; }
+
+// Largest value of dot(axis, p - origin) over the box.
+float support(const Bounds& bounds, vec3 origin, vec3 axis) {
+    const vec3 corner(axis.x > 0 ? bounds.maximum.x : bounds.minimum.x, axis.y > 0 ? bounds.maximum.y : bounds.minimum.y,
+                      axis.z > 0 ? bounds.maximum.z : bounds.minimum.z);
+    return glm::dot(axis, corner - origin);
+}
+
+} // namespace
+
+// Everything that one pair of passes (draw, copy) needs; lives in the passes' closures.
+struct ShadowMaps::Chunk {
+    gpu::UploadSlice jobs, lights, commands;
+    std::uint32_t command_count = 0;
+    std::vector<std::uint32_t> slots; // by layer
+};
+
+Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+    std::unique_ptr<ShadowMaps> maps(new ShadowMaps(device));
+    gpu::GraphicsDescription description;
+    description.vertex_shader = "gi_module/shadows/shadow_map.vert";
+    description.bindings.assign(3, gpu::BindingKind::storage_buffer);
+    description.push_constant_bytes = sizeof(shared::ShadowConstants);
+    description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
+    description.depth_clamp = true; // what is nearer than shadow_near still blocks
+    description.depth_format = depth_format(16);
+    SUNFLECK_ASSIGN(maps->pipeline16_, pipelines.graphics(description));
+    description.depth_format = depth_format(32);
+    SUNFLECK_ASSIGN(maps->pipeline32_, pipelines.graphics(description));
+    return maps;
+}
+
+Result<bool> ShadowMaps::configure(std::uint32_t resolution, std::uint32_t bits, std::uint32_t wanted,
+                                   std::uint64_t memory_budget_bytes, gpu::FrameResources& resources) {
+    const std::uint64_t texels_per_map = std::uint64_t(resolution) * resolution;
+    const std::uint64_t bytes_per_map = texels_per_map * bits / 8;
+    const std::uint64_t limit = std::min({std::uint64_t(std::max(wanted, 1u)), memory_budget_bytes / bytes_per_map,
+                                          device_.traits().max_texel_elements / texels_per_map,
+                                          (std::uint64_t(1) << 31) / bytes_per_map});
+    if (limit == 0)
+        return Error{"one shadow map of " + std::to_string(resolution) +
+                     " texels a side does not fit shadow_memory or this device; lower shadow_map_resolution"};
+    const std::uint32_t slots = std::uint32_t(limit);
+    if (texels_ && resolution == resolution_ && bits == bits_ && slots <= slots_)
+        return false;
+    if (texels_)
+        resources.retire(std::move(texels_));
+    if (staging_)
+        resources.retire(std::move(staging_));
+    slots_ = 0;
+    resolution_ = resolution;
+    bits_ = bits;
+    gpu::BufferDescription buffer;
+    buffer.name = "shadow maps";
+    buffer.size = bytes_per_map * slots;
+    buffer.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                   VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    buffer.texel_format = bits == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
+    SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
+    layers_ = std::uint32_t(std::clamp<std::uint64_t>(staging_budget_bytes / bytes_per_map, 1,
+                                                      std::min({staging_layers, slots, device_.traits().max_image_layers})));
+    gpu::ImageDescription image;
+    image.name = "shadow map staging";
+    image.format = depth_format(bits);
+    image.width = image.height = resolution;
+    image.layers = layers_;
+    image.array = true;
+    image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    SUNFLECK_ASSIGN(staging_, gpu::Image::create(device_, image));
+    slots_ = slots;
+    return true;
+}
+
+std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bounds& bounds) {
+    const shared::LightRow& light = request.light;
+    if (request.light_class == shared::light_class_directional)
+        return 1;
+    const vec3 origin(light.position_bound);
+    const vec3 axes[3] = {vec3(light.tangent_scale), vec3(light.bitangent), vec3(light.normal_offset)};
+    // Whether the box reaches the negative and the positive side of each axis.
+    bool reaches[3][2];
+    for (int i = 0; i < 3; ++i) {
+        reaches[i][0] = support(bounds, origin, axes[i]) > 0.0f;
+        reaches[i][1] = support(bounds, origin, -axes[i]) > 0.0f;
+    }
+    std::uint32_t faces = 0;
+    const std::uint32_t count = request.light_class == shared::light_class_surface ? 4 : 8;
+    for (std::uint32_t face = 0; face < count; ++face)
+        if (reaches[0][face & 1] && reaches[1][(face >> 1) & 1] && reaches[2][(face >> 2) & 1])
+            faces |= 1u << face;
+    return faces;
+}
+
+Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
+                                                    std::span<const ShadowRequest> requests,
+                                                    ShadowCounters& counters) const {
+    Chunk chunk;
+    std::vector<shared::LightRow> lights;
+    for (const ShadowRequest& request : requests) {
+        chunk.slots.push_back(request.slot);
+        lights.push_back(request.light);
+    }
+    std::vector<shared::ShadowJob> jobs;
+    std::vector<VkDrawIndexedIndirectCommand> commands;
+    std::vector<std::uint32_t> seen(requests.size());
+    for (const scene::DrawItem& item : scene.draws()) {
+        const std::uint32_t first = std::uint32_t(jobs.size());
+        for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
+            const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
+            seen[layer] |= faces;
+            for (std::uint32_t face = 0; faces >> face; ++face)
+                if ((faces >> face) & 1u)
+                    jobs.push_back({layer | (face << 16) | (requests[layer].light_class << 20), item.row});
+        }
+        const std::uint32_t count = std::uint32_t(jobs.size()) - first;
+        if (count > 0)
+            commands.push_back({item.index_count, count, item.first_index, item.vertex_offset, first});
+        counters.vertices += std::uint64_t(count) * item.vertex_count;
+    }
+    for (const std::uint32_t faces : seen)
+        counters.faces += std::uint64_t(std::popcount(faces));
+    counters.maps += requests.size();
+    counters.draws += commands.empty() ? 0 : 1;
+    chunk.command_count = std::uint32_t(commands.size());
+    SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
+    SUNFLECK_ASSIGN(chunk.lights, resources.upload(std::span<const shared::LightRow>(lights)));
+    SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(commands)));
+    return chunk;
+}
+
+Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
+                              std::span<const ShadowRequest> requests, ShadowCounters& counters) {
+    const gpu::ResourceId staging = graph.import_image(staging_);
+    const gpu::ResourceId texels = graph.import_buffer(texels_);
+    for (std::size_t first = 0; first < requests.size(); first += layers_) {
+        const auto part = requests.subspan(first, std::min<std::size_t>(layers_, requests.size() - first));
+        SUNFLECK_ASSIGN(const Chunk chunk, prepare_chunk(scene, resources, part, counters));
+        graph.add_pass("shadow maps")
+            .write(staging, gpu::Usage::depth_attachment)
+            .execute([this, &scene, chunk](gpu::PassContext& context) { return draw_chunk(context, scene, chunk); });
+        graph.add_pass("shadow map copies")
+            .read(staging, gpu::Usage::transfer_source)
+            .write(texels, gpu::Usage::transfer_destination)
+            .execute([this, chunk](gpu::PassContext& context) { return copy_chunk(context, chunk); });
+    }
+    return {};
+}
+
+Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const {
+    VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    depth.imageView = staging_.view();
+    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea.extent = {resolution_, resolution_};
+    rendering.layerCount = std::uint32_t(chunk.slots.size());
+    rendering.pDepthAttachment = &depth;
+    const VolkDeviceTable& vk = context.device.vk;
+    vk.vkCmdBeginRendering(context.commands, &rendering);
+    Status status;
+    if (chunk.command_count > 0) {
+        const VkViewport viewport{0, 0, float(resolution_), float(resolution_), 0, 1};
+        vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
+        vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+        const gpu::Pipeline& pipeline = bits_ == 16 ? *pipeline16_ : *pipeline32_;
+        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
+                                         gpu::Binding::slice(chunk.lights)};
+        status = context.resources.bind(context.commands, pipeline, bindings);
+        context.resources.push(context.commands, pipeline,
+                               shared::ShadowConstants{0.5f / float(resolution_)});
+        const VkBuffer vertices = scene.positions().handle();
+        const VkDeviceSize offset = 0;
+        vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);
+        vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+        if (status)
+            vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset,
+                                        chunk.command_count, sizeof(VkDrawIndexedIndirectCommand));
+    }
+    vk.vkCmdEndRendering(context.commands);
+    return status;
+}
+
+Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk) const {
+    const VkDeviceSize bytes_per_map = VkDeviceSize(resolution_) * resolution_ * bits_ / 8;
+    std::vector<VkBufferImageCopy> regions;
+    for (std::uint32_t layer = 0; layer < chunk.slots.size(); ++layer) {
+        VkBufferImageCopy region{};
+        region.bufferOffset = bytes_per_map * chunk.slots[layer];
+        region.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, layer, 1};
+        region.imageExtent = {resolution_, resolution_, 1};
+        regions.push_back(region);
+    }
+    context.device.vk.vkCmdCopyImageToBuffer(context.commands, staging_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                             texels_.handle(), std::uint32_t(regions.size()), regions.data());
+    return {};
+}
+
+} // namespace sunfleck::gi

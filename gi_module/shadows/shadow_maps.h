@@ -1,0 +1,71 @@
+// Octahedral shadow maps of light samples: where they are stored, which are stale, and the passes that redraw them.
+// Thesis sec. 4.2. Maps live in one texel buffer, slot after slot, row after row; they are drawn as layers of a depth
+// image, many at once, and copied over.
+#pragma once
+
+#include "engine/scene/gpu_scene.h"
+#include "gi_module/settings.h"
+#include "gi_module/shadows/shadow_map_shared.h"
+#include "gi_module/transport/light_row.h"
+
+#include "engine/gpu/frame_graph.h"
+
+#include <bit>
+#include <memory>
+#include <span>
+
+namespace sunfleck::gi {
+
+// One map to draw.
+struct ShadowRequest {
+    std::uint32_t slot = 0;
+    std::uint32_t light_class = 0;
+    shared::LightRow light;
+};
+
+struct ShadowCounters {
+    std::uint64_t maps = 0;         // drawn
+    std::uint64_t faces = 0;        // with at least one occluder
+    std::uint64_t draws = 0;        // draw calls (indirect commands count as one call)
+    std::uint64_t vertices = 0;     // shaded, by the size of the meshes
+};
+
+class ShadowMaps {
+public:
+    static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+
+    // Sets resolution, bits and number of slots; content is lost when anything changes (returns true then). The number
+    // of slots is limited by `wanted`, the memory budget and the device.
+    Result<bool> configure(std::uint32_t resolution, std::uint32_t bits, std::uint32_t wanted,
+                           std::uint64_t memory_budget_bytes, gpu::FrameResources& resources);
+
+    std::uint32_t slots() const { return slots_; }
+    std::uint32_t resolution() const { return resolution_; }
+    std::uint32_t bits() const { return bits_; }
+    const gpu::Buffer& texels() const { return texels_; }
+
+    // Adds passes that draw the requested maps with everything in `scene` as occluders. Faces that no occluder reaches
+    // are left empty without being drawn.
+    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
+                      std::span<const ShadowRequest> requests, ShadowCounters& counters);
+
+    // Bit per face: the box may be seen through it. For directional lights bit 0.
+    static std::uint32_t faces_that_see(const ShadowRequest& request, const Bounds& bounds);
+
+private:
+    ShadowMaps(gpu::Device& device) : device_(device) {}
+    struct Chunk;
+    Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
+                                std::span<const ShadowRequest> requests, ShadowCounters& counters) const;
+    Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const;
+    Status copy_chunk(gpu::PassContext& context, const Chunk& chunk) const;
+
+    gpu::Device& device_;
+    const gpu::Pipeline* pipeline16_ = nullptr;
+    const gpu::Pipeline* pipeline32_ = nullptr;
+    gpu::Buffer texels_;
+    gpu::Image staging_;
+    std::uint32_t resolution_ = 0, bits_ = 0, slots_ = 0, layers_ = 0;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,113 @@
+// sunfleck::gi::System: global illumination for one scene.
+//
+// Minimal loop of a host that uses the engine's frame graph:
+//
+//     auto system = gi::System::create({device, shaders}).value();
+//     each frame:
+//         system->update(registry, meshes, gpu_scene, input)       // CPU: samples, stale maps
+//         graph.reset();  ... the host's geometry pass ...
+//         irradiance = system->add_passes(graph, g_buffer, camera)  // declares the GPU work
+//         graph.compile();  graph.execute(commands, resources, timers);
+//
+// The system never submits, waits, presents or owns a swapchain, and no frame waits for a read-back. It must be used from
+// one thread at a time; update itself runs on all cores. The device, registry, meshes and GPU scene are the host's and
+// must outlive it. Frames are told apart by serials that rise by one; resources of a frame are reused when
+// `completed_serial` has reached it.
+#pragma once
+
+#include "engine/raytrace/ray_scene.h"
+#include "gi_module/brute_force/brute_force.h"
+#include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/settings.h"
+#include "gi_module/transport/g_buffer.h"
+
+#include <map>
+#include <memory>
+
+namespace sunfleck::gi {
+
+// The module's embedded shaders, to be added to the host's ShaderLibrary before System::create.
+std::span<const gpu::EmbeddedShader> shaders();
+
+struct FrameInput {
+    std::uint64_t serial = 1;
+    std::uint64_t completed_serial = 0;
+    // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; the oldest are drawn first.
+    std::uint32_t map_budget = 0xffffffffu;
+};
+
+// Of the last update and, for what the GPU counts, of the newest frame that is complete.
+struct Counters {
+    std::uint64_t light_samples = 0;
+    std::uint64_t light_samples_direct = 0;
+    std::uint64_t shadow_map_updates = 0;
+    std::uint64_t shadow_map_faces = 0;
+    std::uint64_t shadow_map_vertices = 0;
+    std::uint64_t shadow_maps_stale = 0; // after this frame
+    std::uint64_t light_batches = 0;
+    double clamped_flux = 0;             // W over the visible surface, luminance; needs settings.count_clamped
+    double clamped_irradiance = 0;       // W/m2, mean over pixels
+};
+
+class System {
+public:
+    static Result<std::unique_ptr<System>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+    ~System();
+
+    // Takes effect at the next update. Rejects values outside their described ranges.
+    Status set_settings(const Settings& settings);
+    const Settings& settings() const { return settings_; }
+
+    // Follows the registry: light samples are made when settings, emitters or static geometry changed, and live on as
+    // LightSample entities with a ShadowMap beside each; maps that a moved object may touch become stale. World
+    // transforms, ray scene and GPU scene must be up to date.
+    Status update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
+                  raytrace::RayScene& rays, const FrameInput& input);
+
+    // Declares this frame's GPU work and returns the irradiance image, RGBA, W/m2 without albedo; alpha 0 where nothing
+    // is. `camera` holds a CameraRow, the camera of the G-buffer. Call once after each update.
+    Result<gpu::ResourceId> add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene,
+                                       const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
+                                       VkFormat output_format = VK_FORMAT_R16G16B16A16_SFLOAT);
+
+    const Counters& counters() const { return counters_; }
+    // Milliseconds on the CPU of the last update, by stage.
+    const std::map<std::string, double>& cpu_times() const { return cpu_times_; }
+    const ShadowMaps& shadow_maps() const { return *shadow_maps_; }
+    BruteForce& brute_force() { return *brute_force_; }
+    const std::vector<LightSample>& samples() const { return samples_; }
+    // The bound of the geometry term in use, 1/m2 (see transport/clamping.h).
+    float geometry_bound() const { return bound_; }
+
+private:
+    System(gpu::Device& device) : device_(device), resources_(device) {}
+    bool needs_new_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
+    void make_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
+    void mirror_samples(ecs::Registry& registry);
+    void mark_stale(const scene::GpuScene& gpu_scene);
+    std::vector<std::uint32_t> choose_maps(std::uint32_t budget);
+    shared::LightRow row_of(std::uint32_t sample) const;
+    Result<std::vector<LightBatch>> make_batches(std::uint32_t first, std::uint32_t count);
+    std::vector<ShadowRequest> make_requests(std::span<const std::uint32_t> samples) const;
+
+    gpu::Device& device_;
+    gpu::FrameResources resources_;
+    std::unique_ptr<ShadowMaps> shadow_maps_;
+    std::unique_ptr<BruteForce> brute_force_;
+    Settings settings_, sampled_settings_;
+    std::vector<Emitter> emitters_;
+    std::vector<LightSample> samples_; // grouped by class, direct before indirect
+    std::vector<std::uint32_t> stale_; // by sample: frames out of date, 0 is fresh
+    std::vector<std::uint32_t> to_draw_;
+    std::vector<ecs::Entity> entities_; // of the samples
+    bool samples_valid_ = false;
+    std::uint64_t static_generation_ = 0;
+    std::uint64_t emitter_hash_ = 0;
+    Bounds scene_bounds_;
+    float bound_ = 0.0f;
+    FrameInput input_;
+    Counters counters_;
+    std::map<std::string, double> cpu_times_;
+};
+
+} // namespace sunfleck::gi

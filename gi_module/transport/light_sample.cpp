@@ -1,0 +1,30 @@
+#include "gi_module/transport/light_sample.h"
+
+namespace sunfleck::gi {
+
+const TypeDescription& LightSample::description() {
+    static const TypeDescription type{
+        "LightSample", 1, "A virtual point light, made by the GI module.",
+        {SUNFLECK_CHOICE(LightSample, kind, "How it radiates", "surface", "point", "spot", "directional"),
+         SUNFLECK_FIELD(LightSample, position, "m", -1e6, 1e6, "World position"),
+         SUNFLECK_FIELD(LightSample, normal, "", -1, 1, "Axis of radiation"),
+         SUNFLECK_FIELD(LightSample, flux, "W", 0, unbounded, "Share of the flux that it carries"),
+         SUNFLECK_FIELD(LightSample, bounce, "", 0, 1000, "Reflections so far"),
+         SUNFLECK_FIELD(LightSample, cone_scale, "", -1e6, 1e6, "Spot cone: slope of the falloff"),
+         SUNFLECK_FIELD(LightSample, cone_offset, "", -1e6, 1e6, "Spot cone: offset of the falloff"),
+         SUNFLECK_FIELD(LightSample, index, "", 0, 4294967295.0, "Stable number"),
+         SUNFLECK_FIELD(LightSample, emitter, "", 0, 0, "Where its light comes from")}};
+    return type;
+}
+
+const TypeDescription& ShadowMap::description() {
+    static const TypeDescription type{
+        "ShadowMap", 1, "The shadow map of a light sample.",
+        {SUNFLECK_FIELD(ShadowMap, slot, "", 0, 4294967295.0, "Place in the map store"),
+         SUNFLECK_FIELD(ShadowMap, resolution, "texels", 0, 4096, "Texels along a side"),
+         SUNFLECK_FIELD(ShadowMap, frames_out_of_date, "frames", 0, 4294967295.0, "Age of what it shows"),
+         SUNFLECK_FIELD(ShadowMap, faces_with_occluders, "", 0, 4095, "Bit per octahedron face")}};
+    return type;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,41 @@
+// A light sample (virtual point light, VPL): the one currency of all techniques. Thesis sec. 4.1.
+#pragma once
+
+#include "engine/scene/components.h"
+
+namespace sunfleck::gi {
+
+enum class SampleKind : std::uint32_t {
+    surface,     // a point of a Lambertian surface: radiates flux / pi * cos(theta) about `normal`, one side only
+    point,       // radiates flux / (4 pi) in all directions
+    spot,        // radiates `flux` (here: intensity on the axis, W/sr) in a cone about `normal`
+    directional, // parallel light along `normal`; `flux` is the irradiance on a facing plane, W/m2
+};
+
+// `flux` is already divided by the number of samples that share an emitter or a set of walks: the irradiance at a point is
+// the plain sum over all samples. Nothing else is folded in (no pi, no albedo of the receiver).
+struct LightSample {
+    SampleKind kind = SampleKind::surface;
+    vec3 position{0.0f};
+    vec3 normal{0.0f, 1.0f, 0.0f}; // unit; axis of spot and directional lights (direction of travel)
+    vec3 flux{0.0f};               // W; see the kinds above for spot and directional
+    std::uint32_t bounce = 0;      // reflections so far: 0 is direct light
+    float cone_scale = 0.0f;       // spot: intensity factor is clamp(cos * scale + offset, 0, 1)^2
+    float cone_offset = 0.0f;
+    std::uint32_t index = 0;       // stable: map slot, GPU row and random sequence follow it
+    ecs::Entity emitter;
+
+    static const TypeDescription& description();
+};
+
+// Where the sample's shadow map is and how old. Kept beside each LightSample.
+struct ShadowMap {
+    std::uint32_t slot = 0;
+    std::uint32_t resolution = 0;         // texels along a side
+    std::uint32_t frames_out_of_date = 0; // 0: it shows the last completed step
+    std::uint32_t faces_with_occluders = 0; // bit per octahedron face
+
+    static const TypeDescription& description();
+};
+
+} // namespace sunfleck::gi

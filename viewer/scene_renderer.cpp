@@ -1,0 +1,229 @@
+#include "viewer/scene_renderer.h"
+
+#include "engine/io/scene_file.h"
+#include "engine/simulation/path_movers.h"
+
+#include <chrono>
+
+namespace sunfleck::gpu {
+std::span<const EmbeddedShader> sunfleck_render_shaders();
+}
+
+namespace sunfleck::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+} // namespace
+
+Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device, std::uint32_t frames_in_flight) {
+    std::unique_ptr<SceneRenderer> renderer(new SceneRenderer(device));
+    scene::register_components(renderer->registry_);
+    renderer->shaders_ = std::make_unique<gpu::ShaderLibrary>();
+    renderer->shaders_->add(gpu::sunfleck_render_shaders());
+    renderer->shaders_->add(gi::shaders());
+    renderer->pipelines_ = std::make_unique<gpu::PipelineStore>(device, *renderer->shaders_);
+    SUNFLECK_ASSIGN(renderer->submission_, gpu::Submission::create(device, frames_in_flight));
+    renderer->resources_ = std::make_unique<gpu::FrameResources>(device);
+    renderer->timers_ = std::make_unique<gpu::Timers>(device);
+    renderer->graph_ = std::make_unique<gpu::FrameGraph>(&device);
+    renderer->gpu_scene_ = std::make_unique<scene::GpuScene>(device);
+    SUNFLECK_ASSIGN(renderer->rays_, raytrace::RayScene::create());
+    SUNFLECK_ASSIGN(renderer->lighting_, gi::System::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->g_buffer_pass_, render::GBufferPass::create(*renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->composition_, render::CompositionPass::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));
+    renderer->debug_lines_ = std::make_unique<render::DebugLines>(std::move(lines));
+    return renderer;
+}
+
+SceneRenderer::~SceneRenderer() {
+    device_.vk.vkDeviceWaitIdle(device_.handle());
+    composition_.destroy(device_);
+}
+
+Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path) {
+    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_));
+    if (add_default_light(registry_))
+        report.notes.push_back("the scene names no light: the default sky and sun light it");
+    SUNFLECK_TRY(upload_meshes());
+    return report;
+}
+
+Status SceneRenderer::upload_meshes() { return gpu_scene_->update_meshes(meshes_, *submission_); }
+
+Status SceneRenderer::update(const FrameRequest& request) {
+    statistics_.cpu_ms.clear();
+    auto start = Clock::now();
+    simulation::set_movers_to_step(registry_, request.step);
+    statistics_.cpu_ms["simulation"] = milliseconds_since(start);
+    SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
+    resources_->begin_frame(submission_->serial(), completed);
+    timers_->begin_frame(submission_->serial(), completed);
+    start = Clock::now();
+    SUNFLECK_TRY(rays_->update(registry_, meshes_));
+    statistics_.cpu_ms["ray scene"] = milliseconds_since(start);
+    start = Clock::now();
+    SUNFLECK_TRY(gpu_scene_->update(registry_, meshes_, *resources_));
+    statistics_.cpu_ms["gpu scene"] = milliseconds_since(start);
+    gi::FrameInput input;
+    input.serial = submission_->serial();
+    input.completed_serial = completed;
+    input.map_budget = request.map_budget;
+    SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
+    return {};
+}
+
+Status SceneRenderer::make_output(const FrameRequest& request) {
+    const VkFormat format = request.tone_map ? display_format : linear_format;
+    const gpu::ImageDescription& has = output_.description();
+    if (output_ && has.width == request.width && has.height == request.height && has.format == format)
+        return {};
+    if (output_)
+        resources_->retire(std::move(output_));
+    gpu::ImageDescription description;
+    description.name = "picture";
+    description.format = format;
+    description.width = request.width;
+    description.height = request.height;
+    description.usage =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    SUNFLECK_ASSIGN(output_, gpu::Image::create(device_, description));
+    return {};
+}
+
+void SceneRenderer::draw_samples() {
+    debug_lines_->clear();
+    for (const gi::LightSample& sample : lighting_->samples()) {
+        const float brightest = std::max({sample.flux.x, sample.flux.y, sample.flux.z, 1e-12f});
+        debug_lines_->line(sample.position, sample.position + 0.12f * sample.normal, sample.flux / brightest);
+        debug_lines_->box({sample.position - 0.015f, sample.position + 0.015f}, sample.flux / brightest);
+    }
+}
+
+Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request) {
+    const auto start = Clock::now();
+    SUNFLECK_TRY(make_output(request));
+    shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
+    if (has_previous_camera_)
+        camera.previous_view_projection = previous_camera_.view_projection;
+    previous_camera_ = camera;
+    has_previous_camera_ = true;
+    SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera));
+
+    graph_->reset();
+    const render::GBuffer g_buffer =
+        g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width, request.height);
+    SUNFLECK_ASSIGN(const gpu::ResourceId irradiance,
+                    lighting_->add_passes(*graph_, *gpu_scene_,
+                                          {g_buffer.depth, g_buffer.normals, g_buffer.surface, g_buffer.width,
+                                           g_buffer.height},
+                                          camera_slice));
+    render::CompositionInput composition;
+    composition.irradiance = irradiance;
+    composition.view = request.view;
+    composition.tone_map = request.tone_map;
+    composition.ev100 = request.ev100;
+    registry_.view<scene::Environment>().each(
+        [&](ecs::Entity, const scene::Environment& environment) { composition.sky += environment.radiance; });
+    const gpu::ResourceId output = graph_->import_image(output_);
+    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, output);
+    if (request.show_samples && request.tone_map) {
+        draw_samples();
+        debug_lines_->add(*graph_, g_buffer, camera_slice, output);
+    }
+    graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
+    SUNFLECK_TRY(graph_->compile());
+    SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
+    statistics_.cpu_ms["recording"] = milliseconds_since(start);
+    return {};
+}
+
+Status SceneRenderer::render_and_wait(const FrameRequest& request) {
+    const auto start = Clock::now();
+    SUNFLECK_TRY(update(request));
+    SUNFLECK_ASSIGN(const VkCommandBuffer commands, submission_->begin());
+    const std::uint64_t serial = submission_->serial();
+    SUNFLECK_TRY(record(commands, request));
+    SUNFLECK_TRY(submission_->submit());
+    SUNFLECK_TRY(submission_->wait(serial));
+    statistics_.frame_ms = milliseconds_since(start);
+    timers_->collect(serial);
+    collect_statistics();
+    return {};
+}
+
+void SceneRenderer::collect_statistics() {
+    for (const auto& [stage, time] : lighting_->cpu_times())
+        statistics_.cpu_ms[stage] = time;
+    statistics_.gpu_ms = timers_->latest().milliseconds;
+    statistics_.counters = lighting_->counters();
+}
+
+Result<io::Picture> SceneRenderer::read_back() {
+    if (!output_)
+        return Error{"nothing has been rendered"};
+    const gpu::ImageDescription& description = output_.description();
+    const bool linear = description.format == linear_format;
+    const std::size_t pixels = std::size_t(description.width) * description.height;
+    gpu::BufferDescription staging;
+    staging.name = "read-back";
+    staging.size = pixels * (linear ? 16 : 4);
+    staging.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    staging.memory = gpu::MemoryUse::readback;
+    SUNFLECK_ASSIGN(const gpu::Buffer buffer, gpu::Buffer::create(device_, staging));
+    SUNFLECK_TRY(submission_->immediate([&](VkCommandBuffer commands) -> Status {
+        gpu::FrameGraph graph(&device_);
+        const gpu::ResourceId source = graph.import_image(output_);
+        const gpu::ResourceId target = graph.import_buffer(buffer);
+        graph.add_pass("read-back")
+            .read(source, gpu::Usage::transfer_source)
+            .write(target, gpu::Usage::transfer_destination)
+            .execute([&](gpu::PassContext& context) -> Status {
+                VkBufferImageCopy region{};
+                region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                region.imageExtent = {description.width, description.height, 1};
+                context.device.vk.vkCmdCopyImageToBuffer(context.commands, output_.handle(),
+                                                         VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle(), 1,
+                                                         &region);
+                return {};
+            });
+        graph.add_pass("to host").read(target, gpu::Usage::host_read).keep();
+        SUNFLECK_TRY(graph.compile());
+        gpu::FrameResources unused(device_);
+        return graph.execute(commands, unused, nullptr);
+    }));
+    io::Picture picture;
+    picture.width = description.width;
+    picture.height = description.height;
+    picture.pixels.resize(pixels);
+    if (linear) {
+        std::memcpy(picture.pixels.data(), buffer.mapped(), pixels * sizeof(vec4));
+        return picture;
+    }
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(buffer.mapped());
+    for (std::size_t i = 0; i < pixels; ++i)
+        for (int c = 0; c < 4; ++c)
+            picture.pixels[i][c] = float(bytes[i * 4 + std::size_t(c)]) / 255.0f;
+    return picture;
+}
+
+Status SceneRenderer::replace_shader(const std::string& path, std::vector<std::uint32_t> words) {
+    SUNFLECK_TRY(device_.wait_idle());
+    SUNFLECK_ASSIGN(const auto before, shaders_->find(path));
+    std::vector<std::uint32_t> old(before.begin(), before.end());
+    SUNFLECK_TRY(shaders_->replace(path, std::move(words)));
+    Status status = pipelines_->refresh();
+    if (!status) // the pipelines are as they were; so shall the library be
+        SUNFLECK_TRY(shaders_->replace(path, std::move(old)));
+    return status;
+}
+
+} // namespace sunfleck::viewer
