@@ -40,7 +40,7 @@ void make_cornell(SceneBuilder& s) {
     s.camera("view", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
     s.camera("bench_1", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
     s.camera("corner", vec3(4.9f, 4.6f, 5.3f), vec3(1.6f, 0.8f, 1.6f), 65.0f);
-    s.exposure(10.5f);
+    s.exposure(9.2f);
 }
 
 void make_furnace_of(SceneBuilder& s, float albedo, float emission) {
@@ -67,7 +67,7 @@ void make_area_room(SceneBuilder& s) {
     s.camera("view", vec3(0.0f, 1.7f, 2.9f), vec3(0.0f, 1.1f, -1.5f), 62.0f);
     s.camera("bench_1", vec3(0.0f, 1.7f, 2.9f), vec3(0.0f, 1.1f, -1.5f), 62.0f);
     s.camera("bench_2", vec3(3.7f, 2.2f, 2.7f), vec3(-1.2f, 0.7f, -0.8f), 60.0f);
-    s.exposure(10.5f);
+    s.exposure(9.2f);
 }
 
 void make_table_room(SceneBuilder& s) {
@@ -86,7 +86,7 @@ void make_table_room(SceneBuilder& s) {
     s.camera("view", vec3(-1.6f, 1.75f, 2.8f), vec3(0.35f, 0.7f, -0.4f), 60.0f);
     s.camera("bench_1", vec3(-2.6f, 2.0f, 2.7f), vec3(0.4f, 0.6f, -0.6f), 62.0f);
     s.camera("bench_2", vec3(2.7f, 2.3f, -2.6f), vec3(-0.3f, 0.5f, 0.4f), 65.0f);
-    s.exposure(10.5f);
+    s.exposure(9.2f);
 }
 
 void make_four_pillars(SceneBuilder& s) {
@@ -105,7 +105,7 @@ void make_four_pillars(SceneBuilder& s) {
     s.camera("bench_1", vec3(3.7f, 2.4f, 3.7f), vec3(-1.0f, 0.9f, -1.2f), 62.0f);
     s.camera("bench_2", vec3(-3.8f, 1.5f, 0.4f), vec3(2.0f, 1.3f, 0.2f), 66.0f);
     s.camera("pillar_close", vec3(-2.75f, 1.6f, 2.9f), vec3(0.6f, 1.3f, -2.0f), 60.0f); // after fig. 4-12
-    s.exposure(10.5f);
+    s.exposure(9.2f);
 }
 
 void make_gap_room(SceneBuilder& s) {
@@ -119,7 +119,7 @@ void make_gap_room(SceneBuilder& s) {
     s.mover(knot, circle(vec3(2.2f, 0.5f, 1.2f), 8.0f, 0.0f, 0.0f));
     s.camera("view", vec3(0.6f, 1.6f, 2.2f), vec3(3.0f, 1.0f, -0.9f), 68.0f);
     s.camera("bench_1", vec3(0.6f, 1.6f, 2.2f), vec3(3.0f, 1.0f, -0.9f), 68.0f);
-    s.exposure(8.0f);
+    s.exposure(6.0f);
 }
 
 void make_near_occluder(SceneBuilder& s) {
@@ -139,7 +139,7 @@ void make_near_occluder(SceneBuilder& s) {
     s.mover(knot, mover);
     s.camera("view", vec3(-1.6f, 1.7f, 2.8f), vec3(0.4f, 1.0f, -1.6f), 62.0f);
     s.camera("bench_1", vec3(-1.6f, 1.7f, 2.8f), vec3(0.4f, 1.0f, -1.6f), 62.0f);
-    s.exposure(9.5f);
+    s.exposure(8.3f);
 }
 
 void make_two_rooms(SceneBuilder& s) {
@@ -154,14 +154,15 @@ void make_two_rooms(SceneBuilder& s) {
     const ecs::Entity door = s.box("door", vec3(0.05f, 0.0f, -0.52f), vec3(0.11f, 2.12f, 0.52f), diffuse(wood));
     scene::Mover slide;
     slide.path = scene::MoverPath::line;
-    slide.travel = vec3(0.0f, 0.0f, 1.0f);
+    slide.travel = vec3(0.0f, 0.0f, 1.04f);
+    slide.phase = 0.25f; // open at step 0
     s.mover(door, slide);
     s.ceiling_light("lamp", vec3(-2.6f, 2.79f, 0.0f), 1.4f, 1.4f, vec3(22.0f, 20.0f, 17.0f));
     s.box("block", vec3(2.0f, 0.0f, -1.4f), vec3(2.8f, 1.0f, -0.6f), diffuse(white));
     s.camera("view", vec3(4.6f, 1.7f, 2.1f), vec3(0.4f, 1.1f, -0.4f), 66.0f);
     s.camera("bench_1", vec3(4.6f, 1.7f, 2.1f), vec3(0.4f, 1.1f, -0.4f), 66.0f);
     s.camera("lit_room", vec3(-4.6f, 1.7f, 2.1f), vec3(-0.6f, 1.1f, -0.4f), 66.0f);
-    s.exposure(8.5f);
+    s.exposure(7.5f);
 }
 
 const std::vector<BuiltInScene>& built_in_scenes() {

@@ -56,23 +56,44 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(laine_karras_permutation(reverse_bits(x), seed));
 }
 
+// Exclusive-or of the direction numbers of the index's set bits, a byte at a time.
+using ByteTables = std::array<std::array<std::array<std::uint32_t, 256>, 4>, 4>;
+
+constexpr ByteTables make_byte_tables() {
+    ByteTables tables{};
+    for (std::size_t dimension = 0; dimension < 4; ++dimension)
+        for (std::size_t byte = 0; byte < 4; ++byte)
+            for (std::size_t value = 0; value < 256; ++value)
+                for (std::size_t bit = 0; bit < 8; ++bit)
+                    if ((value >> bit) & 1u)
+                        tables[dimension][byte][value] ^= sobol_directions[dimension][byte * 8 + bit];
+    return tables;
+}
+
 std::uint32_t sobol_bits(std::uint32_t index, std::uint32_t dimension) {
-    const Directions& v = sobol_directions[dimension];
-    std::uint32_t result = 0;
-    for (std::uint32_t bit = 0; index != 0; index >>= 1, ++bit)
-        if (index & 1u)
-            result ^= v[bit];
-    return result;
+    static const ByteTables tables = make_byte_tables();
+    const auto& table = tables[dimension];
+    return table[0][index & 255u] ^ table[1][(index >> 8) & 255u] ^ table[2][(index >> 16) & 255u] ^
+           table[3][index >> 24];
 }
 
 } // namespace
 
-std::uint32_t sobol_owen_bits(std::uint32_t seed, std::uint32_t index, std::uint32_t dimension) {
-    const std::uint32_t group = dimension / 4;
-    const std::uint32_t member = dimension % 4;
-    const std::uint32_t group_seed = hash_combine(seed, group);
-    const std::uint32_t shuffled = owen_scramble(index, pcg_hash(group_seed));
-    return owen_scramble(sobol_bits(shuffled, member), hash_combine(group_seed, member + 1));
+SobolGroup::SobolGroup(std::uint32_t seed, std::uint32_t index, std::uint32_t group)
+    : seed_(hash_combine(seed, group)), shuffled_(owen_scramble(index, pcg_hash(seed_))) {}
+
+std::uint32_t SobolGroup::bits(std::uint32_t member) const {
+    return owen_scramble(sobol_bits(shuffled_, member), pcg_hash(seed_ + 0x9e3779b9u * (member + 1)));
+}
+
+float RandomSequence::at(std::uint32_t dimension) const {
+    if (kind_ == SequenceKind::pseudo_random)
+        return to_unit_float(hash_combine(hash_combine(hash_combine(seed_, 0x51ed270bu), index_), dimension));
+    if (dimension / 4 != group_number_) {
+        group_number_ = dimension / 4;
+        group_ = SobolGroup(seed_, index_, group_number_);
+    }
+    return to_unit_float(group_.bits(dimension % 4));
 }
 
 } // namespace sunfleck

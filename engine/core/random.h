@@ -17,11 +17,19 @@ constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) { return 
 // The 24 highest bits as a float in [0, 1).
 constexpr float to_unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
 
-// Owen-scrambled Sobol point, bits of dimension `dimension` (any number of dimensions). Dimensions come in groups of
-// four, the first four Sobol dimensions each; groups after the first are padded by shuffling the index with a nested
-// uniform scramble, which keeps each group a (0,m,2)-like net on its own.
-// B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
-std::uint32_t sobol_owen_bits(std::uint32_t seed, std::uint32_t index, std::uint32_t dimension);
+// Four dimensions of the Owen-scrambled Sobol point `index`. Any number of dimensions comes in groups of four, the first
+// four Sobol dimensions each; groups are padded by shuffling the index with a nested uniform scramble, which keeps each
+// group a net of its own. B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
+class SobolGroup {
+public:
+    SobolGroup() = default;
+    SobolGroup(std::uint32_t seed, std::uint32_t index, std::uint32_t group);
+    std::uint32_t bits(std::uint32_t member) const;
+
+private:
+    std::uint32_t seed_ = 0;
+    std::uint32_t shuffled_ = 0;
+};
 
 enum class SequenceKind { pseudo_random, sobol };
 
@@ -32,11 +40,7 @@ public:
         : kind_(kind), seed_(seed), index_(index) {}
 
     float next() { return at(dimension_++); }
-    float at(std::uint32_t dimension) const {
-        if (kind_ == SequenceKind::sobol)
-            return to_unit_float(sobol_owen_bits(seed_, index_, dimension));
-        return to_unit_float(hash_combine(hash_combine(hash_combine(seed_, 0x51ed270bu), index_), dimension));
-    }
+    float at(std::uint32_t dimension) const;
     // Jumps to a dimension, so that a walk's bounces use the same dimensions whatever came before.
     void seek(std::uint32_t dimension) { dimension_ = dimension; }
 
@@ -45,6 +49,9 @@ private:
     std::uint32_t seed_;
     std::uint32_t index_;
     std::uint32_t dimension_ = 0;
+    // The group of four dimensions that was asked for last: its shuffle is shared by the four.
+    mutable std::uint32_t group_number_ = 0xffffffffu;
+    mutable SobolGroup group_;
 };
 
 } // namespace sunfleck

@@ -81,7 +81,7 @@ vec2 light_factor(LightRow light, Pixel pixel) {
         float factor = geometric_cosine > 0.0 ? max(cosine, 0.0) : 0.0;
         if (maps != maps_none) {
             const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
-            const float bias = orthographic_texel_reach(resolution) / max(geometric_cosine, 1e-6);
+            const float bias = orthographic_bias(resolution, geometric_cosine);
             factor *= visibility(slot, uv, 1.0 - along * light.normal_offset.w + bias + depth_step(map_bits), bias);
         }
         return vec2(factor, 0.0);
@@ -106,7 +106,7 @@ vec2 light_factor(LightRow light, Pixel pixel) {
         const bool hemisphere = light_class == light_class_surface;
         const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
         const float reach = hemisphere ? hemisphere_texel_reach(resolution) : sphere_texel_reach(resolution);
-        const float bias = shadow_near * reach / max(plane_distance, 1e-9);
+        const float bias = perspective_bias(reach, plane_distance, place.z);
         const float receiver = min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits);
         factor *= visibility(slot, place.xy, receiver, bias);
     }

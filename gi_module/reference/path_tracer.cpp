@@ -94,7 +94,6 @@ float PathTracer::emitter_density(const raytrace::SurfacePoint& point, vec3 dire
 
 vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     const float choice = path.random.next(), u = path.random.next(), v = path.random.next();
-    path.random.next();
     if (emitters_.empty())
         return vec3(0.0f);
     const double target = double(choice) * cumulative_.back();
@@ -156,6 +155,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
             scattered = vertex.bsdf.sample_glass(vertex.outgoing, vertex.entering, path.random.next());
         } else {
             path.add(reflections, path.throughput * direct_light(path, vertex));
+            path.random.seek(8 + reflections * dimensions_per_vertex + 4);
             const float numbers[3] = {path.random.next(), path.random.next(), path.random.next()};
             if (!vertex.bsdf.sample(vertex.outgoing, numbers, scattered))
                 return;

@@ -59,13 +59,21 @@ SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
 // |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x - y,
 // z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the sphere
 // map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that.
-// A receiver is lit if  near / w + near * texel_reach / h + step >= stored.  A blocker is missed only where its 1/w exceeds
-// the receiver's by less than that.
+// Where the light grazes the receiver, 1/h grows without bound while the light that arrives vanishes; a bias that followed
+// would let light pass under walls. It stops at a slope of 8 (83 degrees): beyond, a surface may shadow itself a little.
+// A receiver is lit if  near / w + bias + step >= stored,  bias = near * texel_reach * min(1 / h, 8 / w).  A blocker is
+// missed only where its 1/w exceeds the receiver's by less than (bias + step) / near.
+SHARED_CONSTANT float shadow_slope_limit = 8.0f;
+SHARED_FUNCTION float perspective_bias(float texel_reach, float plane_distance, float inverse_w) {
+    return shadow_near * texel_reach * min(1.0f / max(plane_distance, 1e-9f), shadow_slope_limit * inverse_w);
+}
 SHARED_FUNCTION float hemisphere_texel_reach(float resolution) { return 1.41421356f / resolution; }
 SHARED_FUNCTION float sphere_texel_reach(float resolution) { return 2.44948974f / resolution; }
 // Orthographic: the plane's depth changes by tan(angle) a unit of length across the map, at most 1/cos(angle); half a
 // texel's diagonal is sqrt(2) * radius / resolution, in units of the stored value sqrt(1/2) / resolution.
-SHARED_FUNCTION float orthographic_texel_reach(float resolution) { return 0.70710678f / resolution; }
+SHARED_FUNCTION float orthographic_bias(float resolution, float cosine) {
+    return 0.70710678f / resolution * min(1.0f / max(cosine, 1e-9f), shadow_slope_limit);
+}
 
 // Largest error of a stored value: half a step of 16-bit depth for itself, and rounding of the receiver's.
 SHARED_FUNCTION float depth_step(uint bits) { return bits == 16u ? 1.0f / 65535.0f : 4e-7f; }
