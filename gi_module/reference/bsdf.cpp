@@ -87,7 +87,10 @@ vec3 Bsdf::evaluate(vec3 outgoing, vec3 incoming) const {
     const float masking = 1.0f / (1.0f + ggx_lambda(outgoing, alpha_) + ggx_lambda(incoming, alpha_));
     const vec3 specular =
         reflected * (ggx_distribution(half.z, alpha_) * masking / (4.0f * outgoing.z * incoming.z));
-    const float passed = 1.0f - std::max({reflected.x, reflected.y, reflected.z});
+    // What the layer reflects on the way in and out does not reach the base; reciprocal, and never above one in sum
+    // (glTF's own mix by the half vector exceeds one at grazing angles).
+    const vec3 in = fresnel(incoming.z), out = fresnel(outgoing.z);
+    const float passed = (1.0f - std::max({in.x, in.y, in.z})) * (1.0f - std::max({out.x, out.y, out.z}));
     return diffuse_ / pi * passed + specular;
 }
 

@@ -1,0 +1,128 @@
+#include "engine/core/description.h"
+#include "engine/core/file.h"
+#include "engine/core/jobs.h"
+#include "engine/core/octahedral.h"
+#include "engine/core/random.h"
+#include "engine/core/result.h"
+#include "gi_module/settings.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <sys/resource.h>
+
+namespace sunfleck {
+namespace {
+
+// Elementary intervals: 2^m points of a (0,2)-sequence fall one into each box of area 2^-m, whatever its shape.
+TEST(Random, SobolPairsAreStratifiedInEveryElementaryInterval) {
+    constexpr std::uint32_t m = 8, count = 1u << m;
+    for (const std::uint32_t group : {0u, 1u, 5u})
+        for (std::uint32_t shape = 0; shape <= m; ++shape) {
+            std::set<std::uint32_t> boxes;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const SobolGroup point(7, i, group);
+                const std::uint32_t x = shape == 0 ? 0 : point.bits(0) >> (32 - shape);
+                const std::uint32_t y = shape == m ? 0 : point.bits(1) >> (32 - (m - shape));
+                boxes.insert((x << (m - shape)) | y);
+            }
+            EXPECT_EQ(boxes.size(), count) << "group " << group << " shape " << shape;
+        }
+}
+
+TEST(Random, SobolIntegratesBetterThanPseudoRandom) {
+    // Mean of x*y over [0,1)^2 is 1/4; Owen-scrambled nets converge near N^-1.5, independent numbers with N^-0.5.
+    double worst_sobol = 0, mean_pseudo = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        double sobol = 0, pseudo = 0;
+        for (std::uint32_t i = 0; i < 4096; ++i) {
+            const RandomSequence a(SequenceKind::sobol, seed, i), b(SequenceKind::pseudo_random, seed, i);
+            sobol += double(a.at(0)) * double(a.at(1));
+            pseudo += double(b.at(0)) * double(b.at(1));
+        }
+        worst_sobol = std::max(worst_sobol, std::abs(sobol / 4096 - 0.25));
+        mean_pseudo += std::abs(pseudo / 4096 - 0.25) / 8;
+    }
+    EXPECT_LT(worst_sobol, 2e-4);
+    EXPECT_LT(worst_sobol * 4, mean_pseudo);
+}
+
+TEST(Random, IsAFunctionOfSeedIndexAndDimension) {
+    const RandomSequence a(SequenceKind::sobol, 3, 17), b(SequenceKind::sobol, 3, 17), c(SequenceKind::sobol, 4, 17);
+    EXPECT_EQ(a.at(9), b.at(9));
+    EXPECT_EQ(a.at(2), b.at(2));
+    EXPECT_NE(a.at(2), c.at(2));
+}
+
+TEST(Octahedral, PackedNormalsComeBackWithin7e5Radians) {
+    RandomSequence random(SequenceKind::pseudo_random, 11, 0);
+    for (int i = 0; i < 100000; ++i) {
+        const float z = 2.0f * random.next() - 1.0f, angle = 2.0f * pi * random.next();
+        const float r = std::sqrt(1.0f - z * z);
+        const vec3 n(r * std::cos(angle), r * std::sin(angle), z);
+        const vec3 back = shared::unpack_normal(shared::pack_normal(n));
+        ASSERT_LT(glm::length(glm::cross(n, back)), 7e-5f);
+        ASSERT_GT(glm::dot(n, back), 0.9f);
+    }
+}
+
+TEST(Jobs, ChunksCoverEverythingOnceWhateverTheThreads) {
+    for (const std::size_t threads : {1u, 2u}) {
+        const ThreadLimit limit(threads);
+        std::vector<int> seen(1003);
+        parallel_for_chunks(seen.size(), 64, [&](std::size_t begin, std::size_t end) {
+            EXPECT_EQ(begin % 64, 0u);
+            for (std::size_t i = begin; i < end; ++i)
+                ++seen[i];
+        });
+        EXPECT_EQ(std::set<int>(seen.begin(), seen.end()), std::set<int>{1});
+    }
+}
+
+TEST(Description, TextRoundTripsAndRangesHold) {
+    gi::Settings settings;
+    const TypeDescription& type = gi::Settings::description();
+    for (const Field& field : type.fields) {
+        const std::string text = field_to_text(field, &settings);
+        EXPECT_TRUE(field_from_text(field, &settings, text)) << field.name;
+        EXPECT_EQ(field_to_text(field, &settings), text) << field.name;
+        EXPECT_FALSE(field.tooltip.empty()) << field.name;
+    }
+    const Field& share = *type.find("direct_share");
+    for (const char* bad : {"nan", "inf", "-0.1", "1.5", "", "0.5x", "abc", "1e999"})
+        EXPECT_FALSE(field_from_text(share, &settings, bad)) << bad;
+    EXPECT_EQ(settings.direct_share, 0.25f);
+    EXPECT_FALSE(field_from_text(*type.find("lights"), &settings, "3.5"));
+    EXPECT_FALSE(field_from_text(*type.find("sequence"), &settings, "halton"));
+    settings.direct_share = NAN;
+    EXPECT_FALSE(validate(type, &settings));
+}
+
+TEST(File, AFailedWriteLeavesTheOldContentAndNoTemporaryFile) {
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sunfleck_file_test";
+    std::filesystem::create_directories(folder);
+    const std::filesystem::path file = folder / "data.json";
+    ASSERT_TRUE(write_file(file, "old"));
+    // A limit of file size acts like a full disk: the write stops in the middle.
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    rlimit small = before;
+    small.rlim_cur = 4096;
+    setrlimit(RLIMIT_FSIZE, &small);
+    const Status status = write_file(file, std::string(100000, 'x'));
+    setrlimit(RLIMIT_FSIZE, &before);
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().message.find("data.json"), std::string::npos);
+    EXPECT_EQ(read_file(file).value(), "old");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+    EXPECT_FALSE(write_file(folder / "missing" / "x.json", "x"));
+    EXPECT_FALSE(read_file(folder));
+    std::filesystem::remove_all(folder);
+}
+
+} // namespace
+} // namespace sunfleck

@@ -1,0 +1,93 @@
+// Reads every include of the project and checks that arrows point one way (the layers of the README).
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Layers = std::map<std::string, std::set<std::string>>;
+
+// What each folder may include besides itself.
+const Layers& allowed() {
+    static const std::set<std::string> foundation = {"engine/core", "engine/ecs", "engine/gpu", "engine/scene",
+                                                     "engine/raytrace"};
+    static const auto with = [](std::set<std::string> base, std::set<std::string> more) {
+        base.insert(more.begin(), more.end());
+        return base;
+    };
+    static const Layers layers = {
+        {"engine/core", {}},
+        {"engine/ecs", {"engine/core"}},
+        {"engine/gpu", {"engine/core"}},
+        {"engine/shader_compiler", {"engine/core"}},
+        {"engine/scene", {"engine/core", "engine/ecs", "engine/gpu"}},
+        {"engine/raytrace", {"engine/core", "engine/ecs", "engine/scene"}},
+        {"engine/io", {"engine/core", "engine/ecs", "engine/scene"}},
+        {"engine/simulation", {"engine/core", "engine/ecs", "engine/scene", "engine/raytrace"}},
+        {"engine/render", {"engine/core", "engine/ecs", "engine/gpu", "engine/scene"}},
+        {"engine/app", {"engine/core", "engine/gpu"}},
+        {"gi_module/transport", foundation},
+        {"gi_module/light_sampling", with(foundation, {"gi_module/transport", "gi_module"})},
+        {"gi_module/shadows", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
+        {"gi_module/brute_force", with(foundation, {"gi_module/transport", "gi_module/shadows", "gi_module"})},
+        {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
+        {"gi_module", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
+                                        "gi_module/brute_force"})},
+    };
+    return layers;
+}
+
+std::string folder_of(const std::string& path) {
+    const std::size_t end = path.rfind('/');
+    return end == std::string::npos ? "" : path.substr(0, end);
+}
+
+TEST(Layers, IncludesPointDownOnly) {
+    const fs::path root = SUNFLECK_SOURCE_DIR;
+    const std::regex include("^\\s*#include \"([^\"]+)\"");
+    int read = 0;
+    for (const char* top : {"engine", "gi_module"})
+        for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+            static const std::set<std::string> extensions = {".h", ".cpp", ".comp", ".vert", ".frag"};
+            if (!entry.is_regular_file() || !extensions.count(entry.path().extension()))
+                continue;
+            const std::string file = fs::relative(entry.path(), root);
+            const std::string folder = folder_of(file);
+            ASSERT_TRUE(allowed().count(folder)) << file << " lies in a folder without a layer";
+            std::ifstream stream(entry.path());
+            for (std::string line; std::getline(stream, line);) {
+                std::smatch match;
+                if (!std::regex_search(line, match, include))
+                    continue;
+                ++read;
+                const std::string target = folder_of(match[1]);
+                EXPECT_TRUE(target == folder || allowed().at(folder).count(target))
+                    << file << " must not include " << match[1];
+                // gi_module itself: only the settings may be used from below, never the system.
+                if (folder != "gi_module" && target == "gi_module") {
+                    EXPECT_EQ(match[1], "gi_module/settings.h") << file;
+                }
+            }
+        }
+    EXPECT_GT(read, 100);
+}
+
+TEST(Layers, TheModuleUsesNoWindowImageOrGuiLibrary) {
+    const fs::path root = SUNFLECK_SOURCE_DIR;
+    const std::regex foreign("#include <(GLFW|OpenImageIO|imgui|tiny_gltf|nlohmann|CLI|spdlog|glslang)");
+    for (const char* top : {"engine/core", "engine/ecs", "engine/gpu", "engine/scene", "engine/raytrace", "gi_module"})
+        for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+            if (!entry.is_regular_file())
+                continue;
+            std::ifstream stream(entry.path());
+            for (std::string line; std::getline(stream, line);)
+                EXPECT_FALSE(std::regex_search(line, foreign)) << entry.path() << ": " << line;
+        }
+}
+
+} // namespace

@@ -1,0 +1,271 @@
+#include "assets/test_rooms.h"
+#include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/reference/path_tracer.h"
+
+#include "engine/core/jobs.h"
+#include "engine/core/random.h"
+
+#include <gtest/gtest.h>
+
+namespace sunfleck::gi {
+namespace {
+
+// A built-in scene ready for rays.
+struct World {
+    explicit World(void (*make)(assets::SceneBuilder&)) {
+        assets::SceneBuilder builder(registry, meshes);
+        make(builder);
+        finish();
+    }
+    World() { scene::register_components(registry); }
+    void finish() {
+        scene::update_world_transforms(registry);
+        rays = raytrace::RayScene::create().value();
+        ASSERT_TRUE(rays->update(registry, meshes));
+        for (std::uint32_t i = 0; i < meshes.size(); ++i)
+            bounds.add(meshes.bounds(i));
+        bounds = {};
+        registry.view<scene::MeshInstance, scene::WorldTransform>().each(
+            [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
+                bounds.add(transform_bounds(world.matrix, meshes.bounds(instance.mesh)));
+            });
+        emitters = collect_emitters(registry, meshes, bounds);
+    }
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    std::unique_ptr<raytrace::RayScene> rays;
+    Bounds bounds;
+    std::vector<Emitter> emitters;
+};
+
+double total_luminance(const std::vector<LightSample>& samples) {
+    double sum = 0;
+    for (const LightSample& sample : samples)
+        sum += double(luminance(sample.flux));
+    return sum;
+}
+
+TEST(LightSampling, DirectFluxIsTheEmittersFlux) {
+    for (auto make : {assets::make_cornell, assets::make_area_room, assets::make_four_pillars}) {
+        const World world(make);
+        double expected = 0;
+        for (const Emitter& emitter : world.emitters)
+            expected += double(luminance(emitter.flux));
+        for (const std::uint32_t count : {1u, 7u, 300u, 2049u}) {
+            const auto samples = sample_direct(world.emitters, count, {}, *world.rays);
+            EXPECT_EQ(samples.size(), count);
+            EXPECT_NEAR(total_luminance(samples) / expected, 1.0, 1e-5);
+        }
+    }
+}
+
+TEST(LightSampling, EmitterFluxHasItsClosedForm) {
+    World world;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    builder.area_light("rectangle", {scene::AreaShape::rectangle, 2.0f, 3.0f, 0.0f, vec3(1.0f)}, {});
+    builder.area_light("disc", {scene::AreaShape::disc, 0.0f, 0.0f, 0.5f, vec3(2.0f)}, {});
+    builder.area_light("sphere", {scene::AreaShape::sphere, 0.0f, 0.0f, 0.25f, vec3(3.0f)}, {});
+    const ecs::Entity point = world.registry.create(), spot = world.registry.create();
+    world.registry.emplace<scene::Transform>(point);
+    world.registry.emplace<scene::PointLight>(point, {vec3(5.0f)});
+    world.registry.emplace<scene::Transform>(spot);
+    world.registry.emplace<scene::SpotLight>(spot, {vec3(7.0f), 0.3f, 0.7f});
+    world.finish();
+    ASSERT_EQ(world.emitters.size(), 5u);
+    EXPECT_NEAR(world.emitters[0].flux.x, pi * 6.0f, 1e-4f);
+    EXPECT_NEAR(world.emitters[1].flux.x, pi * pi * 0.25f * 2.0f, 1e-4f);
+    EXPECT_NEAR(world.emitters[2].flux.x, pi * 4.0f * pi * 0.0625f * 3.0f, 1e-3f);
+    EXPECT_NEAR(world.emitters[3].flux.x, 4.0f * pi * 5.0f, 1e-3f);
+    // The spot's flux by numerical integration of its falloff.
+    float scale, offset;
+    spot_cone(world.emitters[4], scale, offset);
+    double integral = 0;
+    const int steps = 100000;
+    for (int i = 0; i < steps; ++i) {
+        const double cosine = 1.0 - (double(i) + 0.5) / steps;
+        const double falloff = std::clamp(cosine * double(scale) + double(offset), 0.0, 1.0);
+        integral += falloff * falloff / steps;
+    }
+    EXPECT_NEAR(double(world.emitters[4].flux.x), 7.0 * 2.0 * 3.14159265358979 * integral, 1e-3);
+}
+
+TEST(LightSampling, BadLightsAreLeftOut) {
+    World world;
+    const auto add = [&](vec3 intensity) {
+        const ecs::Entity entity = world.registry.create();
+        world.registry.emplace<scene::Transform>(entity);
+        world.registry.emplace<scene::PointLight>(entity, {intensity});
+    };
+    add(vec3(NAN));
+    add(vec3(-1.0f));
+    add(vec3(INFINITY));
+    add(vec3(0.0f));
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    builder.area_light("flat", {scene::AreaShape::rectangle, 0.0f, 3.0f, 0.0f, vec3(1.0f)}, {});
+    world.finish();
+    EXPECT_TRUE(world.emitters.empty());
+    EXPECT_TRUE(sample_direct(world.emitters, 10, {}, *world.rays).empty());
+    EXPECT_TRUE(sample_indirect(world.emitters, 10, {}, *world.rays).empty());
+}
+
+TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
+    const World world(assets::make_four_pillars);
+    for (const Sequence sequence : {Sequence::sobol, Sequence::pseudo_random})
+        for (const Termination termination : {Termination::bounce_limit, Termination::russian_roulette})
+            for (const std::uint32_t count : {1u, 7u, 300u, 2049u}) {
+                Settings settings;
+                settings.sequence = sequence;
+                settings.termination = termination;
+                std::vector<LightSample> one, two;
+                {
+                    const ThreadLimit limit(1);
+                    one = sample_indirect(world.emitters, count, settings, *world.rays);
+                }
+                two = sample_indirect(world.emitters, count, settings, *world.rays);
+                ASSERT_EQ(one.size(), count);
+                ASSERT_EQ(two.size(), count);
+                for (std::size_t i = 0; i < count; ++i) {
+                    ASSERT_EQ(one[i].position, two[i].position);
+                    ASSERT_EQ(one[i].flux, two[i].flux);
+                    ASSERT_GE(one[i].bounce, 1u);
+                    ASSERT_LE(one[i].bounce, settings.bounces);
+                }
+            }
+}
+
+// Reflected flux of bounce k, from samples, against the adjoint computation: radiosity (albedo times irradiance that was
+// reflected k - 1 times before) integrated over the static surfaces by the path tracer from random surface points.
+TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
+    for (auto make : {assets::make_cornell, assets::make_four_pillars}) {
+        World world(make);
+        // Movers are left out of walks; take them out of the reference too.
+        std::vector<ecs::Entity> movers;
+        world.registry.view<scene::Mover>().each([&](ecs::Entity e, const scene::Mover&) { movers.push_back(e); });
+        for (const ecs::Entity mover : movers)
+            world.registry.destroy(mover);
+        ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+        constexpr std::uint32_t bounces = 3, points = 4096, rays_per_point = 16;
+        Settings settings;
+        settings.bounces = bounces;
+        double walked[bounces] = {};
+        double walked_square[bounces] = {};
+        constexpr int seeds = 8;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            settings.seed = std::uint32_t(seed);
+            double flux[bounces] = {};
+            for (const LightSample& sample : sample_indirect(world.emitters, 4096, settings, *world.rays))
+                flux[sample.bounce - 1] += double(luminance(sample.flux));
+            for (std::uint32_t k = 0; k < bounces; ++k) {
+                walked[k] += flux[k] / seeds;
+                walked_square[k] += flux[k] * flux[k] / seeds;
+            }
+        }
+        const reference::PathTracer tracer(*world.rays, world.emitters);
+        double sum[bounces] = {}, square[bounces] = {};
+        double area = 0;
+        std::vector<double> cumulative;
+        struct Triangle {
+            vec3 p[3];
+            vec3 albedo;
+        };
+        std::vector<Triangle> triangles;
+        world.registry.view<scene::MeshInstance, scene::WorldTransform, scene::Material>().each(
+            [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& transform,
+                const scene::Material& material) {
+                const scene::Mesh& mesh = world.meshes[instance.mesh];
+                for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+                    Triangle t;
+                    for (int k = 0; k < 3; ++k)
+                        t.p[k] = vec3(transform.matrix * vec4(mesh.positions[mesh.indices[i + std::size_t(k)]], 1.0f));
+                    t.albedo = material.base_colour;
+                    area += 0.5 * double(glm::length(glm::cross(t.p[1] - t.p[0], t.p[2] - t.p[0])));
+                    cumulative.push_back(area);
+                    triangles.push_back(t);
+                }
+            });
+        for (std::uint32_t i = 0; i < points; ++i) {
+            const RandomSequence random(SequenceKind::sobol, 99, i);
+            const std::size_t chosen = std::min<std::size_t>(
+                std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), double(random.at(0)) * area) -
+                            cumulative.begin()), triangles.size() - 1);
+            const Triangle& t = triangles[chosen];
+            const float root = std::sqrt(random.at(1)), v = random.at(2);
+            const vec3 position = t.p[0] + root * (1.0f - v) * (t.p[1] - t.p[0]) + root * v * (t.p[2] - t.p[0]);
+            const vec3 normal = glm::normalize(glm::cross(t.p[1] - t.p[0], t.p[2] - t.p[0]));
+            double value[bounces] = {};
+            // Surfaces are two-sided.
+            for (const float side : {1.0f, -1.0f}) {
+                const auto irradiance = tracer.irradiance_by_bounce(position, side * normal, bounces - 1,
+                                                                    rays_per_point, i * 2 + (side > 0 ? 0 : 1));
+                for (std::uint32_t k = 0; k < bounces; ++k)
+                    value[k] += double(luminance(irradiance[k] * t.albedo)) * area;
+            }
+            for (std::uint32_t k = 0; k < bounces; ++k) {
+                sum[k] += value[k];
+                square[k] += value[k] * value[k];
+            }
+        }
+        for (std::uint32_t k = 0; k < bounces; ++k) {
+            const double mean = sum[k] / points;
+            const double reference_error = std::sqrt((square[k] / points - mean * mean) / points);
+            const double walk_error = std::sqrt(std::max(0.0, walked_square[k] - walked[k] * walked[k]) / (seeds - 1));
+            EXPECT_NEAR(walked[k], mean, 3.0 * std::hypot(reference_error, walk_error)) << "bounce " << k + 1;
+            EXPECT_LT(reference_error / mean, 0.05) << "the test must be able to fail";
+        }
+    }
+}
+
+TEST(RayScene, StaticGeometryIsBuiltOnceAndMoversFollow) {
+    World world(assets::make_four_pillars);
+    const std::uint32_t builds = world.rays->static_builds();
+    const std::uint64_t generation = world.rays->static_generation();
+    const ecs::Entity torus = scene::find_by_name(world.registry, "torus");
+    const raytrace::Ray down{vec3(1.32f, 3.0f, 0.0f), vec3(0.0f, -1.0f, 0.0f), 0.0f, 100.0f};
+    const auto hit_entity = [&] {
+        const auto hit = world.rays->closest_hit(down);
+        return hit ? world.rays->surface(down, *hit).entity : ecs::null_entity;
+    };
+    EXPECT_EQ(hit_entity(), torus);
+    world.registry.patch<scene::Transform>(torus, [](scene::Transform& t) { t.position.x = -2.0f; });
+    scene::update_world_transforms(world.registry);
+    ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+    EXPECT_NE(hit_entity(), torus);
+    EXPECT_EQ(world.rays->static_builds(), builds);
+    EXPECT_EQ(world.rays->static_generation(), generation);
+    const ecs::Entity pillar = scene::find_by_name(world.registry, "pillar 0");
+    world.registry.patch<scene::Material>(pillar, [](scene::Material& m) { m.base_colour.x = 0.1f; });
+    ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+    EXPECT_EQ(world.rays->static_builds(), builds) << "a colour moves no geometry";
+    EXPECT_GT(world.rays->static_generation(), generation) << "but what was derived from it is old";
+    world.registry.patch<scene::Transform>(pillar, [](scene::Transform& t) { t.position.x += 0.1f; });
+    scene::update_world_transforms(world.registry);
+    ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+    EXPECT_EQ(world.rays->static_builds(), builds + 1);
+}
+
+TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
+    const World world(assets::make_table_room);
+    RandomSequence random(SequenceKind::pseudo_random, 3, 1);
+    const auto point = [&] {
+        return world.bounds.minimum + world.bounds.extent() * vec3(random.next(), random.next(), random.next());
+    };
+    int occluded = 0;
+    for (int i = 0; i < 2000; ++i) {
+        raytrace::ShadowPacket packet;
+        packet.active = std::uint32_t(random.next() * 65536.0f);
+        for (raytrace::Ray& ray : packet.rays) {
+            const vec3 from = point();
+            ray = {from, point() - from, 0.0f, 1.0f};
+        }
+        const std::uint32_t result = world.rays->occluded(packet);
+        for (std::uint32_t k = 0; k < raytrace::packet_size; ++k) {
+            const bool expected = ((packet.active >> k) & 1u) && world.rays->occluded(packet.rays[k]);
+            ASSERT_EQ(bool((result >> k) & 1u), expected);
+            occluded += expected;
+        }
+    }
+    EXPECT_GT(occluded, 1000);
+}
+
+} // namespace
+} // namespace sunfleck::gi
