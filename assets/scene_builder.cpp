@@ -32,11 +32,32 @@ ecs::Entity SceneBuilder::quad(const std::string& name, vec3 corner, vec3 u, vec
     return add(name, std::move(mesh), material);
 }
 
-void SceneBuilder::room(vec3 lo, vec3 hi, vec3 floor, vec3 ceiling, const vec3 (&walls)[4]) {
+void SceneBuilder::ceiling_with_lamps(vec3 lo, vec3 hi, vec3 colour, const std::vector<Lamp>& lamps) {
+    const scene::Material material = diffuse(colour);
+    int pieces = 0;
+    const auto piece = [&](float x0, float x1, float z0, float z1) {
+        quad("ceiling" + (pieces > 0 ? " " + std::to_string(pieces) : std::string()), vec3(x0, hi.y, z0),
+             vec3(x1 - x0, 0, 0), vec3(0, 0, z1 - z0), material);
+        ++pieces;
+    };
+    float x = lo.x;
+    for (const Lamp& lamp : lamps) {
+        const vec2 half(0.5f * lamp.width, 0.5f * lamp.depth), a = lamp.centre - half, b = lamp.centre + half;
+        piece(x, a.x, lo.z, hi.z);
+        piece(a.x, b.x, lo.z, a.y);
+        piece(a.x, b.x, b.y, hi.z);
+        ceiling_light(lamp.name, vec3(lamp.centre.x, hi.y, lamp.centre.y), lamp.width, lamp.depth, lamp.radiance);
+        x = b.x;
+    }
+    piece(x, hi.x, lo.z, hi.z);
+}
+
+void SceneBuilder::room(vec3 lo, vec3 hi, vec3 floor, vec3 ceiling, const vec3 (&walls)[4],
+                        const std::vector<Lamp>& lamps) {
     const vec3 size = hi - lo;
     const vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
     quad("floor", lo, z, x, diffuse(floor));
-    quad("ceiling", vec3(lo.x, hi.y, lo.z), x, z, diffuse(ceiling));
+    ceiling_with_lamps(lo, hi, ceiling, lamps);
     quad("wall x-", lo, y, z, diffuse(walls[0]));
     quad("wall x+", vec3(hi.x, lo.y, lo.z), z, y, diffuse(walls[1]));
     quad("wall z-", lo, x, y, diffuse(walls[2]));

@@ -4,6 +4,7 @@
 #include "engine/scene/procedural.h"
 
 #include <string>
+#include <vector>
 
 namespace sunfleck::assets {
 
@@ -26,7 +27,16 @@ public:
     // Rectangle by its corner and two edges; its front is where the edges turn counter-clockwise.
     ecs::Entity quad(const std::string& name, vec3 corner, vec3 u, vec3 v, const scene::Material& material);
     // The inside of a box: floor, ceiling, and walls in the order x-, x+, z-, z+.
-    void room(vec3 lowest, vec3 highest, vec3 floor, vec3 ceiling, const vec3 (&walls)[4]);
+    // The ceiling has openings where `lamps` sit flush in it; lamps are given by rising x and do not overlap in x.
+    struct Lamp {
+        std::string name;
+        vec2 centre; // x, z
+        float width, depth;
+        vec3 radiance;
+    };
+    void room(vec3 lowest, vec3 highest, vec3 floor, vec3 ceiling, const vec3 (&walls)[4],
+              const std::vector<Lamp>& lamps = {});
+    void ceiling_with_lamps(vec3 lowest, vec3 highest, vec3 colour, const std::vector<Lamp>& lamps);
     // Faces downwards, centred on `centre`.
     ecs::Entity ceiling_light(const std::string& name, vec3 centre, float width, float depth, vec3 radiance);
     ecs::Entity area_light(const std::string& name, const scene::AreaLight& light, const scene::Transform& transform);

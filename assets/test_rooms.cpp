@@ -30,13 +30,12 @@ scene::Transform at(vec3 position, float yaw_degrees = 0.0f) {
 void make_cornell(SceneBuilder& s) {
     const vec3 lo(0.0f), hi(5.528f, 5.488f, 5.592f);
     s.quad("floor", lo, vec3(0, 0, hi.z), vec3(hi.x, 0, 0), diffuse(white));
-    s.quad("ceiling", vec3(0, hi.y, 0), vec3(hi.x, 0, 0), vec3(0, 0, hi.z), diffuse(white));
+    s.ceiling_with_lamps(lo, hi, white, {{"lamp", vec2(2.78f, 2.795f), 1.30f, 1.05f, vec3(17.0f, 12.0f, 6.0f)}});
     s.quad("back wall", lo, vec3(hi.x, 0, 0), vec3(0, hi.y, 0), diffuse(white));
     s.quad("red wall", lo, vec3(0, hi.y, 0), vec3(0, 0, hi.z), diffuse(red));
     s.quad("green wall", vec3(hi.x, 0, 0), vec3(0, 0, hi.z), vec3(0, hi.y, 0), diffuse(green));
     s.add("tall block", scene::make_box(vec3(1.65f, 3.30f, 1.65f)), diffuse(white), at(vec3(1.84f, 1.65f, 2.08f), 17.0f));
     s.add("short block", scene::make_box(vec3(1.65f)), diffuse(white), at(vec3(3.68f, 0.825f, 3.91f), -17.0f));
-    s.ceiling_light("lamp", vec3(2.78f, 5.478f, 2.795f), 1.30f, 1.05f, vec3(17.0f, 12.0f, 6.0f));
     s.camera("view", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
     s.camera("bench_1", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
     s.camera("corner", vec3(4.9f, 4.6f, 5.3f), vec3(1.6f, 0.8f, 1.6f), 65.0f);
@@ -54,9 +53,9 @@ void make_furnace_of(SceneBuilder& s, float albedo, float emission) {
 void make_furnace(SceneBuilder& s) { make_furnace_of(s, 0.5f, 1.0f); }
 
 void make_area_room(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -3.0f), vec3(4.0f, 3.2f, 3.0f), wood, white, {vec3(0.70f, 0.62f, 0.45f), white, white, white});
-    s.ceiling_light("large lamp", vec3(-1.8f, 3.19f, -0.3f), 2.4f, 1.6f, vec3(5.0f, 4.6f, 4.0f));
-    s.ceiling_light("second lamp", vec3(2.1f, 3.19f, 0.3f), 1.8f, 1.8f, vec3(3.4f, 3.8f, 4.6f));
+    s.room(vec3(-4.0f, 0.0f, -3.0f), vec3(4.0f, 3.2f, 3.0f), wood, white, {vec3(0.70f, 0.62f, 0.45f), white, white, white},
+           {{"large lamp", vec2(-1.8f, -0.3f), 2.4f, 1.6f, vec3(5.0f, 4.6f, 4.0f)},
+            {"second lamp", vec2(2.1f, 0.3f), 1.8f, 1.8f, vec3(3.4f, 3.8f, 4.6f)}});
     s.box("plinth", vec3(-2.9f, 0.0f, -1.8f), vec3(-1.9f, 0.9f, -0.8f), diffuse(white));
     s.add("torus", scene::make_torus(0.45f, 0.16f), diffuse(vec3(0.7f, 0.45f, 0.15f)),
           [] { scene::Transform t = at(vec3(-2.4f, 1.5f, -1.3f)); t.rotation = glm::angleAxis(1.2f, vec3(1, 0, 0)); return t; }());
@@ -71,8 +70,8 @@ void make_area_room(SceneBuilder& s) {
 }
 
 void make_table_room(SceneBuilder& s) {
-    s.room(vec3(-3.0f, 0.0f, -3.0f), vec3(3.0f, 3.0f, 3.0f), vec3(0.6f, 0.55f, 0.48f), white, {red, blue, white, white});
-    s.ceiling_light("lamp", vec3(0.0f, 2.99f, 0.0f), 1.4f, 1.4f, vec3(11.0f, 10.4f, 9.4f));
+    s.room(vec3(-3.0f, 0.0f, -3.0f), vec3(3.0f, 3.0f, 3.0f), vec3(0.6f, 0.55f, 0.48f), white, {red, blue, white, white},
+           {{"lamp", vec2(0.0f), 1.4f, 1.4f, vec3(11.0f, 10.4f, 9.4f)}});
     s.box("table top", vec3(-1.1f, 0.80f, -0.7f), vec3(1.1f, 0.88f, 0.7f), diffuse(wood));
     for (int leg = 0; leg < 4; ++leg) {
         const float x = leg & 1 ? 1.0f : -1.0f, z = leg & 2 ? 0.6f : -0.6f;
@@ -90,8 +89,8 @@ void make_table_room(SceneBuilder& s) {
 }
 
 void make_four_pillars(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -4.0f), vec3(4.0f, 3.5f, 4.0f), vec3(0.55f, 0.52f, 0.47f), white, {red, green, white, vec3(0.7f, 0.6f, 0.35f)});
-    s.ceiling_light("lamp", vec3(0.0f, 3.49f, 0.0f), 1.6f, 1.6f, vec3(17.0f, 16.0f, 14.0f));
+    s.room(vec3(-4.0f, 0.0f, -4.0f), vec3(4.0f, 3.5f, 4.0f), vec3(0.55f, 0.52f, 0.47f), white, {red, green, white, vec3(0.7f, 0.6f, 0.35f)},
+           {{"lamp", vec2(0.0f), 1.6f, 1.6f, vec3(17.0f, 16.0f, 14.0f)}});
     for (int i = 0; i < 4; ++i) {
         const float x = i & 1 ? 1.7f : -1.7f, z = i & 2 ? 1.7f : -1.7f;
         s.box("pillar " + std::to_string(i), vec3(x - 0.35f, 0.0f, z - 0.35f), vec3(x + 0.35f, 3.5f, z + 0.35f), diffuse(stone));
@@ -109,11 +108,11 @@ void make_four_pillars(SceneBuilder& s) {
 }
 
 void make_gap_room(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -2.5f), vec3(4.0f, 3.0f, 2.5f), vec3(0.65f), white, {vec3(0.7f, 0.5f, 0.2f), white, white, white});
+    s.room(vec3(-4.0f, 0.0f, -2.5f), vec3(4.0f, 3.0f, 2.5f), vec3(0.65f), white, {vec3(0.7f, 0.5f, 0.2f), white, white, white},
+           {{"lamp", vec2(-2.2f, -0.4f), 1.5f, 1.5f, vec3(40.0f, 37.0f, 32.0f)}});
     // The dividing wall leaves a gap of 25 cm.
     s.box("divider left", vec3(-0.1f, 0.0f, -2.5f), vec3(0.1f, 3.0f, -0.9f), diffuse(white));
     s.box("divider right", vec3(-0.1f, 0.0f, -0.65f), vec3(0.1f, 3.0f, 2.5f), diffuse(white));
-    s.ceiling_light("lamp", vec3(-2.2f, 2.99f, -0.4f), 1.5f, 1.5f, vec3(40.0f, 37.0f, 32.0f));
     s.box("block", vec3(1.7f, 0.0f, -0.6f), vec3(2.3f, 1.3f, 0.1f), diffuse(grey));
     const ecs::Entity knot = s.add("knot", scene::make_knot(0.6f), diffuse(white), at(vec3(2.7f, 0.5f, 1.2f)));
     s.mover(knot, circle(vec3(2.2f, 0.5f, 1.2f), 8.0f, 0.0f, 0.0f));
@@ -144,7 +143,8 @@ void make_near_occluder(SceneBuilder& s) {
 
 void make_two_rooms(SceneBuilder& s) {
     const vec3 lo(-5.0f, 0.0f, -2.5f), hi(5.0f, 2.8f, 2.5f);
-    s.room(lo, hi, vec3(0.6f, 0.55f, 0.5f), white, {vec3(0.7f, 0.35f, 0.2f), vec3(0.35f, 0.45f, 0.65f), white, white});
+    s.room(lo, hi, vec3(0.6f, 0.55f, 0.5f), white, {vec3(0.7f, 0.35f, 0.2f), vec3(0.35f, 0.45f, 0.65f), white, white},
+           {{"lamp", vec2(-2.6f, 0.0f), 1.4f, 1.4f, vec3(22.0f, 20.0f, 17.0f)}});
     // The dividing wall, from 20 cm thick down to a sheet, with a doorway of 1 m that a sliding door closes and opens.
     s.box("wall 20 cm", vec3(-0.1f, 0.0f, -2.5f), vec3(0.1f, 2.8f, -1.5f), diffuse(white));
     s.box("wall 5 cm", vec3(-0.025f, 0.0f, -1.5f), vec3(0.025f, 2.8f, -0.5f), diffuse(white));
@@ -157,7 +157,6 @@ void make_two_rooms(SceneBuilder& s) {
     slide.travel = vec3(0.0f, 0.0f, 1.04f);
     slide.phase = 0.25f; // open at step 0
     s.mover(door, slide);
-    s.ceiling_light("lamp", vec3(-2.6f, 2.79f, 0.0f), 1.4f, 1.4f, vec3(22.0f, 20.0f, 17.0f));
     s.box("block", vec3(2.0f, 0.0f, -1.4f), vec3(2.8f, 1.0f, -0.6f), diffuse(white));
     s.camera("view", vec3(4.6f, 1.7f, 2.1f), vec3(0.4f, 1.1f, -0.4f), 66.0f);
     s.camera("bench_1", vec3(4.6f, 1.7f, 2.1f), vec3(0.4f, 1.1f, -0.4f), 66.0f);

@@ -239,8 +239,13 @@ Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::
                                            const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                                            VkFormat output_format) {
     const gpu::ResourceId output = graph.create_image("irradiance", output_format, g_buffer.width, g_buffer.height);
-    SUNFLECK_TRY(brute_force_->begin_frame(g_buffer.width, g_buffer.height, input_.serial, input_.completed_serial,
-                                           resources_));
+    const std::uint32_t total = std::uint32_t(samples_.size());
+    const std::uint32_t slots = settings_.shadows ? std::max(shadow_maps_->slots(), 1u) : std::max(total, 1u);
+    const bool slots_shared = total > slots;
+    const bool one_batch = !slots_shared && total <= shared::lights_per_batch &&
+                           (total == 0 || light_class(samples_.front().kind) == light_class(samples_.back().kind));
+    SUNFLECK_TRY(brute_force_->begin_frame(g_buffer.width, g_buffer.height, !one_batch, input_.serial,
+                                           input_.completed_serial, resources_));
     counters_.clamped_flux = brute_force_->clamped().flux;
     counters_.clamped_irradiance = brute_force_->clamped().mean_irradiance;
     BruteForceOptions options;
@@ -248,9 +253,6 @@ Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::
     options.filter = settings_.shadow_filter;
     options.count_clamped = settings_.count_clamped;
 
-    const std::uint32_t total = std::uint32_t(samples_.size());
-    const std::uint32_t slots = settings_.shadows ? std::max(shadow_maps_->slots(), 1u) : std::max(total, 1u);
-    const bool slots_shared = total > slots;
     ShadowCounters shadow_counters;
     std::uint32_t first = 0;
     // With more samples than slots, groups of samples take turns: their maps are drawn, used and overwritten.

@@ -49,24 +49,41 @@ float map_value(uint slot, ivec2 texel) {
     return float((place & 1) != 0 ? word >> 16 : word & 0xffffu) / 65535.0;
 }
 
+vec2 map_place(vec2 uv) { return (uv * 0.5 + 0.5) * float(constants.map_resolution); }
+ivec2 inside_map(ivec2 texel) { return clamp(texel, ivec2(0), ivec2(int(constants.map_resolution) - 1)); }
+
 // 1 if nothing in the map is nearer to the light than the receiver, whose stored value with its bias is `receiver`.
-float visibility(uint slot, vec2 uv, float receiver, float filter_bias) {
-    const float resolution = float(constants.map_resolution);
-    const vec2 place = (uv * 0.5 + 0.5) * resolution;
-    const ivec2 last = ivec2(int(constants.map_resolution) - 1);
-    if (filtered == 0)
-        return receiver >= map_value(slot, clamp(ivec2(place), ivec2(0), last)) ? 1.0 : 0.0;
-    // Bilinear blend of the four nearest texels' answers; their centres are up to three times as far as the nearest.
-    const vec2 corner = floor(place - 0.5);
-    const vec2 weight = place - 0.5 - corner;
-    const ivec2 texel = ivec2(corner);
-    const float biased = receiver + 2.0 * filter_bias;
+float visibility(uint slot, vec2 uv, float receiver) {
+    return receiver >= map_value(slot, inside_map(ivec2(map_place(uv)))) ? 1.0 : 0.0;
+}
+
+float blend(vec4 lit, vec2 weight) { return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y); }
+
+// The same from the four nearest texels, for the parallel light of an orthographic map.
+float filtered_visibility(uint slot, vec2 uv, float receiver) {
+    const vec2 place = map_place(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(place));
     vec4 lit;
-    lit.x = biased >= map_value(slot, clamp(texel, ivec2(0), last)) ? 1.0 : 0.0;
-    lit.y = biased >= map_value(slot, clamp(texel + ivec2(1, 0), ivec2(0), last)) ? 1.0 : 0.0;
-    lit.z = biased >= map_value(slot, clamp(texel + ivec2(0, 1), ivec2(0), last)) ? 1.0 : 0.0;
-    lit.w = biased >= map_value(slot, clamp(texel + ivec2(1, 1), ivec2(0), last)) ? 1.0 : 0.0;
-    return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y);
+    [[unroll]] for (int i = 0; i < 4; ++i)
+        lit[i] = receiver >= map_value(slot, inside_map(corner + ivec2(i & 1, i >> 1))) ? 1.0 : 0.0;
+    return blend(lit, place - floor(place));
+}
+
+// The same for octahedral maps: each texel against the receiver's plane at the texel's centre.
+float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_space_normal, float plane_distance,
+                                float bias, float reach) {
+    const vec2 place = map_place(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(place));
+    vec4 lit;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
+        const vec2 centre_uv = (vec2(texel) + 0.5) / float(constants.map_resolution) * 2.0 - 1.0;
+        const vec3 centre =
+            light_class == light_class_surface ? hemisphere_direction(centre_uv) : sphere_direction(centre_uv);
+        const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
+        lit[i] = min(value, 1.0) + depth_step(map_bits) >= map_value(slot, texel) ? 1.0 : 0.0;
+    }
+    return blend(lit, place - floor(place));
 }
 
 // Irradiance of one light at one pixel as a factor of its intensity; y: what the bound of the geometry term took away.
@@ -82,7 +99,11 @@ vec2 light_factor(LightRow light, Pixel pixel) {
         if (maps != maps_none) {
             const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
             const float bias = orthographic_bias(resolution, geometric_cosine);
-            factor *= visibility(slot, uv, 1.0 - along * light.normal_offset.w + bias + depth_step(map_bits), bias);
+            const float receiver = 1.0 - along * light.normal_offset.w + depth_step(map_bits);
+            if (filtered == 0)
+                factor *= visibility(slot, uv, receiver + bias);
+            else
+                factor *= filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
         }
         return vec2(factor, 0.0);
     }
@@ -107,8 +128,14 @@ vec2 light_factor(LightRow light, Pixel pixel) {
         const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
         const float reach = hemisphere ? hemisphere_texel_reach(resolution) : sphere_texel_reach(resolution);
         const float bias = perspective_bias(reach, plane_distance, place.z);
-        const float receiver = min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits);
-        factor *= visibility(slot, place.xy, receiver, bias);
+        if (filtered == 0) {
+            factor *= visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits));
+        } else {
+            const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
+                                     dot(light.bitangent.xyz, pixel.geometric_normal),
+                                     dot(light.normal_offset.xyz, pixel.geometric_normal));
+            factor *= filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach);
+        }
     }
     return factor;
 }
@@ -124,7 +151,7 @@ float pixel_area(Pixel pixel, vec2 centre) {
 }
 
 void main() {
-    const int row = int(gl_GlobalInvocationID.y);
+    const int row = int(constants.first_row + gl_GlobalInvocationID.y);
     const int first_column = int(gl_WorkGroupID.x * kernel_lanes * pixels + gl_LocalInvocationID.x);
     Pixel surface[pixels];
     bool covered[pixels];
@@ -144,7 +171,7 @@ void main() {
         sum[k] = vec3(0.0);
         clamped[k] = 0.0;
         if (constants.first_batch == 0u && pixel == inside) {
-            const vec4 before = accumulation[row * int(constants.width) + pixel.x];
+            const vec4 before = accumulation[(row - int(constants.first_row)) * int(constants.width) + pixel.x];
             sum[k] = before.rgb;
             clamped[k] = before.a;
         }
@@ -169,7 +196,7 @@ void main() {
         const ivec2 pixel = ivec2(first_column + int(k * kernel_lanes), row);
         if (pixel.x < int(constants.width) && pixel.y < int(constants.height)) {
             if (constants.last_batch == 0u)
-                accumulation[pixel.y * int(constants.width) + pixel.x] = vec4(sum[k], clamped[k]);
+                accumulation[(row - int(constants.first_row)) * int(constants.width) + pixel.x] = vec4(sum[k], clamped[k]);
             else
                 imageStore(output_image, pixel, covered[k] ? vec4(sum[k], 1.0) : vec4(0.0));
             if (count_clamped != 0 && covered[k]) {
@@ -187,6 +214,6 @@ void main() {
         vec4 total = vec4(0.0);
         for (int i = 0; i < 64; ++i)
             total += group_sums[i];
-        clamped_sums[gl_WorkGroupID.y * constants.group_columns + gl_WorkGroupID.x] = total;
+        clamped_sums[(constants.first_row / kernel_rows + gl_WorkGroupID.y) * constants.group_columns + gl_WorkGroupID.x] = total;
     }
 }

@@ -39,7 +39,13 @@ KernelShape BruteForce::default_shape(const gpu::DeviceTraits& traits) {
     return shape;
 }
 
-Status BruteForce::begin_frame(std::uint32_t width, std::uint32_t height, std::uint64_t serial,
+std::uint32_t BruteForce::band_rows(std::uint32_t width) const {
+    const std::uint64_t rows = device_.traits().max_storage_range / (std::uint64_t(width) * sizeof(vec4));
+    // A multiple of 16 rows keeps the offsets of bands on every device's alignment (16 rows x 16 bytes = 256).
+    return std::uint32_t(std::clamp<std::uint64_t>(rows / 16 * 16, 16, 1u << 20));
+}
+
+Status BruteForce::begin_frame(std::uint32_t width, std::uint32_t height, bool accumulates, std::uint64_t serial,
                                std::uint64_t completed_serial, gpu::FrameResources& resources) {
     serial_ = serial;
     for (const Readback& readback : readbacks_) {
@@ -54,7 +60,7 @@ Status BruteForce::begin_frame(std::uint32_t width, std::uint32_t height, std::u
         }
         clamped_ = {flux, pixels > 0 ? irradiance / pixels : 0.0, readback.serial};
     }
-    const VkDeviceSize bytes = VkDeviceSize(width) * height * sizeof(vec4);
+    const VkDeviceSize bytes = accumulates ? VkDeviceSize(width) * height * sizeof(vec4) : 16;
     if (!accumulation_ || accumulation_.size() < bytes) {
         if (accumulation_)
             resources.retire(std::move(accumulation_));
@@ -126,31 +132,42 @@ Status BruteForce::add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer
         pass.write(accumulation, gpu::Usage::storage_read_write)
             .write(sums, gpu::Usage::storage_read_write)
             .write(output, gpu::Usage::storage_write)
-            .execute([this, kernel, camera, batch, constants, g_buffer, output, &maps,
-                      &readback_sums = readback.sums](gpu::PassContext& context) -> Status {
-                const bool has_maps = bool(maps.texels());
-                const gpu::Binding rows = gpu::Binding::slice(batch.rows);
-                const gpu::Buffer& texels = has_maps ? maps.texels() : unused_texels_;
-                const gpu::Binding bindings[] = {
-                    gpu::Binding::slice(camera),
-                    gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                    gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                    rows,
-                    rows,
-                    gpu::Binding::texels(texels),
-                    gpu::Binding::range(texels, 0, std::min(texels.size(), device_.traits().max_storage_range)),
-                    gpu::Binding::buffer(accumulation_),
-                    gpu::Binding::storage_image(context.graph.view(output)),
-                    gpu::Binding::buffer(readback_sums)};
-                SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-                context.resources.push(context.commands, *kernel, constants);
-                context.device.vk.vkCmdDispatch(context.commands, constants.group_columns,
-                                                group_rows(constants.height), 1);
-                return {};
+            .execute([this, kernel, camera, batch, constants, g_buffer, output, &maps, &readback_sums = readback.sums](
+                         gpu::PassContext& context) {
+                return dispatch(context, *kernel, camera, batch, constants, g_buffer, output, maps, readback_sums);
             });
     }
     if (options.count_clamped && last)
         graph.add_pass("clamped flux").read(sums, gpu::Usage::host_read).keep();
+    return {};
+}
+
+Status BruteForce::dispatch(gpu::PassContext& context, const gpu::Pipeline& kernel, const gpu::UploadSlice& camera,
+                            const LightBatch& batch, shared::BruteForceConstants constants,
+                            const GBufferInput& g_buffer, gpu::ResourceId output, const ShadowMaps& maps,
+                            const gpu::Buffer& clamped_sums) const {
+    const gpu::Buffer& texels = maps.texels() ? maps.texels() : unused_texels_;
+    const bool accumulates = constants.first_batch == 0 || constants.last_batch == 0;
+    const std::uint32_t rows_at_once = accumulates ? band_rows(constants.width) : constants.height;
+    for (constants.first_row = 0; constants.first_row < constants.height; constants.first_row += rows_at_once) {
+        const std::uint32_t rows = std::min(rows_at_once, constants.height - constants.first_row);
+        const VkDeviceSize row_bytes = VkDeviceSize(constants.width) * sizeof(vec4);
+        const gpu::Binding bindings[] = {
+            gpu::Binding::slice(camera),
+            gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
+            gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
+            gpu::Binding::slice(batch.rows),
+            gpu::Binding::slice(batch.rows),
+            gpu::Binding::texels(texels),
+            gpu::Binding::range(texels, 0, std::min(texels.size(), device_.traits().max_storage_range)),
+            accumulates ? gpu::Binding::range(accumulation_, row_bytes * constants.first_row, row_bytes * rows)
+                        : gpu::Binding::range(accumulation_, 0, 16),
+            gpu::Binding::storage_image(context.graph.view(output)),
+            gpu::Binding::buffer(clamped_sums)};
+        SUNFLECK_TRY(context.resources.bind(context.commands, kernel, bindings));
+        context.resources.push(context.commands, kernel, constants);
+        context.device.vk.vkCmdDispatch(context.commands, constants.group_columns, group_rows(rows), 1);
+    }
     return {};
 }
 

@@ -46,8 +46,9 @@ public:
     void set_shape(const KernelShape& shape) { shape_ = shape; }
     const KernelShape& shape() const { return shape_; }
 
-    // Called once a frame before add_pass; sizes the accumulation buffer and collects finished counters.
-    Status begin_frame(std::uint32_t width, std::uint32_t height, std::uint64_t serial, std::uint64_t completed_serial,
+    // Called once a frame before add_pass; sizes the accumulation buffer (needed only where `accumulates`: the frame has
+    // more than one batch) and collects finished counters.
+    Status begin_frame(std::uint32_t width, std::uint32_t height, bool accumulates, std::uint64_t serial, std::uint64_t completed_serial,
                        gpu::FrameResources& resources);
 
     // Adds one dispatch for each batch. `first` and `last` tell where this call stands among those of the frame: sums
@@ -60,8 +61,15 @@ public:
 
 private:
     BruteForce(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    // Large pictures go in bands of rows, so that a band's sums fit one storage binding.
+    Status dispatch(gpu::PassContext& context, const gpu::Pipeline& kernel, const gpu::UploadSlice& camera,
+                    const LightBatch& batch, shared::BruteForceConstants constants, const GBufferInput& g_buffer,
+                    gpu::ResourceId output, const ShadowMaps& maps, const gpu::Buffer& clamped_sums) const;
     Result<const gpu::Pipeline*> pipeline(std::uint32_t light_class, const BruteForceOptions& options,
                                           std::uint32_t map_bits);
+
+    // Rows of a picture whose sums one storage binding can hold.
+    std::uint32_t band_rows(std::uint32_t width) const;
 
     struct Readback {
         gpu::Buffer sums;

@@ -21,10 +21,11 @@ struct BruteForceConstants {
     uint first_batch; // 1: sums start at zero, otherwise they go on from the accumulation buffer
     uint last_batch;  // 1: the result goes to the output image, otherwise to the accumulation buffer
     uint group_columns;
+    uint first_row; // of the picture, that this dispatch starts at; a multiple of kernel_rows
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::BruteForceConstants) == 28);
+static_assert(sizeof(sunfleck::shared::BruteForceConstants) == 32);
 #endif
 #endif

@@ -75,6 +75,36 @@ SHARED_FUNCTION float orthographic_bias(float resolution, float cosine) {
     return 0.70710678f / resolution * min(1.0f / max(cosine, 1e-9f), shadow_slope_limit);
 }
 
+// --- Filtered look-up ----------------------------------------------------------------------------------------------
+// Blends the four nearest texels' answers. Each texel is held against the receiver's own plane at that texel's centre,
+// which is exact for planes; it may differ from the receiver's value by at most `shadow_filter_window` times the bias
+// above (the four centres are up to three times as far as the nearest), and a quarter of a head-on bias is added for
+// surfaces that are not quite planes.
+SHARED_CONSTANT float shadow_filter_window = 3.0f;
+SHARED_CONSTANT float shadow_filter_slack = 0.25f;
+
+// Directions with w = 1 through a place of the map.
+SHARED_FUNCTION vec3 hemisphere_direction(vec2 uv) {
+    vec2 p = vec2(uv.x + uv.y, uv.x - uv.y) * 0.5f;
+    return vec3(p, 1.0f - abs(p.x) - abs(p.y));
+}
+SHARED_FUNCTION vec3 sphere_direction(vec2 uv) {
+    vec3 q = vec3(uv, 1.0f - abs(uv.x) - abs(uv.y));
+    float fold = max(-q.z, 0.0f);
+    q.x += q.x >= 0.0f ? -fold : fold;
+    q.y += q.y >= 0.0f ? -fold : fold;
+    return q;
+}
+
+// Value that a receiver is held against at a texel centre with direction `centre`. `receiver`: near / w at the receiver;
+// `normal`: its normal in light space; `plane_distance`: of the light to its plane; `bias`, `texel_reach`: as above.
+SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float plane_distance, vec3 centre, float bias,
+                                           float texel_reach) {
+    float window = shadow_filter_window * bias;
+    float on_plane = -shadow_near * dot(normal, centre) / max(plane_distance, 1e-9f);
+    return clamp(on_plane, receiver - window, receiver + window) + shadow_filter_slack * texel_reach * receiver;
+}
+
 // Largest error of a stored value: half a step of 16-bit depth for itself, and rounding of the receiver's.
 SHARED_FUNCTION float depth_step(uint bits) { return bits == 16u ? 1.0f / 65535.0f : 4e-7f; }
 

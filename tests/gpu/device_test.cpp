@@ -1,0 +1,208 @@
+// Device, memory, faults, determinism, shader replacement.
+#include "tests/support/gpu_world.h"
+
+#include "engine/core/jobs.h"
+#include "engine/core/random.h"
+#include "engine/shader_compiler/shader_compiler.h"
+
+#include <fstream>
+
+namespace sunfleck::tests {
+namespace {
+
+class DeviceTest : public GpuTest {};
+
+TEST_F(DeviceTest, UnknownDevicesAreNamedInOneMessage) {
+    gpu::DeviceOptions options;
+    options.device = "no such device";
+    const auto device = gpu::Device::create(options);
+    ASSERT_FALSE(device);
+    EXPECT_NE(device.error().message.find("no such device"), std::string::npos);
+    EXPECT_NE(device.error().message.find("0 '"), std::string::npos) << "it says which there are";
+}
+
+TEST_F(DeviceTest, TwoDevicesLiveSideBySide) {
+    auto other = gpu::Device::create({}).value();
+    gpu::HostDevice host{other->instance(), other->physical_device(), other->handle(), other->queue(),
+                         other->queue_family(), nullptr};
+    auto adopted = gpu::Device::adopt(host);
+    ASSERT_TRUE(adopted) << adopted.error().message;
+    auto renderer = viewer::SceneRenderer::create(**adopted);
+    ASSERT_TRUE(renderer) << renderer.error().message;
+    GpuWorld world(assets::make_cornell, "view");
+    world.render();
+}
+
+TEST_F(DeviceTest, MemoryIsHandedOutWithoutOverlapAndGivenBack) {
+    const std::uint64_t before = device().memory().total();
+    RandomSequence random(SequenceKind::pseudo_random, 1, 1);
+    std::vector<gpu::Buffer> buffers;
+    std::vector<std::uint8_t> marks;
+    for (int step = 0; step < 2000; ++step) {
+        if (!buffers.empty() && random.next() < 0.45f) {
+            const std::size_t victim = std::size_t(random.next() * float(buffers.size()));
+            for (VkDeviceSize i = 0; i < buffers[victim].size(); ++i)
+                ASSERT_EQ(std::uint8_t(buffers[victim].mapped()[i]), marks[victim]);
+            buffers[victim] = std::move(buffers.back());
+            marks[victim] = marks.back();
+            buffers.pop_back();
+            marks.pop_back();
+            continue;
+        }
+        gpu::BufferDescription description;
+        description.name = "test";
+        description.size = 1 + VkDeviceSize(random.next() * 20000.0f);
+        description.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        description.memory = gpu::MemoryUse::upload;
+        buffers.push_back(gpu::Buffer::create(device(), description).value());
+        marks.push_back(std::uint8_t(step));
+        std::memset(buffers.back().mapped(), marks.back(), buffers.back().size());
+    }
+    EXPECT_GT(device().memory().usage().at("test"), 0u);
+    buffers.clear();
+    EXPECT_EQ(device().memory().total(), before);
+}
+
+// Function-table entries that fail on their n-th use.
+int calls_until_failure = 0;
+PFN_vkAllocateMemory true_allocate = nullptr;
+PFN_vkQueueSubmit2 true_submit = nullptr;
+
+VKAPI_ATTR VkResult VKAPI_CALL failing_allocate(VkDevice device, const VkMemoryAllocateInfo* info,
+                                                const VkAllocationCallbacks* callbacks, VkDeviceMemory* memory) {
+    if (--calls_until_failure < 0)
+        return VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return true_allocate(device, info, callbacks, memory);
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL failing_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* submits, VkFence fence) {
+    if (--calls_until_failure < 0)
+        return VK_ERROR_DEVICE_LOST;
+    return true_submit(queue, count, submits, fence);
+}
+
+TEST_F(DeviceTest, RunningOutOfMemoryIsOneClearMessageWhereverItHappens) {
+    int failures = 0;
+    for (int allowed = 0; allowed < 12; ++allowed) {
+        auto own = gpu::Device::create({}).value();
+        true_allocate = own->vk.vkAllocateMemory;
+        own->vk.vkAllocateMemory = failing_allocate;
+        calls_until_failure = allowed;
+        auto renderer = viewer::SceneRenderer::create(*own);
+        Status status;
+        if (!renderer) {
+            status = renderer.error();
+        } else {
+            assets::SceneBuilder builder((*renderer)->registry(), (*renderer)->meshes());
+            assets::make_cornell(builder);
+            scene::update_world_transforms((*renderer)->registry());
+            status = (*renderer)->upload_meshes();
+            viewer::FrameRequest request;
+            if (status)
+                status = (*renderer)->render_and_wait(request);
+        }
+        if (status)
+            continue;
+        ++failures;
+        EXPECT_NE(status.error().message.find("Not enough memory"), std::string::npos) << status.error().message;
+        EXPECT_NE(status.error().message.find("MiB of GPU memory for '"), std::string::npos) << status.error().message;
+    }
+    EXPECT_GT(failures, 3);
+}
+
+TEST_F(DeviceTest, ALostDeviceIsOneClearMessage) {
+    auto own = gpu::Device::create({}).value();
+    auto renderer = viewer::SceneRenderer::create(*own).value();
+    assets::SceneBuilder builder(renderer->registry(), renderer->meshes());
+    assets::make_cornell(builder);
+    scene::update_world_transforms(renderer->registry());
+    ASSERT_TRUE(renderer->upload_meshes());
+    true_submit = own->vk.vkQueueSubmit2;
+    own->vk.vkQueueSubmit2 = failing_submit;
+    calls_until_failure = 1;
+    viewer::FrameRequest request;
+    request.width = request.height = 16;
+    ASSERT_TRUE(renderer->render_and_wait(request));
+    const Status status = renderer->render_and_wait(request);
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().message.find("GPU stopped answering"), std::string::npos) << status.error().message;
+    own->vk.vkQueueSubmit2 = true_submit;
+}
+
+TEST_F(DeviceTest, TwoRunsAndOneAndTwoThreadsGiveTheSameBits) {
+    const auto run = [](std::size_t threads) {
+        const ThreadLimit limit(threads);
+        GpuWorld world(assets::make_four_pillars, "bench_1");
+        world.request.tone_map = false;
+        world.request.view = shared::view_final;
+        gi::Settings settings;
+        settings.lights = 200;
+        settings.shadow_map_resolution = 128;
+        world.set(settings);
+        io::Picture picture;
+        for (std::uint64_t step = 0; step < 4; ++step) {
+            world.request.step = step;
+            picture = world.picture();
+        }
+        return picture;
+    };
+    const io::Picture one = run(1), two = run(2), again = run(2);
+    EXPECT_EQ(std::memcmp(one.pixels.data(), two.pixels.data(), one.pixels.size() * sizeof(vec4)), 0);
+    EXPECT_EQ(std::memcmp(two.pixels.data(), again.pixels.data(), one.pixels.size() * sizeof(vec4)), 0);
+}
+
+TEST_F(DeviceTest, OddPictureSizes) {
+    GpuWorld world(assets::make_cornell, "view");
+    gi::Settings settings;
+    settings.lights = 8;
+    settings.shadow_map_resolution = 32;
+    world.set(settings);
+    for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(1u, 300u), std::pair(257u, 3u), std::pair(4096u, 4096u)}) {
+        world.request.width = width;
+        world.request.height = height;
+        const io::Picture picture = world.picture();
+        EXPECT_EQ(picture.pixels.size(), std::size_t(width) * height);
+    }
+    world.request.width = 1u << 20;
+    const Status status = world.renderer->render_and_wait(world.request);
+    ASSERT_FALSE(status);
+    EXPECT_NE(status.error().message.find("limit"), std::string::npos);
+}
+
+TEST_F(DeviceTest, ACameraInsideAWallStillGivesAPicture) {
+    GpuWorld world(assets::make_four_pillars);
+    world.request.camera.position = vec3(1.7f, 1.0f, 1.7f); // in a pillar
+    world.request.camera.target = vec3(0.0f, 1.0f, 0.0f);
+    for (const vec4& pixel : world.picture().pixels)
+        ASSERT_TRUE(is_finite(vec3(pixel)));
+}
+
+TEST_F(DeviceTest, ShadersAreReplacedAtRunTimeAndBrokenOnesKeepTheOld) {
+    GpuWorld world(assets::make_cornell, "view");
+    world.request.view = shared::view_albedo;
+    const io::Picture before = world.picture();
+    const std::string path = "engine/render/composition.comp";
+    std::ifstream file(std::string(SUNFLECK_SOURCE_DIR) + "/" + path);
+    std::string source((std::istreambuf_iterator<char>(file)), {});
+    const std::string line = "imageStore(output_image, pixel, value);";
+    source.replace(source.find(line), line.size(), "imageStore(output_image, pixel, value * 2.0);");
+    const auto words = shader_compiler::compile(path, source, SUNFLECK_SOURCE_DIR);
+    ASSERT_TRUE(words) << words.error().message;
+    ASSERT_TRUE(world.renderer->replace_shader(path, *words));
+    const io::Picture after = world.picture();
+    int compared = 0;
+    for (std::size_t i = 0; i < before.pixels.size(); ++i)
+        if (before.pixels[i].w > 0.0f) {
+            EXPECT_EQ(after.pixels[i], before.pixels[i] * 2.0f);
+            ++compared;
+        }
+    EXPECT_GT(compared, 100);
+    const auto broken = shader_compiler::compile(path, "#version 460\nvoid main() { nonsense }\n", SUNFLECK_SOURCE_DIR);
+    ASSERT_FALSE(broken);
+    EXPECT_NE(broken.error().message.find("composition.comp"), std::string::npos);
+    EXPECT_NE(broken.error().message.find("nonsense"), std::string::npos);
+    EXPECT_FALSE(world.renderer->replace_shader("no/such.comp", *words));
+}
+
+} // namespace
+} // namespace sunfleck::tests

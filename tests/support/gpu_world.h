@@ -1,0 +1,80 @@
+// A device under validation for the whole test program, and a scene with its renderer.
+#pragma once
+
+#include "assets/test_rooms.h"
+#include "viewer/scene_renderer.h"
+
+#include <gtest/gtest.h>
+
+namespace sunfleck::tests {
+
+// Made once; every test that uses it checks that validation stayed silent.
+inline gpu::Device& device() {
+    static const std::unique_ptr<gpu::Device> instance = [] {
+        gpu::DeviceOptions options;
+        options.validation = true;
+        auto made = gpu::Device::create(options);
+        if (!made) {
+            std::fprintf(stderr, "%s\n", made.error().message.c_str());
+            std::abort();
+        }
+        return std::move(made).value();
+    }();
+    return *instance;
+}
+
+class GpuTest : public testing::Test {
+protected:
+    void SetUp() override { messages_ = device().validation_messages(); }
+    void TearDown() override { EXPECT_EQ(device().validation_messages(), messages_) << "validation printed something"; }
+
+private:
+    int messages_ = 0;
+};
+
+struct GpuWorld {
+    GpuWorld() {
+        auto made = viewer::SceneRenderer::create(device());
+        if (!made) {
+            ADD_FAILURE() << made.error().message;
+            std::abort();
+        }
+        renderer = std::move(made).value();
+        request.width = 64;
+        request.height = 48;
+        request.view = shared::view_irradiance;
+        request.tone_map = false;
+    }
+    explicit GpuWorld(void (*make)(assets::SceneBuilder&), const std::string& camera = "") : GpuWorld() {
+        assets::SceneBuilder builder(renderer->registry(), renderer->meshes());
+        make(builder);
+        finish(camera);
+    }
+    void finish(const std::string& camera = "") {
+        scene::update_world_transforms(renderer->registry());
+        EXPECT_TRUE(renderer->upload_meshes());
+        const Bounds bounds = viewer::scene_bounds(renderer->registry(), renderer->meshes());
+        auto view = viewer::find_camera(renderer->registry(), bounds, camera);
+        EXPECT_TRUE(view);
+        request.camera = *view;
+    }
+    void set(const gi::Settings& settings) {
+        const Status status = renderer->lighting().set_settings(settings);
+        EXPECT_TRUE(status) << status.error().message;
+    }
+    void render() {
+        const Status status = renderer->render_and_wait(request);
+        ASSERT_TRUE(status) << status.error().message;
+    }
+    io::Picture picture() {
+        render();
+        auto result = renderer->read_back();
+        EXPECT_TRUE(result);
+        return result ? *result : io::Picture{};
+    }
+
+    std::unique_ptr<viewer::SceneRenderer> renderer;
+    viewer::FrameRequest request;
+};
+
+} // namespace sunfleck::tests
