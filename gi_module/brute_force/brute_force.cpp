@@ -35,7 +35,7 @@ KernelShape BruteForce::default_shape(const gpu::DeviceTraits& traits) {
     KernelShape shape;
     // On a CPU the light's loads cost as much as its arithmetic and are shared by an invocation's pixels; a GPU wants
     // many small invocations instead.
-    shape.pixels = traits.software ? 8 : 1;
+    shape.pixels = traits.software ? 16 : 1;
     return shape;
 }
 

@@ -1,0 +1,133 @@
+#include "editor/command_line/bench_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace sunfleck::command_line {
+namespace {
+
+std::string cell(const Json& value) {
+    if (value.is_string())
+        return value.get<std::string>();
+    if (!value.is_number_float())
+        return value.dump();
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value.get<double>());
+    return text;
+}
+
+} // namespace
+
+void BenchTable::print() const {
+    if (rows.empty())
+        return;
+    std::vector<std::size_t> widths;
+    for (const auto& [key, value] : rows[0].items()) {
+        std::size_t width = key.size();
+        for (const Json& row : rows)
+            width = std::max(width, cell(row[key]).size());
+        widths.push_back(width);
+    }
+    std::size_t column = 0;
+    for (const auto& [key, value] : rows[0].items())
+        std::printf("%-*s  ", int(widths[column++]), key.c_str());
+    std::printf("\n");
+    for (const Json& row : rows) {
+        column = 0;
+        for (const auto& [key, value] : row.items())
+            std::printf("%-*s  ", int(widths[column++]), cell(value).c_str());
+        std::printf("\n");
+    }
+    for (const auto& [key, value] : notes.items())
+        std::printf("%s: %s\n", key.c_str(), cell(value).c_str());
+}
+
+Json BenchTable::json(const gpu::Device* device) const {
+    Json json = {{"suite", suite}};
+    if (device != nullptr) {
+        json["device"] = device->traits().name;
+        json["driver"] = device->traits().driver;
+    }
+    json["rows"] = rows;
+    json["notes"] = notes;
+    return json;
+}
+
+std::string BenchTable::csv() const {
+    std::ostringstream text;
+    const char* separator = "";
+    if (!rows.empty())
+        for (const auto& [key, value] : rows[0].items()) {
+            text << separator << key;
+            separator = ",";
+        }
+    text << '\n';
+    for (const Json& row : rows) {
+        separator = "";
+        for (const auto& [key, value] : row.items()) {
+            text << separator << (value.is_string() ? value.get<std::string>() : value.dump());
+            separator = ",";
+        }
+        text << '\n';
+    }
+    return text.str();
+}
+
+double log_log_slope(const std::vector<std::pair<double, double>>& points) {
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (const auto& [x, y] : points) {
+        if (x <= 0 || y <= 0)
+            continue;
+        const double lx = std::log(x), ly = std::log(y);
+        n += 1, sx += lx, sy += ly, sxx += lx * lx, sxy += lx * ly;
+    }
+    const double spread = n * sxx - sx * sx;
+    return spread > 0 ? (n * sxy - sx * sy) / spread : 0.0;
+}
+
+std::string plot_svg(const std::string& title, const std::string& x_label, const std::string& y_label,
+                     const std::vector<PlotSeries>& series) {
+    constexpr double width = 640, height = 420, left = 70, right = 20, top = 40, bottom = 55;
+    double x0 = 1e30, x1 = 0, y0 = 1e30, y1 = 0;
+    for (const PlotSeries& s : series)
+        for (const auto& [x, y] : s.points) {
+            x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+        }
+    if (x1 <= x0)
+        x1 = x0 * 2;
+    y0 *= 0.8, y1 *= 1.25;
+    const auto px = [&](double x) { return left + (width - left - right) * std::log(x / x0) / std::log(x1 / x0); };
+    const auto py = [&](double y) { return height - bottom - (height - top - bottom) * std::log(y / y0) / std::log(y1 / y0); };
+    std::ostringstream svg;
+    svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height
+        << "\" font-family=\"sans-serif\" font-size=\"12\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
+        << "<text x=\"" << width / 2 << "\" y=\"22\" text-anchor=\"middle\" font-size=\"15\">" << title << "</text>"
+        << "<text x=\"" << width / 2 << "\" y=\"" << height - 12 << "\" text-anchor=\"middle\">" << x_label << "</text>"
+        << "<text transform=\"translate(16," << height / 2 << ") rotate(-90)\" text-anchor=\"middle\">" << y_label << "</text>"
+        << "<path d=\"M" << left << " " << top << "V" << height - bottom << "H" << width - right << "\" fill=\"none\" stroke=\"#444\"/>";
+    for (double x = std::pow(2.0, std::ceil(std::log2(x0))); x <= x1 * 1.001; x *= 2)
+        svg << "<text x=\"" << px(x) << "\" y=\"" << height - bottom + 18 << "\" text-anchor=\"middle\">" << x << "</text>"
+            << "<path d=\"M" << px(x) << " " << height - bottom << "v5\" stroke=\"#444\"/>";
+    for (double decade = std::pow(10.0, std::floor(std::log10(y0))); decade <= y1; decade *= 10)
+        for (const double m : {1.0, 2.0, 5.0})
+            if (const double y = decade * m; y >= y0 && y <= y1)
+                svg << "<text x=\"" << left - 8 << "\" y=\"" << py(y) + 4 << "\" text-anchor=\"end\">" << y << "</text>"
+                    << "<path d=\"M" << left << " " << py(y) << "H" << width - right << "\" stroke=\"#ddd\"/>";
+    static const char* colours[] = {"#c0392b", "#2471a3", "#239b56", "#b7950b", "#7d3c98"};
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        const char* colour = colours[i % 5];
+        svg << "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" << colour << "\" points=\"";
+        for (const auto& [x, y] : series[i].points)
+            svg << px(x) << "," << py(y) << " ";
+        svg << "\"/>";
+        for (const auto& [x, y] : series[i].points)
+            svg << "<circle cx=\"" << px(x) << "\" cy=\"" << py(y) << "\" r=\"3\" fill=\"" << colour << "\"/>";
+        svg << "<text x=\"" << width - right - 8 << "\" y=\"" << top + 16 * double(i + 1)
+            << "\" text-anchor=\"end\" fill=\"" << colour << "\">" << series[i].name << "</text>";
+    }
+    svg << "</svg>\n";
+    return svg.str();
+}
+
+} // namespace sunfleck::command_line
