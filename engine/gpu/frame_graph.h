@@ -30,6 +30,8 @@ enum class Usage {
     indirect_read,
     transfer_source,
     transfer_destination,
+    blit_source,
+    blit_destination,
     host_read,
     present,
 };
