@@ -4,6 +4,7 @@
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
 #include "gi_module/reference/path_tracer.h"
+#include "gi_module/reference/surface_distance.h"
 
 #include <chrono>
 #include <cmath>
@@ -184,7 +185,8 @@ Result<BenchTable> bench_shadow_maps(const BenchOptions& options) {
     return table;
 }
 
-// Error against the reference over the number of samples, five seeds each.
+// Error against the reference over the number of samples, five seeds each, over the pixels that are farther from other
+// surfaces than 1/sqrt(G_max) at the smallest count.
 Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<PlotSeries>& plot) {
     using namespace gi::reference;
     constexpr Size size{64, 48};
@@ -204,6 +206,9 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
         reference.view = ReferenceView::irradiance;
         Accumulation truth;
         tracer.accumulate(truth, bench->start, reference, 4096);
+        const std::vector<float> distances = surface_distances(renderer.rays(), bench->start, size.width, size.height);
+        float clear = 0.0f; // pixels nearer to other surfaces than this are left out, at every count alike
+        renderer.lighting().brute_force().set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
         PlotSeries series{scene, {}};
         Progress progress(std::string("convergence ") + scene);
         for (std::uint32_t lights = 256; lights <= 16384; lights *= 2) {
@@ -217,9 +222,11 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
                 settings.shadow_map_resolution = 128;
                 SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 0, 1, false));
                 SUNFLECK_ASSIGN(const io::Picture picture, renderer.read_back());
+                if (clear == 0.0f)
+                    clear = 1.0f / std::sqrt(renderer.lighting().geometry_bound());
                 double squares = 0, values = 0;
                 for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-                    if (picture.pixels[i].w > 0 && truth.covered[i])
+                    if (picture.pixels[i].w > 0 && truth.covered[i] && distances[i] > clear)
                         for (int c = 0; c < 3; ++c) {
                             const double d = double(picture.pixels[i][c]) - truth.sums[i * 3 + std::size_t(c)] / truth.samples;
                             squares += d * d;

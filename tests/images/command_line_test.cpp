@@ -1,0 +1,176 @@
+// The tool from outside: exit status, messages, files.
+#include "engine/core/file.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <sys/wait.h>
+
+namespace sunfleck {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int status;
+    std::string output; // standard output and error
+};
+
+Outcome shell(const std::string& command) {
+    Outcome outcome{-1, {}};
+    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+    char buffer[4096];
+    while (const std::size_t count = fread(buffer, 1, sizeof buffer, pipe))
+        outcome.output.append(buffer, count);
+    const int status = pclose(pipe);
+    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+}
+
+class CommandLine : public testing::Test {
+protected:
+    void SetUp() override {
+        folder = fs::path(testing::TempDir()) / ("sunfleck_tool_" + std::to_string(getpid()));
+        fs::create_directories(folder);
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    Outcome tool(const std::string& arguments, const std::string& before = "") {
+        return shell("cd " + folder.string() + " && " + before + " " SUNFLECK_TOOL " " + arguments);
+    }
+    // One line that starts with "error:" and says each of `words`.
+    void expect_clear_error(const Outcome& outcome, std::vector<std::string> words) {
+        EXPECT_NE(outcome.status, 0) << outcome.output;
+        EXPECT_LT(outcome.status, 128) << "crashed: " << outcome.output;
+        for (const std::string& word : words)
+            EXPECT_NE(outcome.output.find(word), std::string::npos) << "'" << word << "' in: " << outcome.output;
+    }
+    fs::path folder;
+};
+
+const std::string small = " --size 32x24 --lights 8 --warmup 0 --set shadow_map_resolution=32";
+
+TEST_F(CommandLine, RenderWritesThePictureAndStatistics) {
+    const Outcome outcome = tool("render cornell -o a.png --stats a.json --validation" + small);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_TRUE(outcome.output.empty()) << outcome.output;
+    const auto json = nlohmann::json::parse(read_file(folder / "a.json").value());
+    for (const char* key : {"device", "driver", "scene", "settings", "frames", "frame_ms", "cpu_ms", "gpu_ms", "counters", "memory_bytes"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_EQ(json["counters"]["light_samples"], 8);
+    EXPECT_EQ(json["counters"]["shadow_map_updates"], 8);
+    EXPECT_GT(json["gpu_ms"]["brute force"], 0.0);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
+}
+
+TEST_F(CommandLine, CompareOfAPictureWithItselfIsNothing) {
+    ASSERT_EQ(tool("render table_room -o a.exr --view irradiance" + small).status, 0);
+    const Outcome outcome = tool("compare a.exr a.exr --json --diff d.png");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const auto json = nlohmann::json::parse(outcome.output);
+    for (const char* key : {"mean_a", "mean_b", "mae", "max", "rmse", "relative_mse", "psnr", "ssim", "flip", "pixels", "left_out"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_EQ(json["max"], 0.0);
+    EXPECT_EQ(json["mean_a"], json["mean_b"]);
+    EXPECT_GT(json["mean_a"], 0.0);
+}
+
+TEST_F(CommandLine, TheSameBitsWithOneAndTwoRasterThreads) {
+    const std::string options = "render four_pillars --frames 2 --orbit 0.25" + small;
+    ASSERT_EQ(tool(options + " -o one.exr", "LP_NUM_THREADS=1").status, 0);
+    ASSERT_EQ(tool(options + " -o two.exr", "LP_NUM_THREADS=2").status, 0);
+    EXPECT_EQ(read_file(folder / "one.exr").value(), read_file(folder / "two.exr").value());
+}
+
+TEST_F(CommandLine, SizesFromOnePixelUp) {
+    EXPECT_EQ(tool("render cornell -o a.png --size 1x1 --lights 4 --warmup 0").status, 0);
+    for (const char* size : {"0x5", "5", "-3x4", "99999x99999", "5x5x5", "axb"})
+        expect_clear_error(tool(std::string("render cornell -o b.png --size ") + size), {"--size"});
+    EXPECT_FALSE(fs::exists(folder / "b.png"));
+}
+
+TEST_F(CommandLine, BadArgumentsGetOneMessage) {
+    expect_clear_error(tool("render no_such_scene -o a.png"), {"no_such_scene", "cornell"});
+    expect_clear_error(tool("render missing.glb -o a.png"), {"missing.glb"});
+    expect_clear_error(tool("render cornell -o a.jpg"), {"a.jpg", ".png"});
+    expect_clear_error(tool("render cornell -o a.png --no-such-flag"), {"--no-such-flag"});
+    expect_clear_error(tool("render cornell -o a.png --set clamp_scale=nan"), {"clamp_scale"});
+    expect_clear_error(tool("render cornell -o a.png --set no_such=1"), {"no_such", "shadow_map_resolution"});
+    expect_clear_error(tool("render cornell -o a.png --set shadow_map_bits=24"), {"16 or 32"});
+    expect_clear_error(tool("render cornell -o a.png --lights 65537"), {"--lights"});
+    expect_clear_error(tool("render cornell -o a.png --camera nowhere"), {"nowhere", "view"});
+    expect_clear_error(tool("render cornell -o a.png --camera 1,1,1,1,1,1,40"), {"--camera"});
+    expect_clear_error(tool("render cornell -o a.png --device no_such_device"), {"no_such_device"});
+    expect_clear_error(tool("render cornell -o no/such/folder/a.png" + small), {"a.png"});
+    expect_clear_error(tool("compare a.png b.png"), {"a.png"});
+    expect_clear_error(tool("bench no_such_suite"), {"no_such_suite"});
+    EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST_F(CommandLine, AFullDiskLeavesTheOldPicture) {
+    ASSERT_EQ(tool("render cornell -o a.png" + small).status, 0);
+    const std::string before = read_file(folder / "a.png").value();
+    for (const char* name : {"a.png", "b.exr"}) {
+        const Outcome outcome = shell("cd " + folder.string() + " && (ulimit -f 2; " SUNFLECK_TOOL " render cornell -o " +
+                                      std::string(name) + " --size 256x256 --lights 4 --warmup 0)");
+        expect_clear_error(outcome, {name});
+    }
+    EXPECT_EQ(read_file(folder / "a.png").value(), before);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1) << "no temporary file stays";
+}
+
+TEST_F(CommandLine, AnInterruptedReferenceGoesOn) {
+    const std::string options = "reference cornell --size 160x120 --spp 64 -o ";
+    ASSERT_EQ(tool(options + "whole.exr").status, 0);
+    const Outcome stopped = tool(options + "parts.exr", "timeout -s INT 0.7");
+    EXPECT_NE(stopped.status, 0) << stopped.output;
+    EXPECT_FALSE(fs::exists(folder / "parts.exr"));
+    ASSERT_TRUE(fs::exists(folder / "parts.exr.state")) << stopped.output;
+    // Another picture must not be continued from it.
+    expect_clear_error(tool("reference cornell --size 80x60 --spp 64 -o parts.exr"), {"parts.exr.state"});
+    const Outcome resumed = tool(options + "parts.exr");
+    ASSERT_EQ(resumed.status, 0) << resumed.output;
+    EXPECT_NE(resumed.output.find("going on from"), std::string::npos);
+    EXPECT_FALSE(fs::exists(folder / "parts.exr.state"));
+    EXPECT_EQ(read_file(folder / "whole.exr").value(), read_file(folder / "parts.exr").value());
+}
+
+TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
+    for (const char* command : {"", "render", "reference", "compare", "bench", "info"}) {
+        const Outcome outcome = tool(std::string(command) + " --help");
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_NE(outcome.output.find("Example:"), std::string::npos) << command;
+    }
+    const Outcome info = tool("info --json");
+    ASSERT_EQ(info.status, 0) << info.output;
+    EXPECT_TRUE(nlohmann::json::parse(info.output).contains("driver"));
+}
+
+TEST_F(CommandLine, TheDemoRunsHeadless) {
+    const Outcome outcome = shell("cd " + folder.string() + " && " SUNFLECK_DEMO " --headless --frames 3 --size 64x36 -o out --validation");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_TRUE(fs::exists(folder / "out/stats.json"));
+    EXPECT_TRUE(fs::exists(folder / "out/frame_00002.png"));
+}
+
+// The window under a virtual display: keys, resizing, a picture, a polite end.
+TEST_F(CommandLine, TheDemoRunsInAWindow) {
+    if (shell("command -v xvfb-run && command -v xdotool").status != 0)
+        GTEST_SKIP() << "xvfb and xdotool are not installed";
+    const std::string script = "cd " + folder.string() + "\n" SUNFLECK_DEMO
+        " --validation --size 160x90 --lights 8 & P=$!\n"
+        "for i in $(seq 100); do W=$(xdotool search --name Sunfleck | head -1); [ -n \"$W\" ] && break; sleep 0.2; done\n"
+        "sleep 1; xdotool windowfocus $W; for k in i s space f f i; do xdotool key $k; sleep 0.3; done\n"
+        "xdotool windowsize $W 300 300; sleep 0.5; xdotool windowsize $W 111 400; sleep 0.5\n"
+        "for i in $(seq 20); do xdotool key p; sleep 0.5; [ -f sunfleck.png ] && break; done\n"
+        "for i in $(seq 20); do xdotool key Escape; sleep 0.5; kill -0 $P 2>/dev/null || break; done\n"
+        "wait $P\n";
+    ASSERT_TRUE(write_file(folder / "drive.sh", script));
+    const Outcome outcome = shell("timeout 90 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_TRUE(fs::exists(folder / "sunfleck.png")) << outcome.output;
+}
+
+} // namespace
+} // namespace sunfleck

@@ -1,0 +1,134 @@
+// What "right" means: brute force with many samples is the path tracer's picture.
+#include "tests/support/gpu_world.h"
+
+#include "editor/command_line/metrics.h"
+#include "engine/simulation/path_movers.h"
+#include "gi_module/reference/path_tracer.h"
+#include "gi_module/reference/surface_distance.h"
+
+#include <cmath>
+
+namespace sunfleck::tests {
+namespace {
+
+using namespace gi::reference;
+
+class Truth : public GpuTest {};
+
+io::Picture reference_picture(GpuWorld& world, std::uint32_t samples) {
+    viewer::SceneRenderer& renderer = *world.renderer;
+    simulation::set_movers_to_step(renderer.registry(), 0);
+    EXPECT_TRUE(renderer.rays().update(renderer.registry(), renderer.meshes()));
+    const Bounds bounds = viewer::scene_bounds(renderer.registry(), renderer.meshes());
+    const PathTracer tracer(renderer.rays(), gi::collect_emitters(renderer.registry(), renderer.meshes(), bounds));
+    ReferenceSettings settings;
+    settings.width = world.request.width;
+    settings.height = world.request.height;
+    settings.view = ReferenceView::irradiance;
+    Accumulation accumulation;
+    tracer.accumulate(accumulation, world.request.camera, settings, samples);
+    io::Picture picture{settings.width, settings.height, {}};
+    for (std::size_t i = 0; i < accumulation.covered.size(); ++i)
+        picture.pixels.emplace_back(float(accumulation.sums[i * 3] / samples), float(accumulation.sums[i * 3 + 1] / samples),
+                                    float(accumulation.sums[i * 3 + 2] / samples), accumulation.covered[i] ? 1.0f : 0.0f);
+    return picture;
+}
+
+gi::Settings truth_settings(std::uint32_t lights, std::uint32_t seed) {
+    gi::Settings settings;
+    settings.lights = lights;
+    settings.seed = seed;
+    settings.direct_share = 0.5f;
+    settings.movers = gi::MoverHandling::as_static;
+    return settings;
+}
+
+// Mean irradiance within 1 %, relative MSE at most 0.01, over all pixels: also those near other surfaces, where the bound
+// of the geometry term acts. (Four thousand paths a pixel leave about 0.1 % of noise in the reference's mean.)
+void expect_truth(void (*make)(assets::SceneBuilder&)) {
+    GpuWorld world(make, "view");
+    world.request.width = 80;
+    world.request.height = 60;
+    const io::Picture truth = reference_picture(world, 4096);
+    world.set(truth_settings(16384, 1));
+    const io::Picture picture = world.picture();
+    const auto metrics = command_line::compare_pictures(picture, truth, true);
+    std::printf("mean %.4f of %.4f (%+.2f %%), relative MSE %.4f, %llu pixels\n", metrics.mean_a, metrics.mean_b,
+                100.0 * (metrics.mean_a / metrics.mean_b - 1.0), metrics.relative_mean_square_error,
+                (unsigned long long)metrics.pixels);
+    EXPECT_NEAR(metrics.mean_a / metrics.mean_b, 1.0, 0.01);
+    EXPECT_LE(metrics.relative_mean_square_error, 0.01);
+    EXPECT_GT(metrics.pixels, 3000u);
+}
+
+TEST_F(Truth, Cornell) { expect_truth(assets::make_cornell); }
+TEST_F(Truth, AreaRoom) { expect_truth(assets::make_area_room); }
+TEST_F(Truth, FourPillars) { expect_truth(assets::make_four_pillars); }
+
+// The error falls with the number of samples, five seeds each. The pixels are the same at every count: those farther from
+// other surfaces than 1/sqrt(G_max) at the smallest one, where no sample is ever clamped. (Nearer to other surfaces the
+// variance of point samples is unbounded but for the clamp, which rises with the count: there the slope is about -0.3.)
+TEST_F(Truth, ErrorFallsWithTheNumberOfSamples) {
+    GpuWorld world(assets::make_cornell, "view");
+    world.request.width = 48;
+    world.request.height = 36;
+    const io::Picture truth = reference_picture(world, 4096);
+    const std::vector<float> distances = surface_distances(world.renderer->rays(), world.request.camera, 48, 36);
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+    std::vector<std::uint8_t> counted;
+    std::size_t counted_pixels = 0;
+    world.renderer->lighting().brute_force().set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
+    for (const std::uint32_t lights : {256u, 1024u, 4096u, 16384u}) {
+        std::vector<double> errors;
+        for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+            gi::Settings settings = truth_settings(lights, seed);
+            settings.shadow_map_resolution = 128;
+            world.set(settings);
+            io::Picture picture = world.picture();
+            if (counted.empty())
+                for (const float distance : distances) {
+                    counted.push_back(distance > 1.0f / std::sqrt(world.renderer->lighting().geometry_bound()));
+                    counted_pixels += counted.back();
+                }
+            for (std::size_t i = 0; i < counted.size(); ++i)
+                if (!counted[i])
+                    picture.pixels[i].w = 0.0f;
+            errors.push_back(command_line::compare_pictures(picture, truth, true).root_mean_square_error);
+        }
+        std::sort(errors.begin(), errors.end());
+        const double x = std::log(double(lights)), y = std::log(errors[2]);
+        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+        std::printf("%u samples: RMSE %.4f\n", lights, errors[2]);
+    }
+    const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    std::printf("log-log slope %.3f\n", slope);
+    EXPECT_LE(slope, -0.4);
+    EXPECT_GT(counted_pixels, 300u);
+}
+
+TEST(Metrics, KnownDifferencesGiveKnownNumbers) {
+    io::Picture a{32, 32, std::vector<vec4>(1024, vec4(0.5f, 0.5f, 0.5f, 1.0f))}, b = a;
+    auto m = command_line::compare_pictures(a, b, false);
+    EXPECT_EQ(m.mean_absolute_error, 0.0);
+    EXPECT_EQ(m.peak_signal_to_noise, 999.0);
+    EXPECT_NEAR(m.structural_similarity, 1.0, 1e-6);
+    EXPECT_NEAR(m.flip, 0.0, 1e-3);
+    for (std::size_t i = 0; i < 512; ++i)
+        a.pixels[i] += vec4(0.1f, 0.1f, 0.1f, 0.0f);
+    a.pixels[1023].w = 0.0f;
+    m = command_line::compare_pictures(a, b, false);
+    EXPECT_EQ(m.left_out, 1u);
+    EXPECT_NEAR(m.mean_absolute_error, 0.1 * 512 / 1023, 1e-6);
+    EXPECT_NEAR(m.root_mean_square_error, 0.1 * std::sqrt(512.0 / 1023), 1e-6);
+    // |d|^2 = 0.03, |b|^2 = 0.75, m^2 = 0.75
+    EXPECT_NEAR(m.relative_mean_square_error, 0.03 / (0.75 * 1.01) * 512 / 1023, 1e-6);
+    EXPECT_NEAR(m.maximum_error, 0.1, 1e-6);
+    EXPECT_LT(m.structural_similarity, 0.999);
+    EXPECT_GT(m.flip, 0.01);
+    // Black against white is as different as can be.
+    const io::Picture black{32, 32, std::vector<vec4>(1024, vec4(0, 0, 0, 1))}, white{32, 32, std::vector<vec4>(1024, vec4(1))};
+    EXPECT_GT(command_line::compare_pictures(black, white, false).flip, 0.9);
+}
+
+} // namespace
+} // namespace sunfleck::tests
