@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cmath>
@@ -20,30 +21,29 @@ std::vector<unsigned char> to_bytes(const Picture& picture) {
     return bytes;
 }
 
-Status write_with_oiio(const std::filesystem::path& temporary, const std::filesystem::path& path,
-                       const Picture& picture, PictureKind kind) {
+// Encoded in memory: the encoders do not report every failed write, our own file writing does.
+Result<std::string> encode(const std::filesystem::path& path, const Picture& picture, PictureKind kind) {
     const auto failure = [&](const std::string& why) {
         return Error{"cannot write '" + path.string() + "': " + why};
     };
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary.string());
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(kind == PictureKind::png ? "png" : "openexr");
     if (!output)
         return failure(OIIO::geterror());
     OIIO::ImageSpec spec(int(picture.width), int(picture.height), kind == PictureKind::png ? 3 : 4,
                          kind == PictureKind::png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    spec.attribute("DateTime", "1970:01:01 00:00:00"); // the same picture is the same file
     if (kind == PictureKind::exr)
         spec.attribute("compression", "zip");
-    if (!output->open(temporary.string(), spec))
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    if (!output->set_ioproxy(&memory) || !output->open(path.filename().string(), spec))
         return failure(output->geterror());
-    bool written = false;
-    if (kind == PictureKind::png)
-        written = output->write_image(OIIO::TypeDesc::UINT8, to_bytes(picture).data());
-    else
-        written = output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data());
-    const std::string write_error = written ? "" : output->geterror();
-    const bool closed = output->close();
-    if (!written || !closed)
-        return failure((written ? output->geterror() : write_error) + " (is the disk full?)");
-    return {};
+    const bool written = kind == PictureKind::png
+                             ? output->write_image(OIIO::TypeDesc::UINT8, to_bytes(picture).data())
+                             : output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data());
+    if (!written || !output->close())
+        return failure(output->geterror());
+    return std::string(bytes.begin(), bytes.end());
 }
 
 Result<PictureKind> kind_by_content(const std::filesystem::path& path) {
@@ -67,9 +67,8 @@ Result<PictureKind> picture_kind(const std::filesystem::path& path) {
 
 Status write_picture(const std::filesystem::path& path, const Picture& picture) {
     SUNFLECK_ASSIGN(const PictureKind kind, picture_kind(path));
-    return replace_file(path, [&](const std::filesystem::path& temporary) {
-        return write_with_oiio(temporary, path, picture, kind);
-    });
+    SUNFLECK_ASSIGN(const std::string bytes, encode(path, picture, kind));
+    return write_file(path, bytes);
 }
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
