@@ -9,8 +9,12 @@
 
 namespace sunfleck::tests {
 
-// Keeps the software driver in memory to the end, so that leak reports can tell its leaks from ours by their module.
-inline void pin_driver() { (void)dlopen("libvulkan_lvp.so", RTLD_NOW | RTLD_NODELETE); }
+// Keeps the software driver and the validation layer in memory to the end, so that leak reports can tell their leaks
+// from ours by module (tests/leak_suppressions.txt).
+inline void pin_driver() {
+    for (const char* library : {"libvulkan_lvp.so", "libVkLayer_khronos_validation.so"})
+        (void)dlopen(library, RTLD_NOW | RTLD_NODELETE);
+}
 
 // Made once; every test that uses it checks that validation stayed silent.
 inline gpu::Device& device() {
