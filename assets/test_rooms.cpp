@@ -31,7 +31,7 @@ void make_cornell(SceneBuilder& s) {
     const vec3 lo(0.0f), hi(5.528f, 5.488f, 5.592f);
     s.quad("floor", lo, vec3(0, 0, hi.z), vec3(hi.x, 0, 0), diffuse(white));
     s.ceiling_with_lamps(lo, hi, white, {{"lamp", vec2(2.78f, 2.795f), 1.30f, 1.05f, vec3(17.0f, 12.0f, 6.0f)}});
-    s.quad("back wall", lo, vec3(hi.x, 0, 0), vec3(0, hi.y + 0.02f, 0), diffuse(white)); // see SceneBuilder::room
+    s.quad("back wall", lo, vec3(hi.x, 0, 0), vec3(0, hi.y + 0.002f, 0), diffuse(white)); // see SceneBuilder::room
     s.quad("red wall", lo, vec3(0, hi.y, 0), vec3(0, 0, hi.z), diffuse(red));
     s.quad("green wall", vec3(hi.x, 0, 0), vec3(0, 0, hi.z), vec3(0, hi.y, 0), diffuse(green));
     s.add("tall block", scene::make_box(vec3(1.65f, 3.30f, 1.65f)), diffuse(white), at(vec3(1.84f, 1.65f, 2.08f), 17.0f));

@@ -35,10 +35,7 @@ std::filesystem::path scene_file() {
 }
 
 Status prepare(viewer::SceneRenderer& renderer, const Options& options, viewer::FrameRequest& request) {
-    SUNFLECK_TRY([&]() -> Status {
-        SUNFLECK_ASSIGN(const io::ImportReport report, renderer.load(scene_file()));
-        return {};
-    }());
+    SUNFLECK_TRY(renderer.load(scene_file()));
     gi::Settings settings;
     settings.lights = options.lights;
     settings.shadow_map_resolution = 128;

@@ -82,7 +82,7 @@ Status System::set_settings(const Settings& settings) {
     return {};
 }
 
-bool System::needs_new_samples(ecs::Registry&, const raytrace::RayScene& rays) {
+bool System::needs_new_samples(const raytrace::RayScene& rays) {
     const std::uint64_t hash = hash_emitters(emitters_);
     const bool same = samples_valid_ && same_sampling(settings_, sampled_settings_) && hash == emitter_hash_ &&
                       rays.static_generation() == static_generation_;
@@ -162,7 +162,7 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         const StageTimer timer(cpu_times_, "light samples");
         emitters_ = collect_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds
                                                                                           : gpu_scene.static_bounds());
-        if (needs_new_samples(registry, rays))
+        if (needs_new_samples(rays))
             make_samples(registry, rays);
     }
     const StageTimer timer(cpu_times_, "shadow scheduling");

@@ -81,7 +81,7 @@ public:
 
 private:
     System(gpu::Device& device) : device_(device), resources_(device) {}
-    bool needs_new_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
+    bool needs_new_samples(const raytrace::RayScene& rays);
     void make_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
     void mirror_samples(ecs::Registry& registry);
     void mark_stale(const scene::GpuScene& gpu_scene);

@@ -64,10 +64,7 @@ Status run(const ReferenceOptions& options) {
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
     ecs::Registry registry;
     scene::MeshStore meshes;
-    SUNFLECK_TRY([&]() -> Status {
-        SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes));
-        return {};
-    }());
+    SUNFLECK_TRY(io::load_scene(path, registry, meshes));
     viewer::add_default_light(registry);
     const std::uint32_t last_frame = options.scene.warmup + options.scene.frames - 1;
     simulation::set_movers_to_step(registry, step_of_frame(options.scene, last_frame));

@@ -57,6 +57,23 @@ inline Bounds transform_bounds(const mat4& matrix, const Bounds& bounds) {
     return result;
 }
 
+// What normals are multiplied by: the transposed inverse up to a positive factor. Cofactors, so that singular matrices
+// work too; mirroring ones keep normals on their side.
+inline mat3 normal_matrix(const mat4& matrix) {
+    const mat3 m(matrix);
+    const mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    return glm::determinant(m) < 0.0f ? -cofactors : cofactors;
+}
+
+// Two unit vectors across the unit vector `n`, right-handed with it. T. Duff et al., "Building an Orthonormal Basis,
+// Revisited", JCGT 2017.
+inline void orthonormal_basis(vec3 n, vec3& tangent, vec3& bitangent) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
+    tangent = vec3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
+}
+
 inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // Rec. 709 luminance of a linear colour.

@@ -19,16 +19,10 @@ struct Instance {
     ecs::Entity entity;
     std::uint32_t mesh = 0;
     mat4 matrix{1.0f};
-    mat3 normal_matrix{1.0f};
+    mat3 normals{1.0f};
     scene::Material material;
     bool is_static = true;
 };
-
-mat3 normal_matrix_of(const mat4& matrix) {
-    const mat3 m(matrix);
-    const mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-    return glm::determinant(m) < 0.0f ? -cofactors : cofactors;
-}
 
 bool same_geometry(const Instance& a, const Instance& b) {
     return a.entity == b.entity && a.mesh == b.mesh && a.matrix == b.matrix;
@@ -169,7 +163,7 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
         [&](ecs::Entity entity, const scene::MeshInstance& mesh, const scene::WorldTransform& transform) {
             if (mesh.mesh >= meshes.size())
                 return;
-            Instance instance{entity, mesh.mesh, transform.matrix, normal_matrix_of(transform.matrix), {}, true};
+            Instance instance{entity, mesh.mesh, transform.matrix, normal_matrix(transform.matrix), {}, true};
             if (const scene::Material* material = registry.try_get<scene::Material>(entity))
                 instance.material = *material;
             instance.is_static = scene::is_static(registry, entity);
@@ -274,7 +268,7 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
     const float face_length = glm::length(face);
     point.geometric_normal = face_length > 0.0f ? face / face_length : -glm::normalize(ray.direction);
     const vec3 normal =
-        instance.normal_matrix * (w * mesh.normals[t[0]] + hit.u * mesh.normals[t[1]] + hit.v * mesh.normals[t[2]]);
+        instance.normals * (w * mesh.normals[t[0]] + hit.u * mesh.normals[t[1]] + hit.v * mesh.normals[t[2]]);
     const float length = glm::length(normal);
     point.shading_normal = length > 0.0f ? normal / length : point.geometric_normal;
     if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f)

@@ -1,5 +1,7 @@
 #include "engine/render/debug_lines.h"
 
+#include "engine/gpu/rendering.h"
+
 #include <bit>
 
 namespace sunfleck::render {
@@ -47,16 +49,8 @@ void DebugLines::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const gpu:
         .execute([this, g_buffer, camera, target](gpu::PassContext& context) -> Status {
             SUNFLECK_ASSIGN(const gpu::UploadSlice slice,
                             context.resources.upload(std::span<const vec4>(vertices_)));
-            const auto attachment = [&](gpu::ResourceId id, VkImageLayout layout) {
-                VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-                info.imageView = context.graph.view(id);
-                info.imageLayout = layout;
-                info.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-                info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-                return info;
-            };
-            const auto colour = attachment(target, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-            const auto depth = attachment(g_buffer.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+            const auto colour = gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, true);
+            const auto depth = gpu::rendering_attachment(context.graph.view(g_buffer.depth), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, true);
             VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
             rendering.renderArea.extent = {g_buffer.width, g_buffer.height};
             rendering.layerCount = 1;

@@ -1,5 +1,7 @@
 #include "engine/render/g_buffer.h"
 
+#include "engine/gpu/rendering.h"
+
 namespace sunfleck::render {
 
 Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
@@ -40,12 +42,7 @@ GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, c
 Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                            const GBuffer& target) const {
     const auto attachment = [&](gpu::ResourceId id, VkImageLayout layout) {
-        VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-        info.imageView = context.graph.view(id);
-        info.imageLayout = layout;
-        info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-        return info;
+        return gpu::rendering_attachment(context.graph.view(id), layout);
     };
     const VkImageLayout colour = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
     const VkRenderingAttachmentInfo colours[] = {attachment(target.normals, colour), attachment(target.surface, colour),

@@ -76,10 +76,7 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             shared::InstanceRow row;
             row.model = transform.matrix;
             row.previous_model = known ? previous.model : transform.matrix;
-            // The transposed inverse up to a factor, which also serves singular and mirroring matrices.
-            const mat3 m(transform.matrix);
-            const mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-            row.normal_matrix = mat4(glm::determinant(m) < 0.0f ? -cofactors : cofactors);
+            row.normal_matrix = mat4(normal_matrix(transform.matrix));
             row.base_colour = vec4(surface.base_colour, 1.0f);
             row.emission = vec4(surface.emission, registry.has<AreaLight>(entity) ? 1.0f : 0.0f);
             rows.push_back(row);

@@ -224,8 +224,8 @@ EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]) {
         const vec3 axis = forward_of(emitter.matrix);
         const float cosine = 1.0f - numbers[2] * (1.0f - emitter.outer_cosine);
         const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), angle = 2.0f * pi * numbers[3];
-        const vec3 side = glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0)));
-        const vec3 up = glm::cross(side, axis);
+        vec3 side, up;
+        orthonormal_basis(axis, side, up);
         float scale, offset;
         spot_cone(emitter, scale, offset);
         const float falloff = std::clamp(cosine * scale + offset, 0.0f, 1.0f);
@@ -239,9 +239,8 @@ EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]) {
         ray.direction = emitter.kind == EmitterKind::directional ? forward_of(emitter.matrix)
                                                                  : sample_sphere_direction(numbers[2], numbers[3]);
         // From a disc that covers the scene's bounding sphere.
-        const vec3 across = std::abs(ray.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
-        const vec3 side = glm::normalize(glm::cross(ray.direction, across));
-        const vec3 up = glm::cross(side, ray.direction);
+        vec3 side, up;
+        orthonormal_basis(ray.direction, side, up);
         const float r = emitter.scene_radius * std::sqrt(numbers[0]), angle = 2.0f * pi * numbers[1];
         ray.origin = emitter.scene_centre - emitter.scene_radius * 1.01f * ray.direction +
                      r * (std::cos(angle) * side + std::sin(angle) * up);

@@ -21,12 +21,7 @@ float power_heuristic(float a, float b) {
 }
 
 struct Frame {
-    explicit Frame(vec3 n) : normal(n) {
-        const float sign = std::copysign(1.0f, n.z);
-        const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-        tangent = vec3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-        bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
-    }
+    explicit Frame(vec3 n) : normal(n) { orthonormal_basis(n, tangent, bitangent); }
     vec3 to_local(vec3 v) const { return {glm::dot(v, tangent), glm::dot(v, bitangent), glm::dot(v, normal)}; }
     vec3 to_world(vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
     vec3 tangent, bitangent, normal;

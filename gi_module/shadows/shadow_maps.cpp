@@ -1,5 +1,6 @@
 #include "gi_module/shadows/shadow_maps.h"
 
+#include "engine/gpu/rendering.h"
 #include "gi_module/shadows/octahedral_map.h"
 
 #include <algorithm>
@@ -161,11 +162,8 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
 }
 
 Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const {
-    VkRenderingAttachmentInfo depth{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    depth.imageView = staging_.view();
-    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    const VkRenderingAttachmentInfo depth =
+        gpu::rendering_attachment(staging_.view(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {resolution_, resolution_};
     rendering.layerCount = std::uint32_t(chunk.slots.size());

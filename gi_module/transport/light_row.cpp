@@ -1,19 +1,6 @@
 #include "gi_module/transport/light_row.h"
 
 namespace sunfleck::gi {
-namespace {
-
-// An orthonormal pair across `n`. T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
-void make_basis(vec3 n, vec3& tangent, vec3& bitangent) {
-    const float sign = std::copysign(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    tangent = vec3(1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
-}
-
-} // namespace
-
 std::uint32_t light_class(SampleKind kind) {
     switch (kind) {
     case SampleKind::surface: return shared::light_class_surface;
@@ -28,7 +15,7 @@ shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, f
                                 const Bounds& scene) {
     shared::LightRow row{};
     vec3 tangent, bitangent;
-    make_basis(sample.normal, tangent, bitangent);
+    orthonormal_basis(sample.normal, tangent, bitangent);
     row.position_bound = vec4(sample.position, geometry_bound);
     row.normal_offset = vec4(sample.normal, 0.0f);
     row.tangent_scale = vec4(tangent, 0.0f);
