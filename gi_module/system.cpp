@@ -84,10 +84,13 @@ Status System::set_settings(const Settings& settings) {
 
 bool System::needs_new_samples(const raytrace::RayScene& rays) {
     const std::uint64_t hash = hash_emitters(emitters_);
+    // Where movers count as static geometry, their every move makes new walks.
+    const std::uint64_t geometry = settings_.movers == MoverHandling::as_static ? rays.generation()
+                                                                                : rays.static_generation();
     const bool same = samples_valid_ && same_sampling(settings_, sampled_settings_) && hash == emitter_hash_ &&
-                      rays.static_generation() == static_generation_;
+                      geometry == geometry_generation_;
     emitter_hash_ = hash;
-    static_generation_ = rays.static_generation();
+    geometry_generation_ = geometry;
     sampled_settings_ = settings_;
     samples_valid_ = true;
     return !same;

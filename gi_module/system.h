@@ -101,7 +101,7 @@ private:
     std::vector<std::uint32_t> to_draw_;
     std::vector<ecs::Entity> entities_; // of the samples
     bool samples_valid_ = false;
-    std::uint64_t static_generation_ = 0;
+    std::uint64_t geometry_generation_ = 0;
     std::uint64_t emitter_hash_ = 0;
     Bounds scene_bounds_;
     float bound_ = 0.0f;

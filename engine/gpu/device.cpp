@@ -37,14 +37,18 @@ RequiredFeatures::RequiredFeatures() {
     features12.pNext = &features13;
 }
 
-std::vector<std::string> missing_features(VkPhysicalDevice physical_device) {
+namespace {
+
+// Each required feature by name, with whether `device` has it (all false without a device).
+std::vector<std::pair<std::string, bool>> feature_support(VkPhysicalDevice device) {
     VkPhysicalDeviceFeatures2 has{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     VkPhysicalDeviceVulkan12Features has12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
     VkPhysicalDeviceVulkan13Features has13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
     has.pNext = &has12;
     has12.pNext = &has13;
-    vkGetPhysicalDeviceFeatures2(physical_device, &has);
-    const std::pair<const char*, VkBool32> needed[] = {
+    if (device != VK_NULL_HANDLE)
+        vkGetPhysicalDeviceFeatures2(device, &has);
+    return {
         {"shaderClipDistance", has.features.shaderClipDistance},
         {"depthClamp", has.features.depthClamp},
         {"multiDrawIndirect", has.features.multiDrawIndirect},
@@ -57,10 +61,22 @@ std::vector<std::string> missing_features(VkPhysicalDevice physical_device) {
         {"synchronization2", has13.synchronization2},
         {"maintenance4", has13.maintenance4},
     };
+}
+
+} // namespace
+
+std::vector<std::string> required_feature_names() {
+    std::vector<std::string> names;
+    for (const auto& [name, present] : feature_support(VK_NULL_HANDLE))
+        names.push_back(name);
+    return names;
+}
+
+std::vector<std::string> missing_features(VkPhysicalDevice physical_device) {
     std::vector<std::string> missing;
-    for (const auto& [name, present] : needed)
+    for (const auto& [name, present] : feature_support(physical_device))
         if (!present)
-            missing.emplace_back(name);
+            missing.push_back(name);
     return missing;
 }
 

@@ -112,6 +112,8 @@ struct RequiredFeatures {
     VkPhysicalDeviceVulkan13Features features13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
 };
 
+// Names of the features that this project needs.
+std::vector<std::string> required_feature_names();
 // Names of required features that the physical device lacks; empty if it will do.
 std::vector<std::string> missing_features(VkPhysicalDevice physical_device);
 

@@ -159,6 +159,7 @@ private:
             target.type = "perspective";
             target.perspective.yfov = double(camera->vertical_field_of_view);
             target.perspective.znear = 0.01;
+            target.perspective.zfar = 1000.0; // glTF allows none, but tinygltf writes one always
             model_.cameras.push_back(target);
             node.camera = int(model_.cameras.size() - 1);
         }

@@ -55,6 +55,7 @@ struct RayScene::Implementation {
     std::uint32_t static_count = 0;
     std::uint32_t static_builds = 0;
     std::uint64_t static_generation = 0;
+    std::uint64_t generation = 0;
     float static_area = 0.0f;
     const scene::MeshStore* meshes = nullptr;
 
@@ -191,6 +192,8 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
         self.build_static();
     if (!same_static || !same_static_materials)
         ++self.static_generation;
+    if (!same_static_materials || !same_movers || moved)
+        ++self.generation;
     if (!same_movers || moved)
         self.build_top(same_movers);
     if (rtcGetDeviceError(self.device.get()) != RTC_ERROR_NONE)
@@ -280,6 +283,7 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
 
 std::uint32_t RayScene::static_builds() const { return implementation_->static_builds; }
 std::uint64_t RayScene::static_generation() const { return implementation_->static_generation; }
+std::uint64_t RayScene::generation() const { return implementation_->generation; }
 float RayScene::static_area() const { return implementation_->static_area; }
 
 } // namespace sunfleck::raytrace

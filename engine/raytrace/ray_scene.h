@@ -66,6 +66,8 @@ public:
     std::uint32_t static_builds() const;
     // Raised when static geometry or a static entity's material changed.
     std::uint64_t static_generation() const;
+    // Raised when anything changed, movers included.
+    std::uint64_t generation() const;
     // Area of all static triangles, m2.
     float static_area() const;
 

@@ -260,6 +260,28 @@ TEST_F(Lighting, AnyNumberOfSamples) {
     }
 }
 
+TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
+    for (const gi::MoverHandling movers : {gi::MoverHandling::per_pixel, gi::MoverHandling::as_static}) {
+        GpuWorld world(assets::make_four_pillars, "view");
+        gi::Settings settings;
+        settings.lights = 300;
+        settings.shadow_map_resolution = 32;
+        settings.movers = movers;
+        world.set(settings);
+        world.render();
+        const std::vector<gi::LightSample> before = world.renderer->lighting().samples();
+        world.request.step = 60;
+        world.render();
+        const std::vector<gi::LightSample>& after = world.renderer->lighting().samples();
+        ASSERT_EQ(before.size(), after.size());
+        bool same = true;
+        for (std::size_t i = 0; i < before.size(); ++i)
+            same = same && before[i].position == after[i].position;
+        EXPECT_EQ(same, movers == gi::MoverHandling::per_pixel);
+        EXPECT_EQ(world.renderer->registry().count<gi::LightSample>(), 300u);
+    }
+}
+
 TEST_F(Lighting, AFilteredLookUpKeepsTheMean) {
     GpuWorld world(assets::make_table_room, "view");
     gi::Settings settings;

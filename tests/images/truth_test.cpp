@@ -65,6 +65,23 @@ TEST_F(Truth, Cornell) { expect_truth(assets::make_cornell); }
 TEST_F(Truth, AreaRoom) { expect_truth(assets::make_area_room); }
 TEST_F(Truth, FourPillars) { expect_truth(assets::make_four_pillars); }
 
+// A yard under a uniform sky and a sun: light from outside, through orthographic maps.
+TEST_F(Truth, SkyAndSun) {
+    expect_truth([](assets::SceneBuilder& scene) {
+        scene.quad("ground", vec3(-3, 0, -3), vec3(0, 0, 6), vec3(6, 0, 0), assets::diffuse(vec3(0.6f, 0.5f, 0.4f)));
+        scene.box("block", vec3(-0.6f, 0, -0.6f), vec3(0.6f, 1.2f, 0.6f), assets::diffuse(vec3(0.7f)));
+        scene.quad("wall", vec3(-2.5f, 0, -2.0f), vec3(5, 0, 0), vec3(0, 2, 0), assets::diffuse(vec3(0.2f, 0.4f, 0.7f)));
+        ecs::Registry& registry = scene.registry();
+        registry.emplace<scene::Environment>(registry.create(), {vec3(0.5f, 0.6f, 0.8f)});
+        const ecs::Entity sun = registry.create();
+        scene::Transform transform;
+        transform.rotation = assets::facing(vec3(0.5f, 1.0f, 0.6f));
+        registry.emplace<scene::Transform>(sun, transform);
+        registry.emplace<scene::DirectionalLight>(sun, {vec3(2.0f, 1.9f, 1.6f)});
+        scene.camera("view", vec3(2.2f, 2.4f, 2.9f), vec3(-0.2f, 0.5f, -0.4f), 55.0f);
+    });
+}
+
 // The error falls with the number of samples, five seeds each. The pixels are the same at every count: those farther from
 // other surfaces than 1/sqrt(G_max) at the smallest one, where no sample is ever clamped. (Nearer to other surfaces the
 // variance of point samples is unbounded but for the clamp, which rises with the count: there the slope is about -0.3.)
