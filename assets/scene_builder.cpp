@@ -75,8 +75,7 @@ ecs::Entity SceneBuilder::area_light(const std::string& name, const scene::AreaL
     return entity;
 }
 
-ecs::Entity SceneBuilder::ceiling_light(const std::string& name, vec3 centre, float width, float depth,
-                                        vec3 radiance) {
+ecs::Entity SceneBuilder::ceiling_light(const std::string& name, vec3 centre, float width, float depth, vec3 radiance) {
     scene::AreaLight light;
     light.width = width;
     light.height = depth;

@@ -25,8 +25,8 @@ scene::Transform at(vec3 position, float yaw_degrees = 0.0f) {
 
 } // namespace
 
-// Sizes and blocks after the measured box of the Cornell University Program of Computer Graphics, at ten times its size;
-// the room is mirrored so that the camera looks along -z.
+// Sizes and blocks after the measured box of the Cornell University Program of Computer Graphics, at ten times its
+// size; the room is mirrored so that the camera looks along -z.
 void make_cornell(SceneBuilder& s) {
     const vec3 lo(0.0f), hi(5.528f, 5.488f, 5.592f);
     s.quad("floor", lo, vec3(0, 0, hi.z), vec3(hi.x, 0, 0), diffuse(white));
@@ -34,7 +34,8 @@ void make_cornell(SceneBuilder& s) {
     s.quad("back wall", lo, vec3(hi.x, 0, 0), vec3(0, hi.y + 0.002f, 0), diffuse(white)); // see SceneBuilder::room
     s.quad("red wall", lo, vec3(0, hi.y, 0), vec3(0, 0, hi.z), diffuse(red));
     s.quad("green wall", vec3(hi.x, 0, 0), vec3(0, 0, hi.z), vec3(0, hi.y, 0), diffuse(green));
-    s.add("tall block", scene::make_box(vec3(1.65f, 3.30f, 1.65f)), diffuse(white), at(vec3(1.84f, 1.65f, 2.08f), 17.0f));
+    s.add("tall block", scene::make_box(vec3(1.65f, 3.30f, 1.65f)), diffuse(white),
+          at(vec3(1.84f, 1.65f, 2.08f), 17.0f));
     s.add("short block", scene::make_box(vec3(1.65f)), diffuse(white), at(vec3(3.68f, 0.825f, 3.91f), -17.0f));
     s.camera("view", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
     s.camera("bench_1", vec3(2.78f, 2.73f, 13.3f), vec3(2.78f, 2.73f, 2.8f), 39.3f);
@@ -50,15 +51,21 @@ void make_furnace_of(SceneBuilder& s, float albedo, float emission) {
     s.exposure(11.0f);
 }
 
-void make_furnace(SceneBuilder& s) { make_furnace_of(s, 0.5f, 1.0f); }
+void make_furnace(SceneBuilder& s) {
+    make_furnace_of(s, 0.5f, 1.0f);
+}
 
 void make_area_room(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -3.0f), vec3(4.0f, 3.2f, 3.0f), wood, white, {vec3(0.70f, 0.62f, 0.45f), white, white, white},
+    s.room(vec3(-4.0f, 0.0f, -3.0f), vec3(4.0f, 3.2f, 3.0f), wood, white,
+           {vec3(0.70f, 0.62f, 0.45f), white, white, white},
            {{"large lamp", vec2(-1.8f, -0.3f), 2.4f, 1.6f, vec3(5.0f, 4.6f, 4.0f)},
             {"second lamp", vec2(2.1f, 0.3f), 1.8f, 1.8f, vec3(3.4f, 3.8f, 4.6f)}});
     s.box("plinth", vec3(-2.9f, 0.0f, -1.8f), vec3(-1.9f, 0.9f, -0.8f), diffuse(white));
-    s.add("torus", scene::make_torus(0.45f, 0.16f), diffuse(vec3(0.7f, 0.45f, 0.15f)),
-          [] { scene::Transform t = at(vec3(-2.4f, 1.5f, -1.3f)); t.rotation = glm::angleAxis(1.2f, vec3(1, 0, 0)); return t; }());
+    s.add("torus", scene::make_torus(0.45f, 0.16f), diffuse(vec3(0.7f, 0.45f, 0.15f)), [] {
+        scene::Transform t = at(vec3(-2.4f, 1.5f, -1.3f));
+        t.rotation = glm::angleAxis(1.2f, vec3(1, 0, 0));
+        return t;
+    }());
     s.box("block", vec3(0.4f, 0.0f, -1.9f), vec3(1.3f, 1.5f, -1.0f), diffuse(grey));
     s.box("low block", vec3(1.9f, 0.0f, -0.6f), vec3(3.1f, 0.5f, 0.6f), diffuse(vec3(0.30f, 0.42f, 0.60f)));
     s.add("column", scene::make_cylinder(0.22f, 2.4f), diffuse(stone), at(vec3(-0.7f, 1.2f, 0.9f)));
@@ -80,7 +87,8 @@ void make_table_room(SceneBuilder& s) {
     }
     s.box("chest", vec3(-2.8f, 0.0f, -2.8f), vec3(-1.6f, 0.7f, -2.1f), diffuse(vec3(0.5f, 0.42f, 0.3f)));
     s.add("vase", scene::make_cylinder(0.12f, 0.42f, 24), diffuse(vec3(0.7f)), at(vec3(-0.6f, 1.09f, -0.2f)));
-    const ecs::Entity knot = s.add("knot", scene::make_knot(0.6f), diffuse(vec3(0.72f, 0.68f, 0.6f)), at(vec3(1.75f, 0.42f, 0.0f)));
+    const ecs::Entity knot =
+        s.add("knot", scene::make_knot(0.6f), diffuse(vec3(0.72f, 0.68f, 0.6f)), at(vec3(1.75f, 0.42f, 0.0f)));
     s.mover(knot, circle(vec3(0.0f, 0.42f, 0.0f), 10.0f, 0.17f, 7.0f));
     s.camera("view", vec3(-1.6f, 1.75f, 2.8f), vec3(0.35f, 0.7f, -0.4f), 60.0f);
     s.camera("bench_1", vec3(-2.6f, 2.0f, 2.7f), vec3(0.4f, 0.6f, -0.6f), 62.0f);
@@ -89,16 +97,21 @@ void make_table_room(SceneBuilder& s) {
 }
 
 void make_four_pillars(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -4.0f), vec3(4.0f, 3.5f, 4.0f), vec3(0.55f, 0.52f, 0.47f), white, {red, green, white, vec3(0.7f, 0.6f, 0.35f)},
-           {{"lamp", vec2(0.0f), 1.6f, 1.6f, vec3(17.0f, 16.0f, 14.0f)}});
+    s.room(vec3(-4.0f, 0.0f, -4.0f), vec3(4.0f, 3.5f, 4.0f), vec3(0.55f, 0.52f, 0.47f), white,
+           {red, green, white, vec3(0.7f, 0.6f, 0.35f)}, {{"lamp", vec2(0.0f), 1.6f, 1.6f, vec3(17.0f, 16.0f, 14.0f)}});
     for (int i = 0; i < 4; ++i) {
         const float x = i & 1 ? 1.7f : -1.7f, z = i & 2 ? 1.7f : -1.7f;
-        s.box("pillar " + std::to_string(i), vec3(x - 0.35f, 0.0f, z - 0.35f), vec3(x + 0.35f, 3.5f, z + 0.35f), diffuse(stone));
+        s.box("pillar " + std::to_string(i), vec3(x - 0.35f, 0.0f, z - 0.35f), vec3(x + 0.35f, 3.5f, z + 0.35f),
+              diffuse(stone));
     }
-    const ecs::Entity torus = s.add("torus", scene::make_torus(0.42f, 0.15f), diffuse(vec3(0.70f, 0.50f, 0.16f)),
-                                    [] { scene::Transform t = at(vec3(0.9f, 1.3f, 0.0f)); t.rotation = glm::angleAxis(1.1f, vec3(1, 0, 0)); return t; }());
+    const ecs::Entity torus = s.add("torus", scene::make_torus(0.42f, 0.15f), diffuse(vec3(0.70f, 0.50f, 0.16f)), [] {
+        scene::Transform t = at(vec3(0.9f, 1.3f, 0.0f));
+        t.rotation = glm::angleAxis(1.1f, vec3(1, 0, 0));
+        return t;
+    }());
     s.mover(torus, circle(vec3(0.0f, 1.3f, 0.0f), 6.0f, 0.0f, 4.0f));
-    const ecs::Entity knot = s.add("knot", scene::make_knot(0.7f), diffuse(vec3(0.72f, 0.70f, 0.66f)), at(vec3(2.75f, 0.6f, 0.0f)));
+    const ecs::Entity knot =
+        s.add("knot", scene::make_knot(0.7f), diffuse(vec3(0.72f, 0.70f, 0.66f)), at(vec3(2.75f, 0.6f, 0.0f)));
     s.mover(knot, circle(vec3(0.0f, 0.6f, 0.0f), 12.0f, 0.55f, 9.0f));
     s.camera("view", vec3(-0.6f, 1.8f, 3.85f), vec3(0.15f, 1.35f, 0.0f), 66.0f);
     s.camera("bench_1", vec3(3.7f, 2.4f, 3.7f), vec3(-1.0f, 0.9f, -1.2f), 62.0f);
@@ -108,7 +121,8 @@ void make_four_pillars(SceneBuilder& s) {
 }
 
 void make_gap_room(SceneBuilder& s) {
-    s.room(vec3(-4.0f, 0.0f, -2.5f), vec3(4.0f, 3.0f, 2.5f), vec3(0.65f), white, {vec3(0.7f, 0.5f, 0.2f), white, white, white},
+    s.room(vec3(-4.0f, 0.0f, -2.5f), vec3(4.0f, 3.0f, 2.5f), vec3(0.65f), white,
+           {vec3(0.7f, 0.5f, 0.2f), white, white, white},
            {{"lamp", vec2(-2.2f, -0.4f), 1.5f, 1.5f, vec3(40.0f, 37.0f, 32.0f)}});
     // The dividing wall leaves a gap of 25 cm.
     s.box("divider left", vec3(-0.1f, 0.0f, -2.5f), vec3(0.1f, 3.0f, -0.9f), diffuse(white));
@@ -165,10 +179,14 @@ void make_two_rooms(SceneBuilder& s) {
 }
 
 const std::vector<BuiltInScene>& built_in_scenes() {
-    static const std::vector<BuiltInScene> list = {
-        {"cornell", make_cornell},           {"furnace", make_furnace},   {"area_room", make_area_room},
-        {"table_room", make_table_room},     {"four_pillars", make_four_pillars}, {"gap_room", make_gap_room},
-        {"near_occluder", make_near_occluder}, {"two_rooms", make_two_rooms}};
+    static const std::vector<BuiltInScene> list = {{"cornell", make_cornell},
+                                                   {"furnace", make_furnace},
+                                                   {"area_room", make_area_room},
+                                                   {"table_room", make_table_room},
+                                                   {"four_pillars", make_four_pillars},
+                                                   {"gap_room", make_gap_room},
+                                                   {"near_occluder", make_near_occluder},
+                                                   {"two_rooms", make_two_rooms}};
     return list;
 }
 

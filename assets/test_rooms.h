@@ -8,14 +8,14 @@
 
 namespace sunfleck::assets {
 
-void make_cornell(SceneBuilder& scene);      // the classic box: correctness, colour bleeding
-void make_furnace(SceneBuilder& scene);      // closed box, albedo 0.5, emission 1: irradiance has a closed form
-void make_area_room(SceneBuilder& scene);    // two large area lights, soft shadows (thesis fig. 5-1 left)
-void make_table_room(SceneBuilder& scene);   // coloured walls, table, complex mover (fig. 5-1 centre)
-void make_four_pillars(SceneBuilder& scene); // occlusion everywhere, movers (fig. 5-1 right, 4-12)
-void make_gap_room(SceneBuilder& scene);     // light through a narrow gap: sampling failure (fig. 6-1)
-void make_near_occluder(SceneBuilder& scene);// an occluder brushing light samples (fig. 6-2)
-void make_two_rooms(SceneBuilder& scene);    // a door, walls from 0 to 20 cm: leaks
+void make_cornell(SceneBuilder& scene);       // the classic box: correctness, colour bleeding
+void make_furnace(SceneBuilder& scene);       // closed box, albedo 0.5, emission 1: irradiance has a closed form
+void make_area_room(SceneBuilder& scene);     // two large area lights, soft shadows (thesis fig. 5-1 left)
+void make_table_room(SceneBuilder& scene);    // coloured walls, table, complex mover (fig. 5-1 centre)
+void make_four_pillars(SceneBuilder& scene);  // occlusion everywhere, movers (fig. 5-1 right, 4-12)
+void make_gap_room(SceneBuilder& scene);      // light through a narrow gap: sampling failure (fig. 6-1)
+void make_near_occluder(SceneBuilder& scene); // an occluder brushing light samples (fig. 6-2)
+void make_two_rooms(SceneBuilder& scene);     // a door, walls from 0 to 20 cm: leaks
 
 // A furnace of another albedo and emission.
 void make_furnace_of(SceneBuilder& scene, float albedo, float emission);

@@ -99,12 +99,24 @@ struct Controls {
 void connect_keys(app::Window& window, Controls& controls) {
     window.on_key = [&](app::Key key) {
         switch (key) {
-        case app::Key::escape: window.close(); break;
-        case app::Key::space: controls.paused = !controls.paused; break;
-        case app::Key::i: controls.indirect = !controls.indirect; break;
-        case app::Key::s: controls.show_samples = !controls.show_samples; break;
-        case app::Key::p: controls.shot = true; break;
-        case app::Key::f: window.toggle_full_screen(); break;
+        case app::Key::escape:
+            window.close();
+            break;
+        case app::Key::space:
+            controls.paused = !controls.paused;
+            break;
+        case app::Key::i:
+            controls.indirect = !controls.indirect;
+            break;
+        case app::Key::s:
+            controls.show_samples = !controls.show_samples;
+            break;
+        case app::Key::p:
+            controls.shot = true;
+            break;
+        case app::Key::f:
+            window.toggle_full_screen();
+            break;
         }
     };
 }

@@ -4,7 +4,9 @@ namespace sunfleck::gi {
 
 const TypeDescription& Settings::description() {
     static const TypeDescription type{
-        "Settings", 1, "Lighting by light samples.",
+        "Settings",
+        1,
+        "Lighting by light samples.",
         {SUNFLECK_CHOICE(Settings, direct, "Technique for light straight from emitters", "brute_force", "none"),
          SUNFLECK_CHOICE(Settings, indirect, "Technique for light that was reflected", "brute_force", "none"),
          SUNFLECK_CHOICE(Settings, movers, "Movers are lit like all else, or also reflect light like static geometry",

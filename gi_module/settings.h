@@ -17,16 +17,16 @@ struct Settings {
     IndirectTechnique indirect = IndirectTechnique::brute_force;
     MoverHandling movers = MoverHandling::per_pixel;
 
-    std::uint32_t lights = 300;     // light samples, exactly
-    float direct_share = 0.25f;     // of the samples, for light from area emitters
-    std::uint32_t bounces = 5;      // reflections before the surface that is shown
+    std::uint32_t lights = 300; // light samples, exactly
+    float direct_share = 0.25f; // of the samples, for light from area emitters
+    std::uint32_t bounces = 5;  // reflections before the surface that is shown
     std::uint32_t seed = 1;
     Sequence sequence = Sequence::sobol;
     Termination termination = Termination::russian_roulette;
 
     std::uint32_t shadow_map_resolution = 256;
     std::uint32_t shadow_map_bits = 16;
-    float shadow_memory = 512.0f;   // MiB
+    float shadow_memory = 512.0f; // MiB
     bool shadow_filter = false;
     bool shadows = true;
     float clamp_scale = 1.0f;

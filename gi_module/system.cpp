@@ -51,13 +51,15 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
 
 bool same_sampling(const Settings& a, const Settings& b) {
     return a.direct == b.direct && a.indirect == b.indirect && a.movers == b.movers && a.lights == b.lights &&
-           a.direct_share == b.direct_share && a.bounces == b.bounces && a.seed == b.seed &&
-           a.sequence == b.sequence && a.termination == b.termination;
+           a.direct_share == b.direct_share && a.bounces == b.bounces && a.seed == b.seed && a.sequence == b.sequence &&
+           a.termination == b.termination;
 }
 
 } // namespace
 
-std::span<const gpu::EmbeddedShader> shaders() { return gpu::sunfleck_gi_shaders(); }
+std::span<const gpu::EmbeddedShader> shaders() {
+    return gpu::sunfleck_gi_shaders();
+}
 
 Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<System> system(new System(device));
@@ -85,8 +87,8 @@ Status System::set_settings(const Settings& settings) {
 bool System::needs_new_samples(const raytrace::RayScene& rays) {
     const std::uint64_t hash = hash_emitters(emitters_);
     // Where movers count as static geometry, their every move makes new walks.
-    const std::uint64_t geometry = settings_.movers == MoverHandling::as_static ? rays.generation()
-                                                                                : rays.static_generation();
+    const std::uint64_t geometry =
+        settings_.movers == MoverHandling::as_static ? rays.generation() : rays.static_generation();
     const bool same = samples_valid_ && same_sampling(settings_, sampled_settings_) && hash == emitter_hash_ &&
                       geometry == geometry_generation_;
     emitter_hash_ = hash;
@@ -163,8 +165,8 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     const Bounds bounds = gpu_scene.bounds();
     {
         const StageTimer timer(cpu_times_, "light samples");
-        emitters_ = collect_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds
-                                                                                          : gpu_scene.static_bounds());
+        emitters_ =
+            collect_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
         if (needs_new_samples(rays))
             make_samples(registry, rays);
     }
@@ -178,9 +180,9 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     scene_bounds_ = bounds;
     if (settings_.shadows) {
         SUNFLECK_ASSIGN(const bool cleared,
-                        shadow_maps_->configure(settings_.shadow_map_resolution, settings_.shadow_map_bits,
-                                                std::uint32_t(samples_.size()),
-                                                std::uint64_t(double(settings_.shadow_memory) * 1048576.0), resources_));
+                        shadow_maps_->configure(
+                            settings_.shadow_map_resolution, settings_.shadow_map_bits, std::uint32_t(samples_.size()),
+                            std::uint64_t(double(settings_.shadow_memory) * 1048576.0), resources_));
         if (cleared)
             std::fill(stale_.begin(), stale_.end(), 1u);
     }

@@ -9,9 +9,9 @@
 //         irradiance = system->add_passes(graph, g_buffer, camera)  // declares the GPU work
 //         graph.compile();  graph.execute(commands, resources, timers);
 //
-// The system never submits, waits, presents or owns a swapchain, and no frame waits for a read-back. It must be used from
-// one thread at a time; update itself runs on all cores. The device, registry, meshes and GPU scene are the host's and
-// must outlive it. Frames are told apart by serials that rise by one; resources of a frame are reused when
+// The system never submits, waits, presents or owns a swapchain, and no frame waits for a read-back. It must be used
+// from one thread at a time; update itself runs on all cores. The device, registry, meshes and GPU scene are the host's
+// and must outlive it. Frames are told apart by serials that rise by one; resources of a frame are reused when
 // `completed_serial` has reached it.
 #pragma once
 
@@ -45,8 +45,8 @@ struct Counters {
     std::uint64_t shadow_map_vertices = 0;
     std::uint64_t shadow_maps_stale = 0; // after this frame
     std::uint64_t light_batches = 0;
-    double clamped_flux = 0;             // W over the visible surface, luminance; needs settings.count_clamped
-    double clamped_irradiance = 0;       // W/m2, mean over pixels
+    double clamped_flux = 0;       // W over the visible surface, luminance; needs settings.count_clamped
+    double clamped_irradiance = 0; // W/m2, mean over pixels
 };
 
 class System {

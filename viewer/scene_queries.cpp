@@ -66,7 +66,8 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
         view.target = {numbers[3], numbers[4], numbers[5]};
         view.vertical_field_of_view = glm::radians(numbers[6]);
         if (glm::length(view.target - view.position) < 1e-6f || numbers[6] < 1.0f || numbers[6] > 175.0f)
-            return Error{"--camera '" + wanted + "': target and position must differ, and the angle be 1 to 175 degrees"};
+            return Error{"--camera '" + wanted +
+                         "': target and position must differ, and the angle be 1 to 175 degrees"};
         return view;
     }
     const std::vector<NamedCamera> cameras = list_cameras(registry);
@@ -74,7 +75,8 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
         if (cameras.empty())
             return overview(bounds);
         const auto view = std::find_if(cameras.begin(), cameras.end(), [](const auto& c) { return c.name == "view"; });
-        return with_target(scene::camera_view(registry, (view != cameras.end() ? *view : cameras.front()).entity), bounds);
+        return with_target(scene::camera_view(registry, (view != cameras.end() ? *view : cameras.front()).entity),
+                           bounds);
     }
     std::string names;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -82,13 +84,14 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
             return with_target(scene::camera_view(registry, cameras[i].entity), bounds);
         names += (i > 0 ? ", " : "") + std::to_string(i) + " '" + cameras[i].name + "'";
     }
-    return Error{"--camera '" + wanted + "' is none of the scene's cameras (" + (names.empty() ? "it has none" : names) +
-                 "), nor 'px,py,pz,tx,ty,tz,fov'"};
+    return Error{"--camera '" + wanted + "' is none of the scene's cameras (" +
+                 (names.empty() ? "it has none" : names) + "), nor 'px,py,pz,tx,ty,tz,fov'"};
 }
 
 float scene_exposure(ecs::Registry& registry) {
     float ev100 = 10.0f;
-    registry.view<scene::Exposure>().each([&](ecs::Entity, const scene::Exposure& exposure) { ev100 = exposure.ev100; });
+    registry.view<scene::Exposure>().each(
+        [&](ecs::Entity, const scene::Exposure& exposure) { ev100 = exposure.ev100; });
     return ev100;
 }
 
@@ -107,9 +110,8 @@ bool add_default_light(ecs::Registry& registry) {
                    registry.count<scene::SpotLight>() + registry.count<scene::DirectionalLight>() +
                    registry.count<scene::Environment>() >
                0;
-    registry.view<scene::Material>().each([&](ecs::Entity, const scene::Material& material) {
-        lit = lit || material.emission != vec3(0.0f);
-    });
+    registry.view<scene::Material>().each(
+        [&](ecs::Entity, const scene::Material& material) { lit = lit || material.emission != vec3(0.0f); });
     if (lit)
         return false;
     const ecs::Entity sky = registry.create();

@@ -57,7 +57,9 @@ Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path) 
     return report;
 }
 
-Status SceneRenderer::upload_meshes() { return gpu_scene_->update_meshes(meshes_, *submission_); }
+Status SceneRenderer::upload_meshes() {
+    return gpu_scene_->update_meshes(meshes_, *submission_);
+}
 
 Status SceneRenderer::update(const FrameRequest& request) {
     statistics_.cpu_ms.clear();
@@ -121,11 +123,11 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     graph_->reset();
     const render::GBuffer g_buffer =
         g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width, request.height);
-    SUNFLECK_ASSIGN(const gpu::ResourceId irradiance,
-                    lighting_->add_passes(*graph_, *gpu_scene_,
-                                          {g_buffer.depth, g_buffer.normals, g_buffer.surface, g_buffer.width,
-                                           g_buffer.height},
-                                          camera_slice));
+    SUNFLECK_ASSIGN(
+        const gpu::ResourceId irradiance,
+        lighting_->add_passes(*graph_, *gpu_scene_,
+                              {g_buffer.depth, g_buffer.normals, g_buffer.surface, g_buffer.width, g_buffer.height},
+                              camera_slice));
     render::CompositionInput composition;
     composition.irradiance = irradiance;
     composition.view = request.view;

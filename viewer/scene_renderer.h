@@ -16,10 +16,10 @@ struct FrameRequest {
     scene::CameraView camera;
     std::uint32_t width = 640, height = 360;
     std::uint32_t view = shared::view_final;
-    bool tone_map = true;        // false: scene-linear floats, for EXR
-    bool show_samples = false;   // debug lines at the light samples
+    bool tone_map = true;      // false: scene-linear floats, for EXR
+    bool show_samples = false; // debug lines at the light samples
     float ev100 = 8.0f;
-    std::uint64_t step = 0;      // simulation step that the movers show
+    std::uint64_t step = 0; // simulation step that the movers show
     std::uint32_t map_budget = 0xffffffffu;
 };
 

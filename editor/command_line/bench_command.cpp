@@ -115,7 +115,9 @@ Result<BenchTable> bench_kernel(const BenchOptions& options) {
         table.rows.push_back({{"shadowed", c.shadows ? "yes" : "no"},
                               {"pixels", c.shape.pixels},
                               {"lights", c.shape.storage_lights ? "storage" : "uniform"},
-                              {"maps", !c.shadows ? "-" : c.shape.maps == shared::maps_texel_buffer ? "texel" : "storage"},
+                              {"maps", !c.shadows                                  ? "-"
+                                       : c.shape.maps == shared::maps_texel_buffer ? "texel"
+                                                                                   : "storage"},
                               {"ns_per_light_pixel", ns},
                               {"spread_ns", percentile(c.ns, 0.75) - percentile(c.ns, 0.25)},
                               {"used", i >= shapes ? "brute force" : ""}});
@@ -228,7 +230,8 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
                 for (std::size_t i = 0; i < picture.pixels.size(); ++i)
                     if (picture.pixels[i].w > 0 && truth.covered[i] && distances[i] > clear)
                         for (int c = 0; c < 3; ++c) {
-                            const double d = double(picture.pixels[i][c]) - truth.sums[i * 3 + std::size_t(c)] / truth.samples;
+                            const double d =
+                                double(picture.pixels[i][c]) - truth.sums[i * 3 + std::size_t(c)] / truth.samples;
                             squares += d * d;
                             values += 1;
                         }
@@ -237,8 +240,11 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
                     return Error{"interrupted"};
             }
             series.points.emplace_back(lights, median(errors));
-            table.rows.push_back({{"scene", scene}, {"lights", lights}, {"rmse", median(errors)},
-                                  {"rmse_min", percentile(errors, 0)}, {"rmse_max", percentile(errors, 1)}});
+            table.rows.push_back({{"scene", scene},
+                                  {"lights", lights},
+                                  {"rmse", median(errors)},
+                                  {"rmse_min", percentile(errors, 0)},
+                                  {"rmse_max", percentile(errors, 1)}});
             progress.show(std::log2(double(lights) / 128) / 7, std::to_string(lights) + " lights");
         }
         table.notes[std::string("slope_") + scene] = log_log_slope(series.points);
@@ -271,8 +277,10 @@ Result<BenchTable> bench_reference(const BenchOptions& options) {
             const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
             rates.push_back(double(accumulation.rays) / elapsed.count() * 1e-6);
         }
-        table.rows.push_back({{"scene", scene}, {"million_rays_per_second", median(rates)},
-                              {"minimum", percentile(rates, 0)}, {"maximum", percentile(rates, 1)}});
+        table.rows.push_back({{"scene", scene},
+                              {"million_rays_per_second", median(rates)},
+                              {"minimum", percentile(rates, 0)},
+                              {"maximum", percentile(rates, 1)}});
     }
     return table;
 }
@@ -319,11 +327,14 @@ Command make_bench_command(CLI::App& program) {
                 "convergence  error against the path tracer over the number of samples (--plot)\n"
                 "reference    rays per second of the path tracer");
     app->add_option("SUITE", options->suite, "Name of the experiment")
-        ->required()->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference"}));
+        ->required()
+        ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference"}));
     app->add_flag("--json", options->as_json, "Print one JSON object");
     app->add_option("--csv", options->csv, "Write the rows as CSV");
     app->add_option("--plot", options->plot, "Write a plot as SVG");
-    app->add_option("--repeat", options->repeat, "Measurements of each row")->check(CLI::Range(1, 1000))->capture_default_str();
+    app->add_option("--repeat", options->repeat, "Measurements of each row")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     app->add_option("--scene", options->scene, "Scene, where the suite takes one");
     app->add_option("--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options] {

@@ -98,16 +98,21 @@ std::string plot_svg(const std::string& title, const std::string& x_label, const
         x1 = x0 * 2;
     y0 *= 0.8, y1 *= 1.25;
     const auto px = [&](double x) { return left + (width - left - right) * std::log(x / x0) / std::log(x1 / x0); };
-    const auto py = [&](double y) { return height - bottom - (height - top - bottom) * std::log(y / y0) / std::log(y1 / y0); };
+    const auto py = [&](double y) {
+        return height - bottom - (height - top - bottom) * std::log(y / y0) / std::log(y1 / y0);
+    };
     std::ostringstream svg;
     svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height
         << "\" font-family=\"sans-serif\" font-size=\"12\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
         << "<text x=\"" << width / 2 << "\" y=\"22\" text-anchor=\"middle\" font-size=\"15\">" << title << "</text>"
         << "<text x=\"" << width / 2 << "\" y=\"" << height - 12 << "\" text-anchor=\"middle\">" << x_label << "</text>"
-        << "<text transform=\"translate(16," << height / 2 << ") rotate(-90)\" text-anchor=\"middle\">" << y_label << "</text>"
-        << "<path d=\"M" << left << " " << top << "V" << height - bottom << "H" << width - right << "\" fill=\"none\" stroke=\"#444\"/>";
+        << "<text transform=\"translate(16," << height / 2 << ") rotate(-90)\" text-anchor=\"middle\">" << y_label
+        << "</text>"
+        << "<path d=\"M" << left << " " << top << "V" << height - bottom << "H" << width - right
+        << "\" fill=\"none\" stroke=\"#444\"/>";
     for (double x = std::pow(2.0, std::ceil(std::log2(x0))); x <= x1 * 1.001; x *= 2)
-        svg << "<text x=\"" << px(x) << "\" y=\"" << height - bottom + 18 << "\" text-anchor=\"middle\">" << x << "</text>"
+        svg << "<text x=\"" << px(x) << "\" y=\"" << height - bottom + 18 << "\" text-anchor=\"middle\">" << x
+            << "</text>"
             << "<path d=\"M" << px(x) << " " << height - bottom << "v5\" stroke=\"#444\"/>";
     for (double decade = std::pow(10.0, std::floor(std::log10(y0))); decade <= y1; decade *= 10)
         for (const double m : {1.0, 2.0, 5.0})

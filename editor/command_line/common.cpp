@@ -46,7 +46,9 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("--frames", options.frames, "Frames to render after the warm-up; the last is written")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
-    app.add_option("--warmup", options.warmup, "Frames before those")->check(CLI::Range(0, 1000000))->capture_default_str();
+    app.add_option("--warmup", options.warmup, "Frames before those")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str();
     app.add_option("--seed", options.seed, "Another seed gives another set of samples")->capture_default_str();
     app.add_option("--bounces", options.bounces, "Reflections before the surface that is shown")
         ->check(CLI::Range(0, 64))
@@ -87,7 +89,8 @@ Result<std::filesystem::path> find_scene(const std::string& scene) {
         for (const std::string& name : built_in_scene_names())
             names += (names.empty() ? "" : ", ") + name;
         if (!std::filesystem::exists(scene, code))
-            return Error{"no built-in scene is called '" + scene + "' (there are: " + names + "), and no such file exists"};
+            return Error{"no built-in scene is called '" + scene + "' (there are: " + names +
+                         "), and no such file exists"};
     }
     if (!std::filesystem::exists(scene, code))
         return Error{"scene file '" + scene + "' does not exist"};
@@ -133,7 +136,9 @@ double percentile(std::vector<double> values, double share) {
     return values[below] + (place - double(below)) * (values[above] - values[below]);
 }
 
-double median(std::vector<double> values) { return percentile(std::move(values), 0.5); }
+double median(std::vector<double> values) {
+    return percentile(std::move(values), 0.5);
+}
 
 namespace {
 
@@ -195,8 +200,8 @@ void Progress::show(double share, const std::string& detail) {
     const int tenth = int(share * 10.0);
     if (::isatty(2)) {
         const int filled = int(share * 30.0);
-        std::fprintf(stderr, "\r%s [%-30.*s] %3.0f %%  %s   ", what_.c_str(), filled,
-                     "##############################", share * 100.0, detail.c_str());
+        std::fprintf(stderr, "\r%s [%-30.*s] %3.0f %%  %s   ", what_.c_str(), filled, "##############################",
+                     share * 100.0, detail.c_str());
         drawn_ = true;
     } else if (tenth != last_tenth_) {
         std::fprintf(stderr, "%s: %d %%  %s\n", what_.c_str(), tenth * 10, detail.c_str());
@@ -204,7 +209,9 @@ void Progress::show(double share, const std::string& detail) {
     last_tenth_ = tenth;
 }
 
-bool interrupted() { return interrupt_count > 0; }
+bool interrupted() {
+    return interrupt_count > 0;
+}
 
 void watch_interrupts() {
     std::signal(SIGINT, [](int) {

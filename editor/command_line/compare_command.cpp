@@ -20,10 +20,16 @@ Status run(const CompareOptions& options) {
                      " and " + std::to_string(b.width) + "x" + std::to_string(b.height)};
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.b));
     const Metrics m = compare_pictures(a, b, kind == io::PictureKind::exr);
-    const Json json = {{"mean_a", m.mean_a}, {"mean_b", m.mean_b}, {"mae", m.mean_absolute_error},
-                       {"max", m.maximum_error}, {"rmse", m.root_mean_square_error},
-                       {"relative_mse", m.relative_mean_square_error}, {"psnr", m.peak_signal_to_noise},
-                       {"ssim", m.structural_similarity}, {"flip", m.flip}, {"pixels", m.pixels},
+    const Json json = {{"mean_a", m.mean_a},
+                       {"mean_b", m.mean_b},
+                       {"mae", m.mean_absolute_error},
+                       {"max", m.maximum_error},
+                       {"rmse", m.root_mean_square_error},
+                       {"relative_mse", m.relative_mean_square_error},
+                       {"psnr", m.peak_signal_to_noise},
+                       {"ssim", m.structural_similarity},
+                       {"flip", m.flip},
+                       {"pixels", m.pixels},
                        {"left_out", m.left_out}};
     if (!options.difference.empty())
         SUNFLECK_TRY(io::write_picture(options.difference, difference_picture(a, b, kind == io::PictureKind::exr)));

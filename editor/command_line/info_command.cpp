@@ -37,9 +37,10 @@ Status run(const std::string& wanted, bool as_json) {
                 device->traits().driver.c_str());
     for (std::size_t i = 0; i < devices.size(); ++i)
         std::printf("  --device %zu  %s\n", i, devices[i].c_str());
-    std::printf("features  %s, missing %s\n", json["features_used"].dump().c_str(), json["features_missing"].dump().c_str());
-    std::printf("limits    %s\nscenes    %s\n\nLighting settings for --set name=value:\n%s", json["limits"].dump().c_str(),
-                json["scenes"].dump().c_str(),
+    std::printf("features  %s, missing %s\n", json["features_used"].dump().c_str(),
+                json["features_missing"].dump().c_str());
+    std::printf("limits    %s\nscenes    %s\n\nLighting settings for --set name=value:\n%s",
+                json["limits"].dump().c_str(), json["scenes"].dump().c_str(),
                 document(gi::Settings::description(), std::make_unique<gi::Settings>().get()).c_str());
     return {};
 }

@@ -30,8 +30,7 @@ int main(int argc, char** argv) {
     program.set_version_flag("--version", "sunfleck 0.1.0");
     program.footer("Example: sunfleck render cornell -o cornell.png --lights 300");
     const Command commands[] = {make_render_command(program), make_reference_command(program),
-                                make_compare_command(program), make_bench_command(program),
-                                make_info_command(program)};
+                                make_compare_command(program), make_bench_command(program), make_info_command(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -70,8 +70,7 @@ Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_
     m.mean_absolute_error /= values;
     m.root_mean_square_error = std::sqrt(squares / values);
     m.relative_mean_square_error = relative / double(m.pixels);
-    m.peak_signal_to_noise =
-        squares > 0 ? std::min(999.0, 20.0 * std::log10(peak / m.root_mean_square_error)) : 999.0;
+    m.peak_signal_to_noise = squares > 0 ? std::min(999.0, 20.0 * std::log10(peak / m.root_mean_square_error)) : 999.0;
     const io::Picture display_a = scene_linear ? to_display(a, mean) : a;
     const io::Picture display_b = scene_linear ? to_display(b, mean) : b;
     m.structural_similarity = structural_similarity(display_a, display_b, counted);
@@ -86,9 +85,9 @@ io::Picture difference_picture(const io::Picture& a, const io::Picture& b, bool 
     const io::Picture display_b = scene_linear ? to_display(b, mean) : b;
     io::Picture result = a;
     for (std::size_t i = 0; i < counted.size(); ++i)
-        result.pixels[i] =
-            counted[i] ? vec4(8.0f * glm::abs(vec3(display_a.pixels[i]) - vec3(display_b.pixels[i])), 1.0f)
-                       : vec4(0.0f, 0.0f, 0.0f, 1.0f);
+        result.pixels[i] = counted[i]
+                               ? vec4(8.0f * glm::abs(vec3(display_a.pixels[i]) - vec3(display_b.pixels[i])), 1.0f)
+                               : vec4(0.0f, 0.0f, 0.0f, 1.0f);
     return result;
 }
 

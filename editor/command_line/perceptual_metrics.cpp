@@ -59,10 +59,12 @@ float mean_of_counted(const Plane& plane, const std::vector<std::uint8_t>& count
 
 // --- Colour spaces of FLIP ------------------------------------------------------------------------------------------
 
-float linear_from_srgb(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+float linear_from_srgb(float x) {
+    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
 
-const mat3 xyz_from_linear = glm::transpose(mat3(0.4124564f, 0.3575761f, 0.1804375f, 0.2126729f, 0.7151522f, 0.0721750f,
-                                                 0.0193339f, 0.1191920f, 0.9503041f));
+const mat3 xyz_from_linear = glm::transpose(
+    mat3(0.4124564f, 0.3575761f, 0.1804375f, 0.2126729f, 0.7151522f, 0.0721750f, 0.0193339f, 0.1191920f, 0.9503041f));
 const vec3 white_point = xyz_from_linear * vec3(1.0f);
 
 vec3 ycxcz_from_linear(vec3 rgb) {
@@ -86,7 +88,9 @@ vec3 hunt_lab_from_linear(vec3 rgb) {
     return {lab.x, 0.01f * lab.x * lab.y, 0.01f * lab.x * lab.z};
 }
 
-float hyab(vec3 a, vec3 b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
+float hyab(vec3 a, vec3 b) {
+    return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
+}
 
 constexpr float pixels_per_degree = 67.0f;
 constexpr float exponent_colour = 0.7f, exponent_feature = 0.5f, cutoff = 0.4f, cutoff_value = 0.95f;
@@ -205,8 +209,8 @@ double structural_similarity(const io::Picture& a, const io::Picture& b, const s
 
 double flip(const io::Picture& a, const io::Picture& b, const std::vector<std::uint8_t>& counted) {
     const FlipPicture fa = prepare(a), fb = prepare(b);
-    const float largest = std::pow(hyab(hunt_lab_from_linear(vec3(0, 1, 0)), hunt_lab_from_linear(vec3(0, 0, 1))),
-                                   exponent_colour);
+    const float largest =
+        std::pow(hyab(hunt_lab_from_linear(vec3(0, 1, 0)), hunt_lab_from_linear(vec3(0, 0, 1))), exponent_colour);
     Plane result(a.pixels.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
         const float difference = std::pow(hyab(fa.filtered_lab[i], fb.filtered_lab[i]), exponent_colour);
@@ -214,9 +218,9 @@ double flip(const io::Picture& a, const io::Picture& b, const std::vector<std::u
         const float colour = difference < knee
                                  ? cutoff_value / knee * difference
                                  : cutoff_value + (difference - knee) / (largest - knee) * (1.0f - cutoff_value);
-        const float feature = std::pow(std::max(std::abs(fa.edges[i] - fb.edges[i]),
-                                                std::abs(fa.points[i] - fb.points[i])) / std::sqrt(2.0f),
-                                       exponent_feature);
+        const float feature = std::pow(
+            std::max(std::abs(fa.edges[i] - fb.edges[i]), std::abs(fa.points[i] - fb.points[i])) / std::sqrt(2.0f),
+            exponent_feature);
         result[i] = std::pow(std::clamp(colour, 0.0f, 1.0f), 1.0f - std::clamp(feature, 0.0f, 1.0f));
     }
     return double(mean_of_counted(result, counted));

@@ -41,8 +41,8 @@ io::Picture to_picture(const Accumulation& accumulation, bool display, bool irra
         const vec3 mean(accumulation.sums[i * 3] * scale, accumulation.sums[i * 3 + 1] * scale,
                         accumulation.sums[i * 3 + 2] * scale);
         if (display)
-            picture.pixels[i] = vec4(shared::display_from_radiance(irradiance ? mean / pi : mean,
-                                                                   shared::exposure_factor(ev100)), 1.0f);
+            picture.pixels[i] = vec4(
+                shared::display_from_radiance(irradiance ? mean / pi : mean, shared::exposure_factor(ev100)), 1.0f);
         else
             picture.pixels[i] = vec4(mean, irradiance && accumulation.covered[i] == 0 ? 0.0f : 1.0f);
     }
@@ -87,11 +87,11 @@ Status run(const ReferenceOptions& options) {
                                                  : ReferenceView::radiance;
     SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
     const std::string state_file = options.output + ".state";
-    const std::uint64_t hash = hash_text(
-        scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" + options.view +
-        "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
-        std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
-        std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
+    const std::uint64_t hash =
+        hash_text(scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" +
+                  options.view + "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
+                  std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
+                  std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
     SUNFLECK_ASSIGN(Accumulation accumulation, start_or_resume(state_file, hash));
 
     const auto began = std::chrono::steady_clock::now();
@@ -99,8 +99,8 @@ Status run(const ReferenceOptions& options) {
     Progress progress("reference");
     while (accumulation.samples < options.samples) {
         // Few samples first, so that an early interrupt has something to show.
-        const std::uint32_t batch = std::min({std::max(1u, accumulation.samples), 16u,
-                                              options.samples - accumulation.samples});
+        const std::uint32_t batch =
+            std::min({std::max(1u, accumulation.samples), 16u, options.samples - accumulation.samples});
         const bool complete = tracer.accumulate(accumulation, camera, settings, batch, interrupted);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
         char detail[96];
@@ -139,9 +139,12 @@ Command make_reference_command(CLI::App& program) {
     add_scene_options(*app, options->scene);
     app->add_option("-o,--output", options->output, "Picture to write: .exr (scene-linear) or .png (tone-mapped)")
         ->required();
-    app->add_option("--spp", options->samples, "Samples per pixel")->check(CLI::Range(1, 1 << 24))->capture_default_str();
+    app->add_option("--spp", options->samples, "Samples per pixel")
+        ->check(CLI::Range(1, 1 << 24))
+        ->capture_default_str();
     app->add_option("--view", options->view, "What to show")
-        ->check(CLI::IsMember({"final", "irradiance", "direct", "indirect"}))->capture_default_str();
+        ->check(CLI::IsMember({"final", "irradiance", "direct", "indirect"}))
+        ->capture_default_str();
     app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
     app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
     app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");

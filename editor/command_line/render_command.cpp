@@ -20,11 +20,10 @@ struct RenderOptions {
 };
 
 const std::map<std::string, std::uint32_t> views = {
-    {"final", shared::view_final},       {"irradiance", shared::view_irradiance},
-    {"direct", shared::view_irradiance}, {"indirect", shared::view_irradiance},
-    {"normals", shared::view_normals},   {"albedo", shared::view_albedo},
-    {"depth", shared::view_depth},       {"surfaces", shared::view_surfaces},
-    {"motion", shared::view_motion},     {"samples", shared::view_final}};
+    {"final", shared::view_final},         {"irradiance", shared::view_irradiance}, {"direct", shared::view_irradiance},
+    {"indirect", shared::view_irradiance}, {"normals", shared::view_normals},       {"albedo", shared::view_albedo},
+    {"depth", shared::view_depth},         {"surfaces", shared::view_surfaces},     {"motion", shared::view_motion},
+    {"samples", shared::view_final}};
 
 Result<gi::Settings> make_settings(const RenderOptions& options) {
     gi::Settings settings;
@@ -120,17 +119,23 @@ Command make_render_command(CLI::App& program) {
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
         ->required();
     app->add_option("--direct", options->direct, "Technique for direct light")
-        ->check(CLI::IsMember({"brute_force", "none"}))->capture_default_str();
+        ->check(CLI::IsMember({"brute_force", "none"}))
+        ->capture_default_str();
     app->add_option("--indirect", options->indirect, "Technique for reflected light")
-        ->check(CLI::IsMember({"brute_force", "none"}))->capture_default_str();
+        ->check(CLI::IsMember({"brute_force", "none"}))
+        ->capture_default_str();
     app->add_option("--specular", options->specular, "Technique for mirrors and glass")
-        ->check(CLI::IsMember({"none"}))->capture_default_str();
+        ->check(CLI::IsMember({"none"}))
+        ->capture_default_str();
     app->add_option("--source", options->source, "Where light samples come from")
-        ->check(CLI::IsMember({"random_walk"}))->capture_default_str();
+        ->check(CLI::IsMember({"random_walk"}))
+        ->capture_default_str();
     app->add_option("--lights", options->lights, "Number of light samples, exactly")
-        ->check(CLI::Range(0, 65536))->capture_default_str();
+        ->check(CLI::Range(0, 65536))
+        ->capture_default_str();
     app->add_option("--direct-share", options->direct_share, "Share of the samples on emitters")
-        ->check(CLI::Range(0.0, 1.0))->capture_default_str();
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
     std::vector<std::string> names;
     for (const auto& [name, view] : views)
         names.push_back(name);

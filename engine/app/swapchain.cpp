@@ -17,7 +17,8 @@ Result<std::unique_ptr<Swapchain>> Swapchain::create(gpu::Device& device, Window
     VkBool32 supported = VK_FALSE;
     vkGetPhysicalDeviceSurfaceSupportKHR(device.physical_device(), device.queue_family(), chain->surface_, &supported);
     if (!supported)
-        return Error{"device '" + device.traits().name + "' cannot show pictures in this window; choose another with "
+        return Error{"device '" + device.traits().name +
+                     "' cannot show pictures in this window; choose another with "
                      "--device, or run with --headless"};
     const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     chain->acquired_.resize(frames_in_flight + 1);

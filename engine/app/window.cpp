@@ -11,13 +11,26 @@ void forward_key(GLFWwindow* handle, int key, int, int action, int) {
     if (action != GLFW_PRESS || !window->on_key)
         return;
     switch (key) {
-    case GLFW_KEY_ESCAPE: window->on_key(Key::escape); break;
-    case GLFW_KEY_SPACE: window->on_key(Key::space); break;
-    case GLFW_KEY_I: window->on_key(Key::i); break;
-    case GLFW_KEY_P: window->on_key(Key::p); break;
-    case GLFW_KEY_S: window->on_key(Key::s); break;
-    case GLFW_KEY_F: window->on_key(Key::f); break;
-    default: break;
+    case GLFW_KEY_ESCAPE:
+        window->on_key(Key::escape);
+        break;
+    case GLFW_KEY_SPACE:
+        window->on_key(Key::space);
+        break;
+    case GLFW_KEY_I:
+        window->on_key(Key::i);
+        break;
+    case GLFW_KEY_P:
+        window->on_key(Key::p);
+        break;
+    case GLFW_KEY_S:
+        window->on_key(Key::s);
+        break;
+    case GLFW_KEY_F:
+        window->on_key(Key::f);
+        break;
+    default:
+        break;
     }
 }
 
@@ -50,11 +63,21 @@ std::vector<const char*> Window::instance_extensions() const {
     return {names, names + count};
 }
 
-void Window::poll() { glfwPollEvents(); }
-void Window::wait(double seconds) { glfwWaitEventsTimeout(seconds); }
-bool Window::should_close() const { return glfwWindowShouldClose(handle_); }
-void Window::close() { glfwSetWindowShouldClose(handle_, GLFW_TRUE); }
-void Window::set_title(const std::string& title) { glfwSetWindowTitle(handle_, title.c_str()); }
+void Window::poll() {
+    glfwPollEvents();
+}
+void Window::wait(double seconds) {
+    glfwWaitEventsTimeout(seconds);
+}
+bool Window::should_close() const {
+    return glfwWindowShouldClose(handle_);
+}
+void Window::close() {
+    glfwSetWindowShouldClose(handle_, GLFW_TRUE);
+}
+void Window::set_title(const std::string& title) {
+    glfwSetWindowTitle(handle_, title.c_str());
+}
 
 void Window::toggle_full_screen() {
     if (glfwGetWindowMonitor(handle_) != nullptr) {

@@ -48,7 +48,8 @@ private:
 // The window's images. Made anew when the window changes size.
 class Swapchain {
 public:
-    static Result<std::unique_ptr<Swapchain>> create(gpu::Device& device, Window& window, std::uint32_t frames_in_flight);
+    static Result<std::unique_ptr<Swapchain>> create(gpu::Device& device, Window& window,
+                                                     std::uint32_t frames_in_flight);
     ~Swapchain();
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;

@@ -84,10 +84,14 @@ const Field* TypeDescription::find(std::string_view field_name) const {
 
 std::string field_to_text(const Field& field, const void* object) {
     switch (field.kind) {
-    case FieldKind::boolean: return member<bool>(field, object) ? "true" : "false";
-    case FieldKind::integer: return fmt::format("{}", member<std::int32_t>(field, object));
-    case FieldKind::unsigned_integer: return fmt::format("{}", member<std::uint32_t>(field, object));
-    case FieldKind::real: return fmt::format("{}", member<float>(field, object));
+    case FieldKind::boolean:
+        return member<bool>(field, object) ? "true" : "false";
+    case FieldKind::integer:
+        return fmt::format("{}", member<std::int32_t>(field, object));
+    case FieldKind::unsigned_integer:
+        return fmt::format("{}", member<std::uint32_t>(field, object));
+    case FieldKind::real:
+        return fmt::format("{}", member<float>(field, object));
     case FieldKind::vector3: {
         const vec3& v = member<vec3>(field, object);
         return fmt::format("{},{},{}", v.x, v.y, v.z);
@@ -96,20 +100,29 @@ std::string field_to_text(const Field& field, const void* object) {
         const quat& q = member<quat>(field, object);
         return fmt::format("{},{},{},{}", q.x, q.y, q.z, q.w);
     }
-    case FieldKind::text: return member<std::string>(field, object);
-    case FieldKind::entity: return fmt::format("{}", member<EntityBits>(field, object));
-    case FieldKind::choice: return std::string(field.choices[member<std::uint32_t>(field, object)]);
+    case FieldKind::text:
+        return member<std::string>(field, object);
+    case FieldKind::entity:
+        return fmt::format("{}", member<EntityBits>(field, object));
+    case FieldKind::choice:
+        return std::string(field.choices[member<std::uint32_t>(field, object)]);
     }
     return {};
 }
 
 Status field_from_text(const Field& field, void* object, std::string_view text) {
     switch (field.kind) {
-    case FieldKind::boolean: return parse_boolean(field, object, text);
-    case FieldKind::choice: return parse_choice(field, object, text);
-    case FieldKind::text: member<std::string>(field, object) = std::string(text); return {};
-    case FieldKind::real: return parse_numbers(field, text, &member<float>(field, object), 1);
-    case FieldKind::vector3: return parse_numbers(field, text, &member<vec3>(field, object).x, 3);
+    case FieldKind::boolean:
+        return parse_boolean(field, object, text);
+    case FieldKind::choice:
+        return parse_choice(field, object, text);
+    case FieldKind::text:
+        member<std::string>(field, object) = std::string(text);
+        return {};
+    case FieldKind::real:
+        return parse_numbers(field, text, &member<float>(field, object), 1);
+    case FieldKind::vector3:
+        return parse_numbers(field, text, &member<vec3>(field, object).x, 3);
     case FieldKind::quaternion: {
         float xyzw[4];
         SUNFLECK_TRY(parse_numbers(field, text, xyzw, 4));

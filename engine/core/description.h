@@ -77,12 +77,14 @@ constexpr FieldKind field_kind() {
 // SUNFLECK_FIELD(Struct, member, unit, minimum, maximum, tooltip)
 #define SUNFLECK_FIELD(Struct, member, unit, minimum, maximum, tooltip)                                                \
     ::sunfleck::Field {                                                                                                \
-        #member, unit, tooltip, ::sunfleck::detail::field_kind<decltype(Struct::member)>(), offsetof(Struct, member),  \
-            minimum, maximum, {}                                                                                       \
+#member, unit, tooltip, ::sunfleck::detail::field_kind < decltype(Struct::member)>(),                          \
+            offsetof(Struct, member), minimum, maximum, {}                                                             \
     }
 #define SUNFLECK_CHOICE(Struct, member, tooltip, ...)                                                                  \
     ::sunfleck::Field {                                                                                                \
-        #member, "", tooltip, ::sunfleck::FieldKind::choice, offsetof(Struct, member), 0, 0, { __VA_ARGS__ }           \
+#member, "", tooltip, ::sunfleck::FieldKind::choice, offsetof(Struct, member), 0, 0, {                         \
+            __VA_ARGS__                                                                                                \
+        }                                                                                                              \
     }
 
 // Text form of one field of `object`: numbers as written in C, vectors as "x,y,z", choices by name.

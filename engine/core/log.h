@@ -16,8 +16,14 @@ void set_log_sink(LogSink sink);
 // Thread safe as far as the sink is; the default sink is.
 void log_message(LogLevel level, std::string_view message);
 
-inline void log_information(std::string_view message) { log_message(LogLevel::information, message); }
-inline void log_warning(std::string_view message) { log_message(LogLevel::warning, message); }
-inline void log_error(std::string_view message) { log_message(LogLevel::error, message); }
+inline void log_information(std::string_view message) {
+    log_message(LogLevel::information, message);
+}
+inline void log_warning(std::string_view message) {
+    log_message(LogLevel::warning, message);
+}
+inline void log_error(std::string_view message) {
+    log_message(LogLevel::error, message);
+}
 
 } // namespace sunfleck

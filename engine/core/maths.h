@@ -74,9 +74,13 @@ inline void orthonormal_basis(vec3 n, vec3& tangent, vec3& bitangent) {
     bitangent = vec3(b, sign + n.y * n.y * a, -n.y);
 }
 
-inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline bool is_finite(vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 // Rec. 709 luminance of a linear colour.
-inline float luminance(vec3 colour) { return glm::dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
+inline float luminance(vec3 colour) {
+    return glm::dot(colour, vec3(0.2126f, 0.7152f, 0.0722f));
+}
 
 } // namespace sunfleck

@@ -23,8 +23,12 @@ SHARED_FUNCTION vec3 octahedral_decode(vec2 p) {
 
 // 16 bits a component: half a step of 1/32767 in both, times sqrt(3/2) along z, over the octahedron's least radius
 // sqrt(1/3): the direction is off by less than 7e-5 rad.
-SHARED_FUNCTION uint pack_normal(vec3 n) { return packSnorm2x16(octahedral_encode(n)); }
-SHARED_FUNCTION vec3 unpack_normal(uint bits) { return octahedral_decode(unpackSnorm2x16(bits)); }
+SHARED_FUNCTION uint pack_normal(vec3 n) {
+    return packSnorm2x16(octahedral_encode(n));
+}
+SHARED_FUNCTION vec3 unpack_normal(uint bits) {
+    return octahedral_decode(unpackSnorm2x16(bits));
+}
 
 SHARED_END
 #endif

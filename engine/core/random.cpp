@@ -9,7 +9,8 @@ using Directions = std::array<std::uint32_t, 32>;
 
 // Direction numbers v_j from a primitive polynomial of the given degree and coefficients and its initial values, as in
 // S. Joe, F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional projections", 2008.
-constexpr Directions directions(std::uint32_t degree, std::uint32_t coefficients, std::array<std::uint32_t, 3> initial) {
+constexpr Directions directions(std::uint32_t degree, std::uint32_t coefficients,
+                                std::array<std::uint32_t, 3> initial) {
     Directions v{};
     for (std::uint32_t j = 0; j < 32; ++j) {
         if (degree == 0) {

@@ -12,14 +12,18 @@ constexpr std::uint32_t pcg_hash(std::uint32_t value) {
     return (word >> 22u) ^ word;
 }
 
-constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) { return pcg_hash(a ^ (pcg_hash(b) + 0x9e3779b9u)); }
+constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
+    return pcg_hash(a ^ (pcg_hash(b) + 0x9e3779b9u));
+}
 
 // The 24 highest bits as a float in [0, 1).
-constexpr float to_unit_float(std::uint32_t bits) { return float(bits >> 8) * 0x1p-24f; }
+constexpr float to_unit_float(std::uint32_t bits) {
+    return float(bits >> 8) * 0x1p-24f;
+}
 
-// Four dimensions of the Owen-scrambled Sobol point `index`. Any number of dimensions comes in groups of four, the first
-// four Sobol dimensions each; groups are padded by shuffling the index with a nested uniform scramble, which keeps each
-// group a net of its own. B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
+// Four dimensions of the Owen-scrambled Sobol point `index`. Any number of dimensions comes in groups of four, the
+// first four Sobol dimensions each; groups are padded by shuffling the index with a nested uniform scramble, which
+// keeps each group a net of its own. B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
 class SobolGroup {
 public:
     SobolGroup() = default;

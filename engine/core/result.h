@@ -75,8 +75,7 @@ using Status = Result<void>;
 // Returns the error of `expression` from the enclosing function, if it has one.
 #define SUNFLECK_TRY(expression)                                                                                       \
     do {                                                                                                               \
-        if (auto SUNFLECK_JOIN(sunfleck_status_, __LINE__) = (expression);                                             \
-            !SUNFLECK_JOIN(sunfleck_status_, __LINE__))                                                                \
+        if (auto SUNFLECK_JOIN(sunfleck_status_, __LINE__) = (expression); !SUNFLECK_JOIN(sunfleck_status_, __LINE__)) \
             return SUNFLECK_JOIN(sunfleck_status_, __LINE__).error();                                                  \
     } while (false)
 // Declares `target` from the value of `expression`, or returns its error.

@@ -83,9 +83,8 @@ std::vector<PoolBase*> Registry::described_pools() {
     for (const auto& target : pools_)
         if (target && target->description() != nullptr)
             result.push_back(target.get());
-    std::sort(result.begin(), result.end(), [](const PoolBase* a, const PoolBase* b) {
-        return a->description()->name < b->description()->name;
-    });
+    std::sort(result.begin(), result.end(),
+              [](const PoolBase* a, const PoolBase* b) { return a->description()->name < b->description()->name; });
     return result;
 }
 

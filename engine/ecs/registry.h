@@ -1,9 +1,9 @@
 // The world: entities and their components.
 //
-// Verbs differ by contract: `get` needs the component, `try_get` may return null, `emplace` needs its absence. Reading is
-// const everywhere; writing goes through `patch`, `replace` or `emplace`, which stamp the current tick, so that a consumer
-// can ask what was added, changed or removed since it last looked. Order of iteration depends only on the sequence of
-// calls. Not thread safe for writing; any number of threads may read between writes.
+// Verbs differ by contract: `get` needs the component, `try_get` may return null, `emplace` needs its absence. Reading
+// is const everywhere; writing goes through `patch`, `replace` or `emplace`, which stamp the current tick, so that a
+// consumer can ask what was added, changed or removed since it last looked. Order of iteration depends only on the
+// sequence of calls. Not thread safe for writing; any number of threads may read between writes.
 #pragma once
 
 #include "engine/ecs/view.h"
@@ -215,7 +215,9 @@ private:
     int iterating_ = 0;
 };
 
-inline IterationScope::IterationScope(Registry& registry) : registry_(registry) { ++registry_.iterating_; }
+inline IterationScope::IterationScope(Registry& registry) : registry_(registry) {
+    ++registry_.iterating_;
+}
 inline IterationScope::~IterationScope() {
     if (--registry_.iterating_ == 0 && !registry_.deferred_.empty())
         registry_.run_deferred();

@@ -59,12 +59,18 @@ private:
 
 std::size_t field_size(FieldKind kind) {
     switch (kind) {
-    case FieldKind::boolean: return sizeof(bool);
-    case FieldKind::vector3: return sizeof(vec3);
-    case FieldKind::quaternion: return sizeof(quat);
-    case FieldKind::entity: return sizeof(EntityBits);
-    case FieldKind::text: return 0;
-    default: return 4;
+    case FieldKind::boolean:
+        return sizeof(bool);
+    case FieldKind::vector3:
+        return sizeof(vec3);
+    case FieldKind::quaternion:
+        return sizeof(quat);
+    case FieldKind::entity:
+        return sizeof(EntityBits);
+    case FieldKind::text:
+        return 0;
+    default:
+        return 4;
     }
 }
 

@@ -81,8 +81,8 @@ private:
     std::tuple<const Pool<Ts>*...> pools_;
 };
 
-// A declared group: the pools of Ts keep the entities that have all of them at their front, in one order, so that a loop
-// is a loop over plain arrays. A pool belongs to at most one group. Made by Registry::group.
+// A declared group: the pools of Ts keep the entities that have all of them at their front, in one order, so that a
+// loop is a loop over plain arrays. A pool belongs to at most one group. Made by Registry::group.
 class GroupBase {
 public:
     explicit GroupBase(std::vector<PoolBase*> pools) : pools_(std::move(pools)) {

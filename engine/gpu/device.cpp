@@ -159,10 +159,14 @@ struct DeviceBuilder {
         vkEnumeratePhysicalDevices(instance, &count, devices.data());
         const auto rank = [](VkPhysicalDevice device) {
             switch (properties_of(device).deviceType) {
-            case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-            case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-            case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-            default: return 3;
+            case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+                return 0;
+            case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+                return 1;
+            case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+                return 2;
+            default:
+                return 3;
             }
         };
         std::stable_sort(devices.begin(), devices.end(),

@@ -102,7 +102,8 @@ private:
 // Names of devices, in the order in which numbers select them.
 Result<std::vector<std::string>> list_devices();
 
-// The features of Vulkan 1.3 that this project needs, as a chain to hand to vkCreateDevice. Lives as long as the object.
+// The features of Vulkan 1.3 that this project needs, as a chain to hand to vkCreateDevice. Lives as long as the
+// object.
 struct RequiredFeatures {
     RequiredFeatures();
     RequiredFeatures(const RequiredFeatures&) = delete;

@@ -53,8 +53,8 @@ UsageTraits traits_of(Usage usage) {
         return {"vertices", VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT,
                 VK_IMAGE_LAYOUT_UNDEFINED, 0};
     case Usage::index_read:
-        return {"indices", VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT,
-                VK_IMAGE_LAYOUT_UNDEFINED, 0};
+        return {"indices", VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                0};
     case Usage::indirect_read:
         return {"indirect", VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
                 VK_IMAGE_LAYOUT_UNDEFINED, 0};
@@ -63,8 +63,7 @@ UsageTraits traits_of(Usage usage) {
                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
     case Usage::transfer_destination:
         return {"copy destination", VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT,
-                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                VK_IMAGE_USAGE_TRANSFER_DST_BIT};
+                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_DST_BIT};
     case Usage::blit_source:
         return {"blit source", VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
@@ -186,8 +185,8 @@ ResourceId FrameGraph::create_virtual(const std::string& name) {
     return add_resource(std::move(resource));
 }
 
-ResourceId FrameGraph::create_image(const std::string& name, VkFormat format, std::uint32_t width,
-                                    std::uint32_t height, std::uint32_t layers) {
+ResourceId FrameGraph::create_image(const std::string& name, VkFormat format, std::uint32_t width, std::uint32_t height,
+                                    std::uint32_t layers) {
     Resource resource;
     resource.name = name;
     resource.is_image = resource.created = true;
@@ -216,7 +215,9 @@ FrameGraph::History FrameGraph::create_history(const std::string& name, VkFormat
     return history;
 }
 
-void FrameGraph::mark_output(ResourceId id) { resources_[id.index].output = true; }
+void FrameGraph::mark_output(ResourceId id) {
+    resources_[id.index].output = true;
+}
 
 FrameGraph::PassBuilder FrameGraph::add_pass(const std::string& name) {
     passes_.push_back({});

@@ -122,11 +122,21 @@ Status FrameResources::bind(VkCommandBuffer commands, const Pipeline& pipeline, 
         write.pImageInfo = &bindings[i].image_info;
         write.pTexelBufferView = &bindings[i].texel_view;
         switch (pipeline.bindings()[i]) {
-        case BindingKind::uniform_buffer: write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER; break;
-        case BindingKind::storage_buffer: write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER; break;
-        case BindingKind::texel_buffer: write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER; break;
-        case BindingKind::storage_image: write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE; break;
-        case BindingKind::sampled_image: write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER; break;
+        case BindingKind::uniform_buffer:
+            write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+            break;
+        case BindingKind::storage_buffer:
+            write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            break;
+        case BindingKind::texel_buffer:
+            write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+            break;
+        case BindingKind::storage_image:
+            write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+            break;
+        case BindingKind::sampled_image:
+            write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+            break;
         }
         writes.push_back(write);
     }

@@ -57,8 +57,8 @@ Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, 
     block.linear = linear;
     block.dedicated = dedicated;
     block.free_ranges = {{0, size}};
-    const auto unused = std::find_if(blocks_.begin(), blocks_.end(),
-                                     [](const Block& b) { return b.memory == VK_NULL_HANDLE; });
+    const auto unused =
+        std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.memory == VK_NULL_HANDLE; });
     const std::uint32_t index = std::uint32_t(unused - blocks_.begin());
     if (unused == blocks_.end())
         blocks_.push_back(block);
@@ -122,8 +122,8 @@ Result<Allocation> Memory::allocate(const VkMemoryRequirements& requirements, Me
         allocation.block = i;
     }
     if (!found) {
-        SUNFLECK_ASSIGN(allocation.block, make_block(dedicated ? requirements.size : block_size, type, linear,
-                                                     dedicated, map, what));
+        SUNFLECK_ASSIGN(allocation.block,
+                        make_block(dedicated ? requirements.size : block_size, type, linear, dedicated, map, what));
         take(blocks_[allocation.block], requirements, allocation.offset);
     }
     const Block& block = blocks_[allocation.block];

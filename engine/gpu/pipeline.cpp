@@ -5,11 +5,16 @@ namespace {
 
 VkDescriptorType descriptor_type(BindingKind kind) {
     switch (kind) {
-    case BindingKind::uniform_buffer: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case BindingKind::storage_buffer: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    case BindingKind::texel_buffer: return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-    case BindingKind::storage_image: return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case BindingKind::sampled_image: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case BindingKind::uniform_buffer:
+        return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case BindingKind::storage_buffer:
+        return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case BindingKind::texel_buffer:
+        return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    case BindingKind::storage_image:
+        return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case BindingKind::sampled_image:
+        return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     }
     return VK_DESCRIPTOR_TYPE_MAX_ENUM;
 }
@@ -59,9 +64,8 @@ Status PipelineStore::make_layout(Pipeline& pipeline, const std::vector<BindingK
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = std::uint32_t(set.size());
     set_info.pBindings = set.data();
-    SUNFLECK_VK(
-        device_.vk.vkCreateDescriptorSetLayout(device_.handle(), &set_info, nullptr, &pipeline.set_layout_),
-        "creating a descriptor set layout");
+    SUNFLECK_VK(device_.vk.vkCreateDescriptorSetLayout(device_.handle(), &set_info, nullptr, &pipeline.set_layout_),
+                "creating a descriptor set layout");
     const VkPushConstantRange range{stages, 0, push_bytes};
     VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
     info.setLayoutCount = 1;
@@ -175,8 +179,7 @@ Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry) {
 }
 
 Result<VkPipeline> PipelineStore::build(const Entry& entry) {
-    return entry.pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE ? build_compute(entry)
-                                                                         : build_graphics(entry);
+    return entry.pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE ? build_compute(entry) : build_graphics(entry);
 }
 
 Result<const Pipeline*> PipelineStore::finish(std::unique_ptr<Entry> entry) {
@@ -187,9 +190,9 @@ Result<const Pipeline*> PipelineStore::finish(std::unique_ptr<Entry> entry) {
     }
     entry->pipeline.handle_ = *handle;
     const bool compute = entry->pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE;
-    const std::string& name = !compute                        ? entry->graphics.vertex_shader
+    const std::string& name = !compute                      ? entry->graphics.vertex_shader
                               : entry->compute.name.empty() ? entry->compute.shader
-                                                              : entry->compute.name;
+                                                            : entry->compute.name;
     device_.set_name(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(*handle), name);
     entries_.push_back(std::move(entry));
     return &entries_.back()->pipeline;

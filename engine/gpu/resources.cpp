@@ -63,8 +63,10 @@ void Buffer::destroy() {
 VkImageAspectFlags Image::aspect_of(VkFormat format) {
     switch (format) {
     case VK_FORMAT_D16_UNORM:
-    case VK_FORMAT_D32_SFLOAT: return VK_IMAGE_ASPECT_DEPTH_BIT;
-    default: return VK_IMAGE_ASPECT_COLOR_BIT;
+    case VK_FORMAT_D32_SFLOAT:
+        return VK_IMAGE_ASPECT_DEPTH_BIT;
+    default:
+        return VK_IMAGE_ASPECT_COLOR_BIT;
     }
 }
 
@@ -90,13 +92,12 @@ Result<Image> Image::create(Device& device, const ImageDescription& description)
     device.vk.vkGetImageMemoryRequirements(device.handle(), image.handle_, &requirements);
     SUNFLECK_ASSIGN(image.allocation_,
                     device.memory().allocate(requirements, MemoryUse::device, false, description.name));
-    SUNFLECK_VK(device.vk.vkBindImageMemory(device.handle(), image.handle_, image.allocation_.memory,
-                                            image.allocation_.offset),
-                doing);
+    SUNFLECK_VK(
+        device.vk.vkBindImageMemory(device.handle(), image.handle_, image.allocation_.memory, image.allocation_.offset),
+        doing);
     VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view.image = image.handle_;
-    view.viewType =
-        description.layers > 1 || description.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+    view.viewType = description.layers > 1 || description.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = description.format;
     view.subresourceRange = {aspect_of(description.format), 0, 1, 0, description.layers};
     SUNFLECK_VK(device.vk.vkCreateImageView(device.handle(), &view, nullptr, &image.view_), doing);

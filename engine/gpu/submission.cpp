@@ -105,9 +105,9 @@ Status upload_now(Device& device, Submission& submission, const Buffer& target, 
                   VkDeviceSize offset) {
     if (bytes.empty())
         return {};
-    SUNFLECK_ASSIGN(const Buffer staging, Buffer::create(device, {"staging", bytes.size(),
-                                                                  VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                                  MemoryUse::upload, VK_FORMAT_UNDEFINED}));
+    SUNFLECK_ASSIGN(const Buffer staging,
+                    Buffer::create(device, {"staging", bytes.size(), VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                            MemoryUse::upload, VK_FORMAT_UNDEFINED}));
     std::memcpy(staging.mapped(), bytes.data(), bytes.size());
     return submission.immediate([&](VkCommandBuffer commands) -> Status {
         const VkBufferCopy region{0, offset, bytes.size()};

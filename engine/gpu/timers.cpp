@@ -59,8 +59,7 @@ void Timers::end_scope(VkCommandBuffer commands) {
         const std::uint32_t index = frame.open.back();
         frame.open.pop_back();
         if (frame.pool != VK_NULL_HANDLE && index < scopes_per_frame)
-            device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame.pool,
-                                            index * 2 + 1);
+            device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame.pool, index * 2 + 1);
     }
     if (device_.debug_labels() && vkCmdEndDebugUtilsLabelEXT != nullptr)
         vkCmdEndDebugUtilsLabelEXT(commands);

@@ -1,5 +1,5 @@
-// One scope opens a debug label and a timestamp pair under one name. Results arrive when the GPU has finished the frame,
-// tagged with its serial; nothing waits for them.
+// One scope opens a debug label and a timestamp pair under one name. Results arrive when the GPU has finished the
+// frame, tagged with its serial; nothing waits for them.
 #pragma once
 
 #include "engine/gpu/device.h"

@@ -66,8 +66,8 @@ private:
         if (!geometry_.count(index)) {
             tinygltf::Primitive primitive;
             primitive.mode = TINYGLTF_MODE_TRIANGLES;
-            primitive.attributes["POSITION"] = add_accessor(mesh.positions, TINYGLTF_TYPE_VEC3,
-                                                            TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+            primitive.attributes["POSITION"] = add_accessor(
+                mesh.positions, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
             const Bounds bounds = meshes_.bounds(index);
             for (int c = 0; c < 3; ++c) {
                 model_.accessors.back().minValues.push_back(double(bounds.minimum[c]));

@@ -14,7 +14,7 @@ namespace sunfleck::io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t depth_limit = 256;   // of JSON nesting and of the node hierarchy
+constexpr std::size_t depth_limit = 256; // of JSON nesting and of the node hierarchy
 constexpr std::size_t vertex_limit = 50u << 20;
 
 // tinygltf's parser recurses: deep nesting would overflow the stack.
@@ -150,15 +150,15 @@ private:
     }
 
     Status read_indices(int accessor, std::size_t vertices, std::vector<std::uint32_t>& target) const {
-        SUNFLECK_TRY(each_element(
-            accessor, TINYGLTF_TYPE_SCALAR,
-            {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-             TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
-            [&](std::size_t, const unsigned char* address, int type) {
-                std::uint32_t index = 0;
-                std::memcpy(&index, address, std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type))));
-                target.push_back(index);
-            }));
+        SUNFLECK_TRY(each_element(accessor, TINYGLTF_TYPE_SCALAR,
+                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                                   TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
+                                  [&](std::size_t, const unsigned char* address, int type) {
+                                      std::uint32_t index = 0;
+                                      std::memcpy(&index, address,
+                                                  std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type))));
+                                      target.push_back(index);
+                                  }));
         for (const std::uint32_t index : target)
             if (index >= vertices)
                 return Error{"an index points past the last vertex"};
@@ -263,14 +263,13 @@ private:
         }
         material.metallic = float(pbr.metallicFactor);
         material.roughness = float(pbr.roughnessFactor);
-        material.emission *= float(extension_number(source.extensions, "KHR_materials_emissive_strength",
-                                                    "emissiveStrength", 1.0)) /
-                             luminous_efficacy;
-        material.specular =
-            extension_number(source.extensions, "KHR_materials_specular", "specularFactor", 1.0) > 0.0;
+        material.emission *=
+            float(extension_number(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0)) /
+            luminous_efficacy;
+        material.specular = extension_number(source.extensions, "KHR_materials_specular", "specularFactor", 1.0) > 0.0;
         material.index_of_refraction = float(extension_number(source.extensions, "KHR_materials_ior", "ior", 1.5));
-        material.transmission = float(
-            extension_number(source.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0));
+        material.transmission =
+            float(extension_number(source.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0));
         return material;
     }
 
@@ -351,9 +350,7 @@ Status check_extensions(const tinygltf::Model& model) {
 } // namespace
 
 Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, scene::MeshStore& meshes) {
-    const auto failure = [&](const std::string& why) {
-        return Error{"cannot import '" + path.string() + "': " + why};
-    };
+    const auto failure = [&](const std::string& why) { return Error{"cannot import '" + path.string() + "': " + why}; };
     SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
     if (bytes.empty())
         return failure("the file is empty");
@@ -369,12 +366,11 @@ Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, 
                           nullptr);
     tinygltf::Model model;
     std::string error, warning;
-    const bool loaded =
-        binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                             reinterpret_cast<const unsigned char*>(bytes.data()),
-                                             unsigned(bytes.size()), folder.string())
-               : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), unsigned(bytes.size()),
-                                            folder.string());
+    const bool loaded = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                                             reinterpret_cast<const unsigned char*>(bytes.data()),
+                                                             unsigned(bytes.size()), folder.string())
+                               : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(),
+                                                            unsigned(bytes.size()), folder.string());
     if (!loaded) {
         while (!error.empty() && (error.back() == '\n' || error.back() == '\r'))
             error.pop_back();

@@ -23,10 +23,9 @@ std::vector<unsigned char> to_bytes(const Picture& picture) {
 
 // Encoded in memory: the encoders do not report every failed write, our own file writing does.
 Result<std::string> encode(const std::filesystem::path& path, const Picture& picture, PictureKind kind) {
-    const auto failure = [&](const std::string& why) {
-        return Error{"cannot write '" + path.string() + "': " + why};
-    };
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(kind == PictureKind::png ? "png" : "openexr");
+    const auto failure = [&](const std::string& why) { return Error{"cannot write '" + path.string() + "': " + why}; };
+    const std::unique_ptr<OIIO::ImageOutput> output =
+        OIIO::ImageOutput::create(kind == PictureKind::png ? "png" : "openexr");
     if (!output)
         return failure(OIIO::geterror());
     OIIO::ImageSpec spec(int(picture.width), int(picture.height), kind == PictureKind::png ? 3 : 4,
@@ -38,9 +37,8 @@ Result<std::string> encode(const std::filesystem::path& path, const Picture& pic
     OIIO::Filesystem::IOVecOutput memory(bytes);
     if (!output->set_ioproxy(&memory) || !output->open(path.filename().string(), spec))
         return failure(output->geterror());
-    const bool written = kind == PictureKind::png
-                             ? output->write_image(OIIO::TypeDesc::UINT8, to_bytes(picture).data())
-                             : output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data());
+    const bool written = kind == PictureKind::png ? output->write_image(OIIO::TypeDesc::UINT8, to_bytes(picture).data())
+                                                  : output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data());
     if (!written || !output->close())
         return failure(output->geterror());
     return std::string(bytes.begin(), bytes.end());
@@ -73,9 +71,7 @@ Status write_picture(const std::filesystem::path& path, const Picture& picture) 
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
     SUNFLECK_TRY(kind_by_content(path));
-    const auto failure = [&](const std::string& why) {
-        return Error{"cannot read '" + path.string() + "': " + why};
-    };
+    const auto failure = [&](const std::string& why) { return Error{"cannot read '" + path.string() + "': " + why}; };
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
     if (!input)
         return failure(OIIO::geterror());
@@ -86,7 +82,8 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
     Picture picture;
     picture.width = std::uint32_t(spec.width);
     picture.height = std::uint32_t(spec.height);
-    const std::size_t channels = std::size_t(spec.nchannels), pixels = std::size_t(spec.width) * std::size_t(spec.height);
+    const std::size_t channels = std::size_t(spec.nchannels),
+                      pixels = std::size_t(spec.width) * std::size_t(spec.height);
     std::vector<float> values(pixels * channels);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
         return failure(input->geterror());

@@ -43,11 +43,15 @@ json field_to_json(const Field& field, const void* object) {
     const std::string text = field_to_text(field, object);
     switch (field.kind) {
     case FieldKind::text:
-    case FieldKind::choice: return text;
-    case FieldKind::boolean: return text == "true";
+    case FieldKind::choice:
+        return text;
+    case FieldKind::boolean:
+        return text == "true";
     case FieldKind::vector3:
-    case FieldKind::quaternion: return json::parse("[" + text + "]");
-    default: return json::parse(text);
+    case FieldKind::quaternion:
+        return json::parse("[" + text + "]");
+    default:
+        return json::parse(text);
     }
 }
 
@@ -91,9 +95,8 @@ Status apply_entity(ecs::Registry& registry, const std::string& name, const json
                 access = &candidate;
         if (access == nullptr)
             return Error{"entity '" + name + "': unknown component '" + component + "'"};
-        const Status status = access->set(registry, entity, [&](void* object) {
-            return fill_component(access->type, object, fields);
-        });
+        const Status status =
+            access->set(registry, entity, [&](void* object) { return fill_component(access->type, object, fields); });
         if (!status)
             return Error{"entity '" + name + "': " + status.error().message};
     }
@@ -104,9 +107,7 @@ Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Reg
                                      scene::MeshStore& meshes) {
     SUNFLECK_ASSIGN(const std::string text, read_file(path, std::size_t(64) << 20));
     const json file = json::parse(text, nullptr, false);
-    const auto failure = [&](const std::string& why) {
-        return Error{"cannot load '" + path.string() + "': " + why};
-    };
+    const auto failure = [&](const std::string& why) { return Error{"cannot load '" + path.string() + "': " + why}; };
     if (file.is_discarded() || !file.is_object())
         return failure("it is not valid JSON");
     if (!file.contains("sunfleck_scene") || file["sunfleck_scene"] != file_version)

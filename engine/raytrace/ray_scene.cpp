@@ -281,9 +281,17 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
     return point;
 }
 
-std::uint32_t RayScene::static_builds() const { return implementation_->static_builds; }
-std::uint64_t RayScene::static_generation() const { return implementation_->static_generation; }
-std::uint64_t RayScene::generation() const { return implementation_->generation; }
-float RayScene::static_area() const { return implementation_->static_area; }
+std::uint32_t RayScene::static_builds() const {
+    return implementation_->static_builds;
+}
+std::uint64_t RayScene::static_generation() const {
+    return implementation_->static_generation;
+}
+std::uint64_t RayScene::generation() const {
+    return implementation_->generation;
+}
+float RayScene::static_area() const {
+    return implementation_->static_area;
+}
 
 } // namespace sunfleck::raytrace

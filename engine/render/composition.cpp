@@ -40,8 +40,8 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
     pass.write(output, gpu::Usage::storage_write)
-        .execute([this, &scene, output, constants, inputs = std::vector(std::begin(inputs), std::end(inputs))](
-                     gpu::PassContext& context) -> Status {
+        .execute([this, &scene, output, constants,
+                  inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {
             std::vector<gpu::Binding> bindings;
             for (const gpu::ResourceId id : inputs)
                 bindings.push_back(gpu::Binding::sampled_image(context.graph.view(id), sampler_));

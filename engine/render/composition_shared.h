@@ -14,8 +14,8 @@ SHARED_CONSTANT uint view_motion = 6u;
 
 struct CompositionConstants {
     uint view;
-    uint tone_map;   // 0: scene-linear output, 1: exposure, tone curve and sRGB
-    float exposure;  // exposure_factor(EV100)
+    uint tone_map;  // 0: scene-linear output, 1: exposure, tone curve and sRGB
+    float exposure; // exposure_factor(EV100)
     uint width;
     uint height;
     float sky_red, sky_green, sky_blue; // radiance where nothing is, W/(sr m2)

@@ -47,10 +47,11 @@ void DebugLines::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const gpu:
         .write(g_buffer.depth, gpu::Usage::depth_attachment)
         .write(target, gpu::Usage::colour_attachment)
         .execute([this, g_buffer, camera, target](gpu::PassContext& context) -> Status {
-            SUNFLECK_ASSIGN(const gpu::UploadSlice slice,
-                            context.resources.upload(std::span<const vec4>(vertices_)));
-            const auto colour = gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, true);
-            const auto depth = gpu::rendering_attachment(context.graph.view(g_buffer.depth), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, true);
+            SUNFLECK_ASSIGN(const gpu::UploadSlice slice, context.resources.upload(std::span<const vec4>(vertices_)));
+            const auto colour =
+                gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, true);
+            const auto depth = gpu::rendering_attachment(context.graph.view(g_buffer.depth),
+                                                         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, true);
             VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
             rendering.renderArea.extent = {g_buffer.width, g_buffer.height};
             rendering.layerCount = 1;

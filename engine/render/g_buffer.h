@@ -7,9 +7,9 @@
 
 namespace sunfleck::render {
 
-inline constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;       // reverse Z, 0 where nothing is
-inline constexpr VkFormat normals_format = VK_FORMAT_R32G32_UINT;    // shading, geometric; octahedral 2 x 16 bits
-inline constexpr VkFormat surface_format = VK_FORMAT_R32_UINT;       // instance row + 1, 0 where nothing is
+inline constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;    // reverse Z, 0 where nothing is
+inline constexpr VkFormat normals_format = VK_FORMAT_R32G32_UINT; // shading, geometric; octahedral 2 x 16 bits
+inline constexpr VkFormat surface_format = VK_FORMAT_R32_UINT;    // instance row + 1, 0 where nothing is
 inline constexpr VkFormat albedo_format = VK_FORMAT_R8G8B8A8_SRGB;
 inline constexpr VkFormat motion_format = VK_FORMAT_R16G16_SFLOAT;
 

@@ -4,9 +4,11 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// Factor from scene radiance, W/(sr m2), to the exposed value that the tone curve takes: luminous efficacy 683 lm/W over
-// the saturation luminance 1.2 * 2^EV100 (ISO 12232 with q = 0.65).
-SHARED_FUNCTION float exposure_factor(float ev100) { return 683.0f / (1.2f * exp2(ev100)); }
+// Factor from scene radiance, W/(sr m2), to the exposed value that the tone curve takes: luminous efficacy 683 lm/W
+// over the saturation luminance 1.2 * 2^EV100 (ISO 12232 with q = 0.65).
+SHARED_FUNCTION float exposure_factor(float ev100) {
+    return 683.0f / (1.2f * exp2(ev100));
+}
 
 // Rational fit of the ACES filmic curve: K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
 SHARED_FUNCTION vec3 filmic_curve(vec3 x) {

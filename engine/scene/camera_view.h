@@ -40,8 +40,8 @@ inline shared::CameraRow make_camera_row(const CameraView& view, std::uint32_t w
         to_view[i][1] = -up[i];
         to_view[i][2] = forward[i];
     }
-    to_view[3] = vec4(-glm::dot(side, view.position), glm::dot(up, view.position),
-                      -glm::dot(forward, view.position), 1.0f);
+    to_view[3] =
+        vec4(-glm::dot(side, view.position), glm::dot(up, view.position), -glm::dot(forward, view.position), 1.0f);
     mat4 projection(0.0f);
     projection[0][0] = 1.0f / half_width;
     projection[1][1] = 1.0f / half_height;

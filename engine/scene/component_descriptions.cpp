@@ -4,35 +4,43 @@
 namespace sunfleck::scene {
 
 const TypeDescription& Name::description() {
-    static const TypeDescription type{"Name", 1, "A label; node name in glTF.",
-                                      {SUNFLECK_FIELD(Name, name, "", 0, 0, "Label shown in lists")}};
+    static const TypeDescription type{
+        "Name", 1, "A label; node name in glTF.", {SUNFLECK_FIELD(Name, name, "", 0, 0, "Label shown in lists")}};
     return type;
 }
 
 const TypeDescription& Transform::description() {
-    static const TypeDescription type{
-        "Transform", 1, "Place relative to the parent.",
-        {SUNFLECK_FIELD(Transform, position, "m", -1e5, 1e5, "Translation"),
-         SUNFLECK_FIELD(Transform, rotation, "", -1, 1, "Unit quaternion x,y,z,w"),
-         SUNFLECK_FIELD(Transform, scale, "", -1e4, 1e4, "Scale along the local axes")}};
+    static const TypeDescription type{"Transform",
+                                      1,
+                                      "Place relative to the parent.",
+                                      {SUNFLECK_FIELD(Transform, position, "m", -1e5, 1e5, "Translation"),
+                                       SUNFLECK_FIELD(Transform, rotation, "", -1, 1, "Unit quaternion x,y,z,w"),
+                                       SUNFLECK_FIELD(Transform, scale, "", -1e4, 1e4, "Scale along the local axes")}};
     return type;
 }
 
 const TypeDescription& Parent::description() {
-    static const TypeDescription type{"Parent", 1, "The entity whose transform this one is relative to.",
+    static const TypeDescription type{"Parent",
+                                      1,
+                                      "The entity whose transform this one is relative to.",
                                       {SUNFLECK_FIELD(Parent, parent, "", 0, 0, "Parent entity")}};
     return type;
 }
 
 const TypeDescription& MeshInstance::description() {
-    static const TypeDescription type{"MeshInstance", 1, "Geometry.",
-                                      {SUNFLECK_FIELD(MeshInstance, mesh, "", 0, 4294967295.0, "Index in the mesh store")}};
+    static const TypeDescription type{
+        "MeshInstance",
+        1,
+        "Geometry.",
+        {SUNFLECK_FIELD(MeshInstance, mesh, "", 0, 4294967295.0, "Index in the mesh store")}};
     return type;
 }
 
 const TypeDescription& Material::description() {
     static const TypeDescription type{
-        "Material", 1, "BSDF of the mesh.",
+        "Material",
+        1,
+        "BSDF of the mesh.",
         {SUNFLECK_FIELD(Material, base_colour, "", 0, 1, "Diffuse albedo, or reflectance of a metal"),
          SUNFLECK_FIELD(Material, metallic, "", 0, 1, "0 dielectric, 1 metal"),
          SUNFLECK_FIELD(Material, roughness, "", 0, 1, "Perceptual roughness; GGX alpha is its square"),
@@ -45,21 +53,27 @@ const TypeDescription& Material::description() {
 
 const TypeDescription& Camera::description() {
     static const TypeDescription type{
-        "Camera", 1, "Perspective camera, looking along its -Z axis.",
+        "Camera",
+        1,
+        "Perspective camera, looking along its -Z axis.",
         {SUNFLECK_FIELD(Camera, vertical_field_of_view, "rad", 0.01, 3.1, "Angle from bottom to top")}};
     return type;
 }
 
 const TypeDescription& Exposure::description() {
     static const TypeDescription type{
-        "Exposure", 1, "How bright the picture is.",
+        "Exposure",
+        1,
+        "How bright the picture is.",
         {SUNFLECK_FIELD(Exposure, ev100, "EV", -16, 32, "Exposure value at ISO 100; one more halves the brightness")}};
     return type;
 }
 
 const TypeDescription& AreaLight::description() {
     static const TypeDescription type{
-        "AreaLight", 1, "A Lambertian emitter of simple shape.",
+        "AreaLight",
+        1,
+        "A Lambertian emitter of simple shape.",
         {SUNFLECK_CHOICE(AreaLight, shape, "Form of the emitter", "rectangle", "disc", "sphere"),
          SUNFLECK_FIELD(AreaLight, width, "m", 0, 1e4, "Rectangle's size along X"),
          SUNFLECK_FIELD(AreaLight, height, "m", 0, 1e4, "Rectangle's size along Y"),
@@ -69,15 +83,18 @@ const TypeDescription& AreaLight::description() {
 }
 
 const TypeDescription& PointLight::description() {
-    static const TypeDescription type{
-        "PointLight", 1, "Radiates equally in all directions.",
-        {SUNFLECK_FIELD(PointLight, intensity, "W/sr", 0, 1e9, "Radiant intensity")}};
+    static const TypeDescription type{"PointLight",
+                                      1,
+                                      "Radiates equally in all directions.",
+                                      {SUNFLECK_FIELD(PointLight, intensity, "W/sr", 0, 1e9, "Radiant intensity")}};
     return type;
 }
 
 const TypeDescription& SpotLight::description() {
     static const TypeDescription type{
-        "SpotLight", 1, "Radiates in a cone about its -Z axis.",
+        "SpotLight",
+        1,
+        "Radiates in a cone about its -Z axis.",
         {SUNFLECK_FIELD(SpotLight, intensity, "W/sr", 0, 1e9, "Radiant intensity on the axis"),
          SUNFLECK_FIELD(SpotLight, inner_angle, "rad", 0, 1.5707963, "Half angle of the full-intensity cone"),
          SUNFLECK_FIELD(SpotLight, outer_angle, "rad", 0, 1.5707963, "Half angle where the light ends")}};
@@ -86,21 +103,27 @@ const TypeDescription& SpotLight::description() {
 
 const TypeDescription& DirectionalLight::description() {
     static const TypeDescription type{
-        "DirectionalLight", 1, "Parallel light along its -Z axis.",
+        "DirectionalLight",
+        1,
+        "Parallel light along its -Z axis.",
         {SUNFLECK_FIELD(DirectionalLight, irradiance, "W/m2", 0, 1e9, "On a plane that faces the light")}};
     return type;
 }
 
 const TypeDescription& Environment::description() {
     static const TypeDescription type{
-        "Environment", 1, "Light from all directions where nothing is hit.",
+        "Environment",
+        1,
+        "Light from all directions where nothing is hit.",
         {SUNFLECK_FIELD(Environment, radiance, "W/(sr m2)", 0, 1e9, "Uniform radiance of the surroundings")}};
     return type;
 }
 
 const TypeDescription& Mover::description() {
     static const TypeDescription type{
-        "Mover", 1, "Moves along a path, as a function of the simulation step.",
+        "Mover",
+        1,
+        "Moves along a path, as a function of the simulation step.",
         {SUNFLECK_CHOICE(Mover, path, "Kind of motion", "none", "line", "circle", "spin"),
          SUNFLECK_FIELD(Mover, travel, "m", -1e4, 1e4, "Line: half of the way, from the start"),
          SUNFLECK_FIELD(Mover, centre, "m", -1e4, 1e4, "Circle: its centre"),

@@ -36,8 +36,8 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
                                                      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
     SUNFLECK_ASSIGN(normals_, make_geometry_buffer(device_, submission, "mesh normals", normals,
                                                    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-    SUNFLECK_ASSIGN(indices_, make_geometry_buffer(device_, submission, "mesh indices", indices,
-                                                   VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
+    SUNFLECK_ASSIGN(
+        indices_, make_geometry_buffer(device_, submission, "mesh indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
     return {};
 }
 

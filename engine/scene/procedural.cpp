@@ -40,9 +40,7 @@ Mesh make_tube(const std::function<vec3(float)>& curve, float radius, int segmen
             mesh.normals.push_back(normal);
         }
     }
-    const auto vertex = [&](int i, int j) {
-        return std::uint32_t((i % segments) * sides + (j % sides));
-    };
+    const auto vertex = [&](int i, int j) { return std::uint32_t((i % segments) * sides + (j % sides)); };
     for (int i = 0; i < segments; ++i)
         for (int j = 0; j < sides; ++j)
             add_quad(mesh, vertex(i, j), vertex(i, j + 1), vertex(i + 1, j + 1), vertex(i + 1, j));
@@ -124,8 +122,7 @@ Mesh make_disc(float radius, int segments) {
     for (int i = 0; i < segments; ++i) {
         const float angle = 2.0f * pi * float(i) / float(segments);
         mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0f);
-        mesh.indices.insert(mesh.indices.end(),
-                            {0u, std::uint32_t(i + 1), std::uint32_t((i + 1) % segments + 1)});
+        mesh.indices.insert(mesh.indices.end(), {0u, std::uint32_t(i + 1), std::uint32_t((i + 1) % segments + 1)});
     }
     mesh.normals.assign(mesh.positions.size(), vec3(0, 0, 1));
     scale_to_area(mesh, pi * radius * radius);
@@ -139,15 +136,16 @@ Mesh make_sphere(float radius, int segments, int rings) {
         for (int segment = 0; segment < segments; ++segment) {
             const float theta = pi * float(ring) / float(rings);
             const float phi = 2.0f * pi * float(segment) / float(segments);
-            mesh.normals.emplace_back(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+            mesh.normals.emplace_back(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      std::sin(theta) * std::sin(phi));
             mesh.positions.push_back(radius * mesh.normals.back());
         }
     const auto vertex = [&](int ring, int segment) { return std::uint32_t(ring * segments + segment % segments); };
     for (int ring = 0; ring < rings; ++ring)
         for (int segment = 0; segment < segments; ++segment) {
             if (ring > 0)
-                mesh.indices.insert(mesh.indices.end(), {vertex(ring, segment), vertex(ring, segment + 1),
-                                                         vertex(ring + 1, segment)});
+                mesh.indices.insert(mesh.indices.end(),
+                                    {vertex(ring, segment), vertex(ring, segment + 1), vertex(ring + 1, segment)});
             if (ring < rings - 1)
                 mesh.indices.insert(mesh.indices.end(), {vertex(ring, segment + 1), vertex(ring + 1, segment + 1),
                                                          vertex(ring + 1, segment)});
@@ -189,11 +187,9 @@ Mesh make_cylinder(float radius, float height, int segments) {
 }
 
 Mesh make_torus(float ring_radius, float tube_radius, int segments, int sides) {
-    Mesh mesh = make_tube(
-        [=](float t) {
-            return ring_radius * vec3(std::cos(2.0f * pi * t), 0.0f, std::sin(2.0f * pi * t));
-        },
-        tube_radius, segments, sides);
+    Mesh mesh =
+        make_tube([=](float t) { return ring_radius * vec3(std::cos(2.0f * pi * t), 0.0f, std::sin(2.0f * pi * t)); },
+                  tube_radius, segments, sides);
     mesh.name = "torus";
     orient(mesh);
     return mesh;
@@ -217,9 +213,12 @@ Mesh make_knot(float size, int segments, int sides) {
 
 Mesh make_area_light_mesh(const AreaLight& light) {
     switch (light.shape) {
-    case AreaShape::rectangle: return make_rectangle(light.width, light.height);
-    case AreaShape::disc: return make_disc(light.radius);
-    case AreaShape::sphere: return make_sphere(light.radius);
+    case AreaShape::rectangle:
+        return make_rectangle(light.width, light.height);
+    case AreaShape::disc:
+        return make_disc(light.radius);
+    case AreaShape::sphere:
+        return make_sphere(light.radius);
     }
     return {};
 }
@@ -228,8 +227,8 @@ void compute_normals(Mesh& mesh) {
     mesh.normals.assign(mesh.positions.size(), vec3(0.0f));
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const std::uint32_t* t = &mesh.indices[i];
-        const vec3 weighted = glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]],
-                                         mesh.positions[t[2]] - mesh.positions[t[0]]);
+        const vec3 weighted =
+            glm::cross(mesh.positions[t[1]] - mesh.positions[t[0]], mesh.positions[t[2]] - mesh.positions[t[0]]);
         for (int corner = 0; corner < 3; ++corner)
             mesh.normals[t[corner]] += weighted;
     }

@@ -2,8 +2,8 @@
 
 #include "engine/core/file.h"
 
-#include <glslang/SPIRV/GlslangToSpv.h>
 #include <glslang/Public/ShaderLang.h>
+#include <glslang/SPIRV/GlslangToSpv.h>
 
 #include <list>
 

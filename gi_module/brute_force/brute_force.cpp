@@ -10,7 +10,9 @@ std::uint32_t group_columns(std::uint32_t width, std::uint32_t pixels) {
     return (width + tile - 1) / tile;
 }
 
-std::uint32_t group_rows(std::uint32_t height) { return (height + shared::kernel_rows - 1) / shared::kernel_rows; }
+std::uint32_t group_rows(std::uint32_t height) {
+    return (height + shared::kernel_rows - 1) / shared::kernel_rows;
+}
 
 } // namespace
 
@@ -29,7 +31,9 @@ Result<std::unique_ptr<BruteForce>> BruteForce::create(gpu::Device& device, gpu:
     return technique;
 }
 
-BruteForce::~BruteForce() { device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr); }
+BruteForce::~BruteForce() {
+    device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr);
+}
 
 KernelShape BruteForce::default_shape(const gpu::DeviceTraits& traits) {
     KernelShape shape;
@@ -88,8 +92,9 @@ Status BruteForce::begin_frame(std::uint32_t width, std::uint32_t height, bool a
 Result<const gpu::Pipeline*> BruteForce::pipeline(std::uint32_t light_class, const BruteForceOptions& options,
                                                   std::uint32_t map_bits) {
     const std::vector<std::uint32_t> specialization = {
-        shape_.pixels,           light_class, options.shadows ? shape_.maps : shared::maps_none, options.filter,
-        options.count_clamped, shape_.storage_lights,      map_bits};
+        shape_.pixels,  light_class,           options.shadows ? shape_.maps : shared::maps_none,
+        options.filter, options.count_clamped, shape_.storage_lights,
+        map_bits};
     if (const auto found = kernels_.find(specialization); found != kernels_.end())
         return found->second;
     using enum gpu::BindingKind;
@@ -132,8 +137,8 @@ Status BruteForce::add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer
         pass.write(accumulation, gpu::Usage::storage_read_write)
             .write(sums, gpu::Usage::storage_read_write)
             .write(output, gpu::Usage::storage_write)
-            .execute([this, kernel, camera, batch, constants, g_buffer, output, &maps, &readback_sums = readback.sums](
-                         gpu::PassContext& context) {
+            .execute([this, kernel, camera, batch, constants, g_buffer, output, &maps,
+                      &readback_sums = readback.sums](gpu::PassContext& context) {
                 return dispatch(context, *kernel, camera, batch, constants, g_buffer, output, maps, readback_sums);
             });
     }

@@ -46,10 +46,10 @@ public:
     void set_shape(const KernelShape& shape) { shape_ = shape; }
     const KernelShape& shape() const { return shape_; }
 
-    // Called once a frame before add_pass; sizes the accumulation buffer (needed only where `accumulates`: the frame has
-    // more than one batch) and collects finished counters.
-    Status begin_frame(std::uint32_t width, std::uint32_t height, bool accumulates, std::uint64_t serial, std::uint64_t completed_serial,
-                       gpu::FrameResources& resources);
+    // Called once a frame before add_pass; sizes the accumulation buffer (needed only where `accumulates`: the frame
+    // has more than one batch) and collects finished counters.
+    Status begin_frame(std::uint32_t width, std::uint32_t height, bool accumulates, std::uint64_t serial,
+                       std::uint64_t completed_serial, gpu::FrameResources& resources);
 
     // Adds one dispatch for each batch. `first` and `last` tell where this call stands among those of the frame: sums
     // start with the first and reach `output` with the last. There is at least one batch; it may be empty.

@@ -10,7 +10,7 @@ SHARED_CONSTANT uint maps_none = 0u;           // no shadow test
 SHARED_CONSTANT uint maps_texel_buffer = 1u;   // uniform texel buffer
 SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
 
-SHARED_CONSTANT uint kernel_rows = 8u;  // work group: 8 invocations wide, 8 high
+SHARED_CONSTANT uint kernel_rows = 8u; // work group: 8 invocations wide, 8 high
 SHARED_CONSTANT uint kernel_lanes = 8u;
 
 struct BruteForceConstants {

@@ -18,8 +18,8 @@ void warn_once(ecs::Entity entity, const char* what) {
         log_warning("light of entity " + std::to_string(entity.index) + " is ignored: " + what);
 }
 
-// Integral of the cone's falloff over the sphere, sr. With x = (cos - outer) / (inner - outer) the square falloff between
-// the cones integrates to a third of their difference in cosine.
+// Integral of the cone's falloff over the sphere, sr. With x = (cos - outer) / (inner - outer) the square falloff
+// between the cones integrates to a third of their difference in cosine.
 float spot_solid_angle(const Emitter& emitter) {
     return 2.0f * pi * (1.0f - emitter.inner_cosine + (emitter.inner_cosine - emitter.outer_cosine) / 3.0f);
 }
@@ -181,8 +181,8 @@ EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v) {
         // The first number picks a triangle by area, and what is left of it serves again.
         const float target = u * emitter.cumulative_area.back();
         const auto found = std::upper_bound(emitter.cumulative_area.begin(), emitter.cumulative_area.end(), target);
-        const std::size_t triangle =
-            std::min<std::size_t>(std::size_t(found - emitter.cumulative_area.begin()), emitter.cumulative_area.size() - 1);
+        const std::size_t triangle = std::min<std::size_t>(std::size_t(found - emitter.cumulative_area.begin()),
+                                                           emitter.cumulative_area.size() - 1);
         const float before = triangle > 0 ? emitter.cumulative_area[triangle - 1] : 0.0f;
         const float share = emitter.cumulative_area[triangle] - before;
         const float rest = share > 0.0f ? std::clamp((target - before) / share, 0.0f, 1.0f) : 0.5f;
@@ -191,7 +191,8 @@ EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v) {
         return {p[0] + (root * (1.0f - v)) * (p[1] - p[0]) + (root * v) * (p[2] - p[0]),
                 glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]))};
     }
-    default: return {origin, forward_of(emitter.matrix)};
+    default:
+        return {origin, forward_of(emitter.matrix)};
     }
 }
 

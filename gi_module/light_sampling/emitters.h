@@ -14,13 +14,13 @@ enum class EmitterKind { rectangle, disc, sphere, mesh, point, spot, directional
 struct Emitter {
     EmitterKind kind = EmitterKind::point;
     ecs::Entity entity;
-    mat4 matrix{1.0f};      // local to world
-    vec3 radiance{0.0f};    // area kinds and environment, W/(sr m2)
-    vec3 intensity{0.0f};   // point and spot: W/sr; directional: irradiance W/m2
+    mat4 matrix{1.0f};                                // local to world
+    vec3 radiance{0.0f};                              // area kinds and environment, W/(sr m2)
+    vec3 intensity{0.0f};                             // point and spot: W/sr; directional: irradiance W/m2
     float width = 0.0f, height = 0.0f, radius = 0.0f; // world sizes of the analytic shapes
-    float area = 0.0f;      // m2, of the area kinds
-    vec3 flux{0.0f};        // W; of directional light and environment: what crosses the scene's bounding sphere
-    bool is_lamp = false;   // the surface of an AreaLight: views of irradiance leave it out
+    float area = 0.0f;                                // m2, of the area kinds
+    vec3 flux{0.0f};      // W; of directional light and environment: what crosses the scene's bounding sphere
+    bool is_lamp = false; // the surface of an AreaLight: views of irradiance leave it out
     float inner_cosine = 1.0f, outer_cosine = 0.0f;
     float scene_radius = 0.0f; // bounding sphere of the scene, for light from outside
     vec3 scene_centre{0.0f};
@@ -40,8 +40,8 @@ struct EmittedPoint {
     vec3 normal{0.0f};
 };
 
-// Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or negative,
-// and those of zero area, are left out; each of the latter two kinds is logged once as a warning.
+// Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or
+// negative, and those of zero area, are left out; each of the latter two kinds is logged once as a warning.
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene);
 
 // Uniformly distributed over the emitter's surface (area kinds), or its position. u, v in [0, 1).

@@ -10,8 +10,8 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float lift_distance = 1e-3f;  // m
-constexpr float ray_offset = 1e-4f;     // m, off the surface that a walk leaves
+constexpr float lift_distance = 1e-3f; // m
+constexpr float ray_offset = 1e-4f;    // m, off the surface that a walk leaves
 constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
 
@@ -133,8 +133,8 @@ std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::v
         const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
         const vec3 shading_normal = front ? point.shading_normal : -point.shading_normal;
         flux *= point.material->base_colour;
-        const float largest = std::max({point.material->base_colour.x, point.material->base_colour.y,
-                                        point.material->base_colour.z});
+        const float largest =
+            std::max({point.material->base_colour.x, point.material->base_colour.y, point.material->base_colour.z});
         random.seek(8 + bounce * 4);
         const float u = random.next(), v = random.next(), survive = random.next();
         if (settings.termination == Termination::russian_roulette) {
@@ -230,8 +230,7 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
     for (std::size_t e = 0; e < sharing.size(); ++e) {
         const std::uint32_t seed = hash_combine(settings.seed, 0xd000 + std::uint32_t(e));
         for (std::uint32_t i = 0; i < counts[e]; ++i)
-            samples.push_back(
-                shared_sample(*sharing[e], float(counts[e]), {sequence_kind(settings), seed, i}, rays));
+            samples.push_back(shared_sample(*sharing[e], float(counts[e]), {sequence_kind(settings), seed, i}, rays));
     }
     return samples;
 }

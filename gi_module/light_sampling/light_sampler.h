@@ -21,9 +21,9 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
                                        const Settings& settings, const raytrace::RayScene& rays);
 
 // Indirect samples: walks leave an emitter chosen by flux, and leave a sample at each surface that they meet, carrying
-// what that surface reflects. Only whole walks count: as many are made as give at least `count` samples, then the excess
-// is dropped at random and the rest strengthened in proportion, so no bounce is favoured (stopping inside a walk, as the
-// thesis does, favours early ones). The result does not depend on the number of threads.
+// what that surface reflects. Only whole walks count: as many are made as give at least `count` samples, then the
+// excess is dropped at random and the rest strengthened in proportion, so no bounce is favoured (stopping inside a
+// walk, as the thesis does, favours early ones). The result does not depend on the number of threads.
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
                                          const Settings& settings, const raytrace::RayScene& rays);
 

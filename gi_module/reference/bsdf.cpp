@@ -51,7 +51,8 @@ Bsdf::Bsdf(const scene::Material& material) {
     const float root = (material.index_of_refraction - 1.0f) / (material.index_of_refraction + 1.0f);
     diffuse_ = material.base_colour * (1.0f - material.metallic);
     has_specular_ = material.specular || material.metallic > 0.0f;
-    normal_reflectance_ = glm::mix(vec3(material.specular ? root * root : 0.0f), material.base_colour, material.metallic);
+    normal_reflectance_ =
+        glm::mix(vec3(material.specular ? root * root : 0.0f), material.base_colour, material.metallic);
     alpha_ = std::max(material.roughness * material.roughness, 1e-3f);
     glass_ = material.transmission > 0.0f;
     tint_ = material.base_colour;
@@ -85,8 +86,7 @@ vec3 Bsdf::evaluate(vec3 outgoing, vec3 incoming) const {
     const vec3 half = glm::normalize(outgoing + incoming);
     const vec3 reflected = fresnel(glm::dot(half, outgoing));
     const float masking = 1.0f / (1.0f + ggx_lambda(outgoing, alpha_) + ggx_lambda(incoming, alpha_));
-    const vec3 specular =
-        reflected * (ggx_distribution(half.z, alpha_) * masking / (4.0f * outgoing.z * incoming.z));
+    const vec3 specular = reflected * (ggx_distribution(half.z, alpha_) * masking / (4.0f * outgoing.z * incoming.z));
     // What the layer reflects on the way in and out does not reach the base; reciprocal, and never above one in sum
     // (glTF's own mix by the half vector exceeds one at grazing angles).
     const vec3 in = fresnel(incoming.z), out = fresnel(outgoing.z);

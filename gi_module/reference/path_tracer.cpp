@@ -10,9 +10,9 @@
 namespace sunfleck::gi::reference {
 namespace {
 
-constexpr float offset_distance = 1e-4f; // m, off a surface before the next ray starts
-constexpr float shadow_shortening = 1e-4f; // share of a shadow ray's length left out before its end
-constexpr std::uint32_t roulette_start = 4; // bounces before paths end by chance
+constexpr float offset_distance = 1e-4f;           // m, off a surface before the next ray starts
+constexpr float shadow_shortening = 1e-4f;         // share of a shadow ray's length left out before its end
+constexpr std::uint32_t roulette_start = 4;        // bounces before paths end by chance
 constexpr std::uint32_t dimensions_per_vertex = 8; // two groups of four: light, scattering
 
 float power_heuristic(float a, float b) {
@@ -33,7 +33,7 @@ struct Frame {
 struct PathTracer::Vertex {
     vec3 position;
     vec3 geometric_normal;
-    Frame frame; // of the shading normal
+    Frame frame;   // of the shading normal
     vec3 outgoing; // local
     Bsdf bsdf;
     bool entering = true; // glass: the path comes from outside
@@ -41,7 +41,7 @@ struct PathTracer::Vertex {
 
 struct PathTracer::Path {
     RandomSequence random;
-    std::uint32_t bounces;     // reflections still allowed after the first vertex
+    std::uint32_t bounces; // reflections still allowed after the first vertex
     vec3 throughput{1.0f};
     std::vector<vec3>* by_bounce = nullptr; // contributions are added here, by reflections, if set
     bool skip_direct = false;
@@ -92,15 +92,14 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     if (emitters_.empty())
         return vec3(0.0f);
     const double target = double(choice) * cumulative_.back();
-    const std::size_t index =
-        std::min<std::size_t>(std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) -
-                                          cumulative_.begin()),
-                              emitters_.size() - 1);
+    const std::size_t index = std::min<std::size_t>(
+        std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()),
+        emitters_.size() - 1);
     const Emitter& emitter = emitters_[index];
     const float probability = float(double(luminance(emitter.flux)) / cumulative_.back());
     const EmittedPoint point = sample_emitter_point(emitter, u, v);
     vec3 to_light = point.position - vertex.position;
-    vec3 light(0.0f); // radiance or its like, already over the density
+    vec3 light(0.0f);     // radiance or its like, already over the density
     float density = 0.0f; // per solid angle, 0 for lights that scattering cannot hit
     if (emitter.kind == EmitterKind::directional) {
         to_light = -2.1f * emitter.scene_radius * point.normal;
@@ -161,7 +160,8 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
             return;
         path.throughput *= scattered.weight;
 
-        const vec3 origin = vertex.position + (side > 0.0f ? offset_distance : -offset_distance) * vertex.geometric_normal;
+        const vec3 origin =
+            vertex.position + (side > 0.0f ? offset_distance : -offset_distance) * vertex.geometric_normal;
         const raytrace::Ray ray{origin, direction, 0.0f, 1e30f};
         ++path.rays;
         const auto hit = rays_.closest_hit(ray);
@@ -173,21 +173,26 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
         const vec3 emission = emitted(point, direction);
         if (luminance(emission) > 0.0f) {
             const float other = scattered.delta ? 0.0f : emitter_density(point, direction, hit->distance);
-            path.add(reflections, path.throughput * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
+            path.add(reflections,
+                     path.throughput * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
         }
         if (reflections >= path.bounces)
             return;
         if (reflections >= roulette_start) {
-            const float survive = std::clamp(
-                std::max({path.throughput.x, path.throughput.y, path.throughput.z}), 0.05f, 0.98f);
+            const float survive =
+                std::clamp(std::max({path.throughput.x, path.throughput.y, path.throughput.z}), 0.05f, 0.98f);
             if (path.random.next() >= survive)
                 return;
             path.throughput /= survive;
         }
         const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
         const Frame frame(front ? point.shading_normal : -point.shading_normal);
-        vertex = Vertex{point.position, front ? point.geometric_normal : -point.geometric_normal, frame,
-                        frame.to_local(-direction), Bsdf(*point.material), front};
+        vertex = Vertex{point.position,
+                        front ? point.geometric_normal : -point.geometric_normal,
+                        frame,
+                        frame.to_local(-direction),
+                        Bsdf(*point.material),
+                        front};
         // A shading normal that leans away from the viewer would make the surface vanish.
         vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
     }

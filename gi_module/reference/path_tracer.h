@@ -7,8 +7,8 @@
 #include "gi_module/light_sampling/emitters.h"
 
 #include <functional>
-#include <unordered_map>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace sunfleck::gi::reference {
@@ -28,8 +28,8 @@ inline constexpr std::uint32_t unlimited_bounces = 0xffffffffu;
 // Running sums, so that work can stop, be saved, and go on with the same result as if it had never stopped.
 struct Accumulation {
     std::uint32_t width = 0, height = 0;
-    std::uint32_t samples = 0;     // per pixel
-    std::vector<double> sums;      // RGB a pixel, rows from the top
+    std::uint32_t samples = 0;         // per pixel
+    std::vector<double> sums;          // RGB a pixel, rows from the top
     std::vector<std::uint8_t> covered; // 1: the pixel shows a surface other than an AreaLight's
     std::uint64_t rays = 0;
 };
@@ -60,8 +60,8 @@ private:
                       const ReferenceSettings& settings, std::uint64_t& rays, std::uint8_t& covered) const;
 
     const raytrace::RayScene& rays_;
-    std::vector<Emitter> emitters_;         // those that next-event estimation samples
-    std::vector<double> cumulative_;        // of their flux
+    std::vector<Emitter> emitters_;  // those that next-event estimation samples
+    std::vector<double> cumulative_; // of their flux
     vec3 environment_{0.0f};
     std::unordered_map<ecs::Entity, std::size_t> area_emitters_;
 };

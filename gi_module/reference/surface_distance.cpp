@@ -25,7 +25,8 @@ std::vector<float> surface_distances(const raytrace::RayScene& rays, const scene
             float nearest = 1e30f;
             for (std::uint32_t k = 0; k < directions; ++k) {
                 const SobolGroup numbers(1, k, 0);
-                vec3 direction = sample_sphere_direction(to_unit_float(numbers.bits(0)), to_unit_float(numbers.bits(1)));
+                vec3 direction =
+                    sample_sphere_direction(to_unit_float(numbers.bits(0)), to_unit_float(numbers.bits(1)));
                 if (glm::dot(direction, normal) < 0.0f)
                     direction = -direction;
                 const raytrace::Ray ray{point.position + 1e-4f * normal, direction, 0.0f, nearest};

@@ -4,11 +4,9 @@
 //
 // Hemisphere (surface samples): the upper four faces of an octahedron fill the square: w = |x| + |y| + z,
 // (u, v) = (x + y, x - y) / w in [-1, 1]^2. On each face the map is a plane projection with w as its homogeneous
-// coordinate, so 1/w is linear across the map: planes are exact and rasterisation needs no subdivision. Faces meet on the
-// square's diagonals.
-// Sphere (point and spot lights): all eight faces; the upper four in the inner diamond, the lower four folded out to the
-// corners.
-// Orthographic (directional lights): (u, v) = (x, y) / radius.
+// coordinate, so 1/w is linear across the map: planes are exact and rasterisation needs no subdivision. Faces meet on
+// the square's diagonals. Sphere (point and spot lights): all eight faces; the upper four in the inner diamond, the
+// lower four folded out to the corners. Orthographic (directional lights): (u, v) = (x, y) / radius.
 //
 // Stored value: near / w, reverse: 1 at the near distance, 0 at infinity; orthographic: 1 - z / (2 radius).
 #ifndef SUNFLECK_GI_SHADOWS_OCTAHEDRAL_MAP_H
@@ -16,8 +14,8 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// Blockers nearer than this (in w) count as being at this distance. Sets the 16-bit step: w^2 / (65535 * near), which is
-// 8 mm at 5 m.
+// Blockers nearer than this (in w) count as being at this distance. Sets the 16-bit step: w^2 / (65535 * near), which
+// is 8 mm at 5 m.
 SHARED_CONSTANT float shadow_near = 0.05f;
 
 // xy: place on the map in [-1, 1]^2; z: 1 / w.
@@ -34,7 +32,8 @@ SHARED_FUNCTION vec3 sphere_map(vec3 d) {
     return vec3(p, inverse_w);
 }
 
-// Signs of x, y, z on a face: hemisphere faces 0 to 3, sphere faces 0 to 7. Bit 0: x, bit 1: y, bit 2: z; set is negative.
+// Signs of x, y, z on a face: hemisphere faces 0 to 3, sphere faces 0 to 7. Bit 0: x, bit 1: y, bit 2: z; set is
+// negative.
 SHARED_FUNCTION vec3 face_signs(uint face) {
     return vec3((face & 1u) != 0u ? -1.0f : 1.0f, (face & 2u) != 0u ? -1.0f : 1.0f, (face & 4u) != 0u ? -1.0f : 1.0f);
 }
@@ -55,20 +54,24 @@ SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
 
 // --- Bias, derived and not tuned -----------------------------------------------------------------------------------
 // A look-up reads the texel centre c nearest to the receiver's direction q (both as points with w = 1). The receiver's
-// plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at most
-// |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x - y,
-// z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the sphere
-// map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that.
-// Where the light grazes the receiver, 1/h grows without bound while the light that arrives vanishes; a bias that followed
-// would let light pass under walls. It stops at a slope of 8 (83 degrees): beyond, a surface may shadow itself a little.
-// A receiver is lit if  near / w + bias + step >= stored,  bias = near * texel_reach * min(1 / h, 8 / w).  A blocker is
-// missed only where its 1/w exceeds the receiver's by less than (bias + step) / near.
+// plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at
+// most |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x -
+// y, z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the
+// sphere map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that. Where
+// the light grazes the receiver, 1/h grows without bound while the light that arrives vanishes; a bias that followed
+// would let light pass under walls. It stops at a slope of 8 (83 degrees): beyond, a surface may shadow itself a
+// little. A receiver is lit if  near / w + bias + step >= stored,  bias = near * texel_reach * min(1 / h, 8 / w).  A
+// blocker is missed only where its 1/w exceeds the receiver's by less than (bias + step) / near.
 SHARED_CONSTANT float shadow_slope_limit = 8.0f;
 SHARED_FUNCTION float perspective_bias(float texel_reach, float plane_distance, float inverse_w) {
     return shadow_near * texel_reach * min(1.0f / max(plane_distance, 1e-9f), shadow_slope_limit * inverse_w);
 }
-SHARED_FUNCTION float hemisphere_texel_reach(float resolution) { return 1.41421356f / resolution; }
-SHARED_FUNCTION float sphere_texel_reach(float resolution) { return 2.44948974f / resolution; }
+SHARED_FUNCTION float hemisphere_texel_reach(float resolution) {
+    return 1.41421356f / resolution;
+}
+SHARED_FUNCTION float sphere_texel_reach(float resolution) {
+    return 2.44948974f / resolution;
+}
 // Orthographic: the plane's depth changes by tan(angle) a unit of length across the map, at most 1/cos(angle); half a
 // texel's diagonal is sqrt(2) * radius / resolution, in units of the stored value sqrt(1/2) / resolution.
 SHARED_FUNCTION float orthographic_bias(float resolution, float cosine) {
@@ -96,8 +99,9 @@ SHARED_FUNCTION vec3 sphere_direction(vec2 uv) {
     return q;
 }
 
-// Value that a receiver is held against at a texel centre with direction `centre`. `receiver`: near / w at the receiver;
-// `normal`: its normal in light space; `plane_distance`: of the light to its plane; `bias`, `texel_reach`: as above.
+// Value that a receiver is held against at a texel centre with direction `centre`. `receiver`: near / w at the
+// receiver; `normal`: its normal in light space; `plane_distance`: of the light to its plane; `bias`, `texel_reach`: as
+// above.
 SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float plane_distance, vec3 centre, float bias,
                                            float texel_reach) {
     float window = shadow_filter_window * bias;
@@ -106,7 +110,9 @@ SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float pl
 }
 
 // Largest error of a stored value: half a step of 16-bit depth for itself, and rounding of the receiver's.
-SHARED_FUNCTION float depth_step(uint bits) { return bits == 16u ? 1.0f / 65535.0f : 4e-7f; }
+SHARED_FUNCTION float depth_step(uint bits) {
+    return bits == 16u ? 1.0f / 65535.0f : 4e-7f;
+}
 
 SHARED_END
 #endif

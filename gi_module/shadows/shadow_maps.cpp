@@ -12,11 +12,14 @@ namespace {
 constexpr std::uint32_t staging_layers = 64;
 constexpr std::uint64_t staging_budget_bytes = std::uint64_t(64) << 20;
 
-VkFormat depth_format(std::uint32_t bits) { return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT; }
+VkFormat depth_format(std::uint32_t bits) {
+    return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
+}
 
 // Largest value of dot(axis, p - origin) over the box.
 float support(const Bounds& bounds, vec3 origin, vec3 axis) {
-    const vec3 corner(axis.x > 0 ? bounds.maximum.x : bounds.minimum.x, axis.y > 0 ? bounds.maximum.y : bounds.minimum.y,
+    const vec3 corner(axis.x > 0 ? bounds.maximum.x : bounds.minimum.x,
+                      axis.y > 0 ? bounds.maximum.y : bounds.minimum.y,
                       axis.z > 0 ? bounds.maximum.z : bounds.minimum.z);
     return glm::dot(axis, corner - origin);
 }
@@ -49,9 +52,9 @@ Result<bool> ShadowMaps::configure(std::uint32_t resolution, std::uint32_t bits,
                                    std::uint64_t memory_budget_bytes, gpu::FrameResources& resources) {
     const std::uint64_t texels_per_map = std::uint64_t(resolution) * resolution;
     const std::uint64_t bytes_per_map = texels_per_map * bits / 8;
-    const std::uint64_t limit = std::min({std::uint64_t(std::max(wanted, 1u)), memory_budget_bytes / bytes_per_map,
-                                          device_.traits().max_texel_elements / texels_per_map,
-                                          (std::uint64_t(1) << 31) / bytes_per_map});
+    const std::uint64_t limit =
+        std::min({std::uint64_t(std::max(wanted, 1u)), memory_budget_bytes / bytes_per_map,
+                  device_.traits().max_texel_elements / texels_per_map, (std::uint64_t(1) << 31) / bytes_per_map});
     if (limit == 0)
         return Error{"one shadow map of " + std::to_string(resolution) +
                      " texels a side does not fit shadow_memory or this device; lower shadow_map_resolution"};
@@ -72,8 +75,8 @@ Result<bool> ShadowMaps::configure(std::uint32_t resolution, std::uint32_t bits,
                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     buffer.texel_format = bits == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
     SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
-    layers_ = std::uint32_t(std::clamp<std::uint64_t>(staging_budget_bytes / bytes_per_map, 1,
-                                                      std::min({staging_layers, slots, device_.traits().max_image_layers})));
+    layers_ = std::uint32_t(std::clamp<std::uint64_t>(
+        staging_budget_bytes / bytes_per_map, 1, std::min({staging_layers, slots, device_.traits().max_image_layers})));
     gpu::ImageDescription image;
     image.name = "shadow map staging";
     image.format = depth_format(bits);
@@ -179,8 +182,7 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
         const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
                                          gpu::Binding::slice(chunk.lights)};
         status = context.resources.bind(context.commands, pipeline, bindings);
-        context.resources.push(context.commands, pipeline,
-                               shared::ShadowConstants{0.5f / float(resolution_)});
+        context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
         const VkBuffer vertices = scene.positions().handle();
         const VkDeviceSize offset = 0;
         vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);

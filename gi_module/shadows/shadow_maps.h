@@ -24,10 +24,10 @@ struct ShadowRequest {
 };
 
 struct ShadowCounters {
-    std::uint64_t maps = 0;         // drawn
-    std::uint64_t faces = 0;        // with at least one occluder
-    std::uint64_t draws = 0;        // draw calls (indirect commands count as one call)
-    std::uint64_t vertices = 0;     // shaded, by the size of the meshes
+    std::uint64_t maps = 0;     // drawn
+    std::uint64_t faces = 0;    // with at least one occluder
+    std::uint64_t draws = 0;    // draw calls (indirect commands count as one call)
+    std::uint64_t vertices = 0; // shaded, by the size of the meshes
 };
 
 class ShadowMaps {

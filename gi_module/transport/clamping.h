@@ -1,9 +1,10 @@
 // The bound of the geometry term cos*cos/d^2.
 //
-// One of N surface samples stands for an area A/N of the scene's surface A, a disc of radius r = sqrt(A / (pi N)). Nearer
-// than r the point light misjudges the disc that it stands for, so the term is held below 1/r^2 = pi N / A. The bound
-// grows in proportion to N: the picture converges, which it does not with a fixed bound. It has no unit of length of its
-// own: scaling the scene scales it along. What it removes is counted (see BruteForce) and reported as clamped_flux.
+// One of N surface samples stands for an area A/N of the scene's surface A, a disc of radius r = sqrt(A / (pi N)).
+// Nearer than r the point light misjudges the disc that it stands for, so the term is held below 1/r^2 = pi N / A. The
+// bound grows in proportion to N: the picture converges, which it does not with a fixed bound. It has no unit of length
+// of its own: scaling the scene scales it along. What it removes is counted (see BruteForce) and reported as
+// clamped_flux.
 #pragma once
 
 #include <cstdint>

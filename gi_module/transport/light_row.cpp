@@ -3,10 +3,13 @@
 namespace sunfleck::gi {
 std::uint32_t light_class(SampleKind kind) {
     switch (kind) {
-    case SampleKind::surface: return shared::light_class_surface;
+    case SampleKind::surface:
+        return shared::light_class_surface;
     case SampleKind::point:
-    case SampleKind::spot: return shared::light_class_point;
-    case SampleKind::directional: return shared::light_class_directional;
+    case SampleKind::spot:
+        return shared::light_class_point;
+    case SampleKind::directional:
+        return shared::light_class_directional;
     }
     return shared::light_class_surface;
 }
@@ -22,7 +25,9 @@ shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, f
     row.bitangent = vec4(bitangent, 0.0f);
     vec3 intensity(0.0f);
     switch (sample.kind) {
-    case SampleKind::surface: intensity = sample.flux / pi; break;
+    case SampleKind::surface:
+        intensity = sample.flux / pi;
+        break;
     case SampleKind::point:
         intensity = sample.flux / (4.0f * pi);
         row.normal_offset.w = 1.0f; // no cone: clamp(0 * cos + 1)^2

@@ -7,8 +7,8 @@ namespace sunfleck::gi {
 
 std::uint32_t light_class(SampleKind kind);
 
-// The numbers a shader needs. `geometry_bound`: see transport/clamping.h. `scene`: box around all geometry; the map of a
-// directional sample covers its bounding sphere.
+// The numbers a shader needs. `geometry_bound`: see transport/clamping.h. `scene`: box around all geometry; the map of
+// a directional sample covers its bounding sphere.
 shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, float geometry_bound,
                                 const Bounds& scene);
 

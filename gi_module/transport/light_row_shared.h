@@ -10,11 +10,11 @@ SHARED_CONSTANT uint light_class_point = 1u;       // point and spot lights, sph
 SHARED_CONSTANT uint light_class_directional = 2u; // parallel light, orthographic map
 
 struct LightRow {
-    vec4 position_bound;  //  0: xyz; w: bound of the geometry term, 1/m2 (surface class)
-    vec4 normal_offset;   // 16: xyz: axis; w: cone offset (point class), 1 / (2 * radius) (directional class)
-    vec4 intensity_slot;  // 32: rgb: radiant intensity on the axis W/sr, or irradiance W/m2; w: map slot
-    vec4 tangent_scale;   // 48: xyz: first axis of the map; w: cone scale (point), 1 / radius (directional)
-    vec4 bitangent;       // 64: xyz: second axis of the map
+    vec4 position_bound; //  0: xyz; w: bound of the geometry term, 1/m2 (surface class)
+    vec4 normal_offset;  // 16: xyz: axis; w: cone offset (point class), 1 / (2 * radius) (directional class)
+    vec4 intensity_slot; // 32: rgb: radiant intensity on the axis W/sr, or irradiance W/m2; w: map slot
+    vec4 tangent_scale;  // 48: xyz: first axis of the map; w: cone scale (point), 1 / radius (directional)
+    vec4 bitangent;      // 64: xyz: second axis of the map
 };
 
 SHARED_CONSTANT uint lights_per_batch = 512u; // 40 KiB: within every device's uniform range

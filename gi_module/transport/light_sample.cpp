@@ -4,7 +4,9 @@ namespace sunfleck::gi {
 
 const TypeDescription& LightSample::description() {
     static const TypeDescription type{
-        "LightSample", 1, "A virtual point light, made by the GI module.",
+        "LightSample",
+        1,
+        "A virtual point light, made by the GI module.",
         {SUNFLECK_CHOICE(LightSample, kind, "How it radiates", "surface", "point", "spot", "directional"),
          SUNFLECK_FIELD(LightSample, position, "m", -1e6, 1e6, "World position"),
          SUNFLECK_FIELD(LightSample, normal, "", -1, 1, "Axis of radiation"),
@@ -19,7 +21,9 @@ const TypeDescription& LightSample::description() {
 
 const TypeDescription& ShadowMap::description() {
     static const TypeDescription type{
-        "ShadowMap", 1, "The shadow map of a light sample.",
+        "ShadowMap",
+        1,
+        "The shadow map of a light sample.",
         {SUNFLECK_FIELD(ShadowMap, slot, "", 0, 4294967295.0, "Place in the map store"),
          SUNFLECK_FIELD(ShadowMap, resolution, "texels", 0, 4096, "Texels along a side"),
          SUNFLECK_FIELD(ShadowMap, frames_out_of_date, "frames", 0, 4294967295.0, "Age of what it shows"),

@@ -12,8 +12,8 @@ enum class SampleKind : std::uint32_t {
     directional, // parallel light along `normal`; `flux` is the irradiance on a facing plane, W/m2
 };
 
-// `flux` is already divided by the number of samples that share an emitter or a set of walks: the irradiance at a point is
-// the plain sum over all samples. Nothing else is folded in (no pi, no albedo of the receiver).
+// `flux` is already divided by the number of samples that share an emitter or a set of walks: the irradiance at a point
+// is the plain sum over all samples. Nothing else is folded in (no pi, no albedo of the receiver).
 struct LightSample {
     SampleKind kind = SampleKind::surface;
     vec3 position{0.0f};
@@ -22,7 +22,7 @@ struct LightSample {
     std::uint32_t bounce = 0;      // reflections so far: 0 is direct light
     float cone_scale = 0.0f;       // spot: intensity factor is clamp(cos * scale + offset, 0, 1)^2
     float cone_offset = 0.0f;
-    std::uint32_t index = 0;       // stable: map slot, GPU row and random sequence follow it
+    std::uint32_t index = 0; // stable: map slot, GPU row and random sequence follow it
     ecs::Entity emitter;
 
     static const TypeDescription& description();
@@ -31,8 +31,8 @@ struct LightSample {
 // Where the sample's shadow map is and how old. Kept beside each LightSample.
 struct ShadowMap {
     std::uint32_t slot = 0;
-    std::uint32_t resolution = 0;         // texels along a side
-    std::uint32_t frames_out_of_date = 0; // 0: it shows the last completed step
+    std::uint32_t resolution = 0;           // texels along a side
+    std::uint32_t frames_out_of_date = 0;   // 0: it shows the last completed step
     std::uint32_t faces_with_occluders = 0; // bit per octahedron face
 
     static const TypeDescription& description();

@@ -64,7 +64,8 @@ void view_two(benchmark::State& state) {
     fill(registry, state.range(0), false);
     for (auto _ : state) {
         float sum = 0;
-        registry.view<Position, Velocity>().each([&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
+        registry.view<Position, Velocity>().each(
+            [&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
         benchmark::DoNotOptimize(sum);
     }
     per_entity(state);
@@ -76,7 +77,8 @@ void group_two(benchmark::State& state) {
     fill(registry, state.range(0), false);
     for (auto _ : state) {
         float sum = 0;
-        registry.group<Position, Velocity>().each([&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
+        registry.group<Position, Velocity>().each(
+            [&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
         benchmark::DoNotOptimize(sum);
     }
     per_entity(state);
@@ -108,7 +110,8 @@ void view_two_fragmented(benchmark::State& state) {
         registry.emplace<Velocity>(entities[i]);
     for (auto _ : state) {
         float sum = 0;
-        registry.view<Position, Velocity>().each([&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
+        registry.view<Position, Velocity>().each(
+            [&](Entity, const Position& p, const Velocity& v) { sum += p.x * v.x; });
         benchmark::DoNotOptimize(sum);
     }
     per_entity(state);

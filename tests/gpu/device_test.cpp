@@ -23,8 +23,8 @@ TEST_F(DeviceTest, UnknownDevicesAreNamedInOneMessage) {
 
 TEST_F(DeviceTest, TwoDevicesLiveSideBySide) {
     auto other = gpu::Device::create({}).value();
-    gpu::HostDevice host{other->instance(), other->physical_device(), other->handle(), other->queue(),
-                         other->queue_family(), nullptr};
+    gpu::HostDevice host{other->instance(), other->physical_device(), other->handle(),
+                         other->queue(),    other->queue_family(),    nullptr};
     auto adopted = gpu::Device::adopt(host);
     ASSERT_TRUE(adopted) << adopted.error().message;
     auto renderer = viewer::SceneRenderer::create(**adopted);
@@ -75,7 +75,8 @@ VKAPI_ATTR VkResult VKAPI_CALL failing_allocate(VkDevice device, const VkMemoryA
     return true_allocate(device, info, callbacks, memory);
 }
 
-VKAPI_ATTR VkResult VKAPI_CALL failing_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* submits, VkFence fence) {
+VKAPI_ATTR VkResult VKAPI_CALL failing_submit(VkQueue queue, std::uint32_t count, const VkSubmitInfo2* submits,
+                                              VkFence fence) {
     if (--calls_until_failure < 0)
         return VK_ERROR_DEVICE_LOST;
     return true_submit(queue, count, submits, fence);
@@ -157,7 +158,8 @@ TEST_F(DeviceTest, OddPictureSizes) {
     settings.lights = 8;
     settings.shadow_map_resolution = 32;
     world.set(settings);
-    for (const auto& [width, height] : {std::pair(1u, 1u), std::pair(1u, 300u), std::pair(257u, 3u), std::pair(4096u, 4096u)}) {
+    for (const auto& [width, height] :
+         {std::pair(1u, 1u), std::pair(1u, 300u), std::pair(257u, 3u), std::pair(4096u, 4096u)}) {
         world.request.width = width;
         world.request.height = height;
         const io::Picture picture = world.picture();

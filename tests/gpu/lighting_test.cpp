@@ -127,7 +127,8 @@ TEST_F(Lighting, RectangleOnAPlaneInTheMean) {
     gi::Settings settings = one_light();
     settings.lights = 1024;
     world.set(settings);
-    const std::vector<vec3> corners = {{-0.5f, 2.5f, -1.0f}, {0.5f, 2.5f, -1.0f}, {0.5f, 2.5f, 1.0f}, {-0.5f, 2.5f, 1.0f}};
+    const std::vector<vec3> corners = {
+        {-0.5f, 2.5f, -1.0f}, {0.5f, 2.5f, -1.0f}, {0.5f, 2.5f, 1.0f}, {-0.5f, 2.5f, 1.0f}};
     double sum = 0, expected = 0;
     each_floor_pixel(world, [&](vec3 irradiance, vec3 position) {
         sum += double(irradiance.x);

@@ -35,7 +35,8 @@ struct Maps {
                 .write(to, gpu::Usage::transfer_destination)
                 .execute([&](gpu::PassContext& context) -> Status {
                     const VkBufferCopy region{0, 0, description.size};
-                    context.device.vk.vkCmdCopyBuffer(context.commands, maps.texels().handle(), target.handle(), 1, &region);
+                    context.device.vk.vkCmdCopyBuffer(context.commands, maps.texels().handle(), target.handle(), 1,
+                                                      &region);
                     return {};
                 });
             graph.add_pass("host").read(to, gpu::Usage::host_read).keep();
@@ -71,7 +72,8 @@ struct Maps {
         const vec3 d = to_light_space(light, v);
         Look result;
         result.place = hemisphere[light] ? hemisphere_map(d) : sphere_map(d);
-        const float reach = hemisphere[light] ? hemisphere_texel_reach(float(resolution)) : sphere_texel_reach(float(resolution));
+        const float reach =
+            hemisphere[light] ? hemisphere_texel_reach(float(resolution)) : sphere_texel_reach(float(resolution));
         result.bias = perspective_bias(reach, -glm::dot(normal, v), result.place.z) + depth_step(bits);
         result.receiver = std::min(shadow_near * result.place.z, 1.0f);
         const vec2 at = (vec2(result.place) * 0.5f + 0.5f) * float(resolution);
@@ -124,14 +126,18 @@ struct SurfaceSampler {
                     corners.push_back(vec3(transform.matrix * vec4(mesh.positions[mesh.indices[i]], 1.0f)));
             });
         for (std::size_t i = 0; i < corners.size(); i += 3)
-            cumulative.push_back(total += double(glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]))));
+            cumulative.push_back(
+                total += double(glm::length(glm::cross(corners[i + 1] - corners[i], corners[i + 2] - corners[i]))));
     }
     void sample(RandomSequence& random, vec3& position, vec3& normal) const {
-        const std::size_t t = 3 * std::min<std::size_t>(
-            std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), double(random.next()) * total) - cumulative.begin()),
-            cumulative.size() - 1);
+        const std::size_t t =
+            3 * std::min<std::size_t>(
+                    std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), double(random.next()) * total) -
+                                cumulative.begin()),
+                    cumulative.size() - 1);
         const float root = std::sqrt(random.next()), v = random.next();
-        position = corners[t] + root * (1.0f - v) * (corners[t + 1] - corners[t]) + root * v * (corners[t + 2] - corners[t]);
+        position =
+            corners[t] + root * (1.0f - v) * (corners[t + 1] - corners[t]) + root * v * (corners[t + 2] - corners[t]);
         normal = glm::normalize(glm::cross(corners[t + 1] - corners[t], corners[t + 2] - corners[t]));
     }
     std::vector<vec3> corners;
@@ -139,9 +145,10 @@ struct SurfaceSampler {
     double total = 0;
 };
 
-// Why the map and Embree may differ: a ray through one of the 5x5 neighbouring texel centres gives the map's answer at the
-// receiver's depth, or the blocker is nearer to the receiver than the documented bias.
-bool explained(const Maps& maps, const raytrace::RayScene& rays, std::size_t light, const Maps::Look& look, vec3 position) {
+// Why the map and Embree may differ: a ray through one of the 5x5 neighbouring texel centres gives the map's answer at
+// the receiver's depth, or the blocker is nearer to the receiver than the documented bias.
+bool explained(const Maps& maps, const raytrace::RayScene& rays, std::size_t light, const Maps::Look& look,
+               vec3 position) {
     const vec3 origin(maps.rows[light].position_bound);
     // The depth that the map's values are held against: the receiver's, less the bias.
     const float w = 1.0f / (look.place.z + look.bias / shadow_near);
@@ -152,9 +159,11 @@ bool explained(const Maps& maps, const raytrace::RayScene& rays, std::size_t lig
         if (hit && shadow_near * (look.place.z / hit->distance - look.place.z) < look.bias * 1.001f)
             return true;
     }
-    // An edge that runs exactly through a centre belongs to either side: rays pass a thousandth of a texel beside it too.
+    // An edge that runs exactly through a centre belongs to either side: rays pass a thousandth of a texel beside it
+    // too.
     for (int place = 0; place < 25; ++place)
-        for (const vec2 beside : {vec2(0.0f), vec2(1e-3f, 0.0f), vec2(-1e-3f, 0.0f), vec2(0.0f, 1e-3f), vec2(0.0f, -1e-3f)}) {
+        for (const vec2 beside :
+             {vec2(0.0f), vec2(1e-3f, 0.0f), vec2(-1e-3f, 0.0f), vec2(0.0f, 1e-3f), vec2(0.0f, -1e-3f)}) {
             vec3 direction(0.0f);
             if (!maps.centre_direction(light, look.texel + ivec2(place % 5 - 2, place / 5 - 2), beside, direction))
                 continue;
@@ -228,13 +237,21 @@ void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits
     EXPECT_EQ(unexplained, 0) << "of " << pairs;
 }
 
-TEST_F(ShadowMapTest, AgreesWithEmbreeInCornell) { compare_with_embree(assets::make_cornell, 16, 1000000); }
-TEST_F(ShadowMapTest, AgreesWithEmbreeInTableRoom) { compare_with_embree(assets::make_table_room, 16, 1000000); }
-TEST_F(ShadowMapTest, AgreesWithEmbreeInFourPillars) { compare_with_embree(assets::make_four_pillars, 16, 1000000); }
-TEST_F(ShadowMapTest, AgreesWithEmbreeWith32Bits) { compare_with_embree(assets::make_area_room, 32, 200000); }
+TEST_F(ShadowMapTest, AgreesWithEmbreeInCornell) {
+    compare_with_embree(assets::make_cornell, 16, 1000000);
+}
+TEST_F(ShadowMapTest, AgreesWithEmbreeInTableRoom) {
+    compare_with_embree(assets::make_table_room, 16, 1000000);
+}
+TEST_F(ShadowMapTest, AgreesWithEmbreeInFourPillars) {
+    compare_with_embree(assets::make_four_pillars, 16, 1000000);
+}
+TEST_F(ShadowMapTest, AgreesWithEmbreeWith32Bits) {
+    compare_with_embree(assets::make_area_room, 32, 200000);
+}
 
-// A hollow box with walls of 20 cm stands on a floor; nothing inside it may be lit, and nothing of the open floor may be
-// shadowed by itself. Lamps all around, also ones that graze the floor.
+// A hollow box with walls of 20 cm stands on a floor; nothing inside it may be lit, and nothing of the open floor may
+// be shadowed by itself. Lamps all around, also ones that graze the floor.
 void make_box_on_floor(assets::SceneBuilder& scene) {
     scene.quad("floor", vec3(-6, 0, -6), vec3(0, 0, 12), vec3(12, 0, 0), assets::diffuse(vec3(0.5f)));
     const scene::Material wall = assets::diffuse(vec3(0.5f));

@@ -76,9 +76,8 @@ TEST(SceneFiles, EverySceneComesBackAsItWas) {
             if (const auto* c = before.try_get<scene::Camera>(old_entity)) {
                 EXPECT_NEAR(c->vertical_field_of_view, after.get<scene::Camera>(entity).vertical_field_of_view, 1e-6f);
             }
-            if (const auto* m = before.try_get<scene::Mover>(old_entity)) { {
-                EXPECT_EQ(m->path, after.get<scene::Mover>(entity).path);
-            }
+            if (const auto* m = before.try_get<scene::Mover>(old_entity)) {
+                { EXPECT_EQ(m->path, after.get<scene::Mover>(entity).path); }
                 EXPECT_EQ(m->period, after.get<scene::Mover>(entity).period);
             }
             if (const auto* l = before.try_get<scene::AreaLight>(old_entity)) {
@@ -120,10 +119,11 @@ TEST(SceneFiles, DamagedFilesAreErrors) {
         }
     }
     EXPECT_GT(errors, 100);
-    for (const std::string& text : {std::string("{}"), std::string("[]"), std::string(200000, '['), std::string(),
-                                    std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"AreaLight":{"width":-1}}}})"),
-                                    std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"Nonsense":{}}}})"),
-                                    std::string(R"({"sunfleck_scene":1,"gltf":"../../etc/passwd"})")}) {
+    for (const std::string& text :
+         {std::string("{}"), std::string("[]"), std::string(200000, '['), std::string(),
+          std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"AreaLight":{"width":-1}}}})"),
+          std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"Nonsense":{}}}})"),
+          std::string(R"({"sunfleck_scene":1,"gltf":"../../etc/passwd"})")}) {
         ASSERT_TRUE(write_file(folder.path / "bad.scene.json", text));
         ecs::Registry target;
         scene::MeshStore store;

@@ -56,7 +56,8 @@ TEST_F(CommandLine, RenderWritesThePictureAndStatistics) {
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_TRUE(outcome.output.empty()) << outcome.output;
     const auto json = nlohmann::json::parse(read_file(folder / "a.json").value());
-    for (const char* key : {"device", "driver", "scene", "settings", "frames", "frame_ms", "cpu_ms", "gpu_ms", "counters", "memory_bytes"})
+    for (const char* key : {"device", "driver", "scene", "settings", "frames", "frame_ms", "cpu_ms", "gpu_ms",
+                            "counters", "memory_bytes"})
         EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_EQ(json["counters"]["light_samples"], 8);
     EXPECT_EQ(json["counters"]["shadow_map_updates"], 8);
@@ -69,7 +70,8 @@ TEST_F(CommandLine, CompareOfAPictureWithItselfIsNothing) {
     const Outcome outcome = tool("compare a.exr a.exr --json --diff d.png");
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     const auto json = nlohmann::json::parse(outcome.output);
-    for (const char* key : {"mean_a", "mean_b", "mae", "max", "rmse", "relative_mse", "psnr", "ssim", "flip", "pixels", "left_out"})
+    for (const char* key :
+         {"mean_a", "mean_b", "mae", "max", "rmse", "relative_mse", "psnr", "ssim", "flip", "pixels", "left_out"})
         EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_EQ(json["max"], 0.0);
     EXPECT_EQ(json["mean_a"], json["mean_b"]);
@@ -112,8 +114,9 @@ TEST_F(CommandLine, AFullDiskLeavesTheOldPicture) {
     ASSERT_EQ(tool("render cornell -o a.png" + small).status, 0);
     const std::string before = read_file(folder / "a.png").value();
     for (const char* name : {"a.png", "b.exr"}) {
-        const Outcome outcome = shell("cd " + folder.string() + " && (ulimit -f 2; " SUNFLECK_TOOL " render cornell -o " +
-                                      std::string(name) + " --size 256x256 --lights 4 --warmup 0)");
+        const Outcome outcome =
+            shell("cd " + folder.string() + " && (ulimit -f 2; " SUNFLECK_TOOL " render cornell -o " +
+                  std::string(name) + " --size 256x256 --lights 4 --warmup 0)");
         expect_clear_error(outcome, {name});
     }
     EXPECT_EQ(read_file(folder / "a.png").value(), before);
@@ -148,7 +151,8 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 }
 
 TEST_F(CommandLine, TheDemoRunsHeadless) {
-    const Outcome outcome = shell("cd " + folder.string() + " && " SUNFLECK_DEMO " --headless --frames 3 --size 64x36 -o out --validation");
+    const Outcome outcome =
+        shell("cd " + folder.string() + " && " SUNFLECK_DEMO " --headless --frames 3 --size 64x36 -o out --validation");
     ASSERT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_TRUE(fs::exists(folder / "out/stats.json"));
     EXPECT_TRUE(fs::exists(folder / "out/frame_00002.png"));
@@ -158,16 +162,19 @@ TEST_F(CommandLine, TheDemoRunsHeadless) {
 TEST_F(CommandLine, TheDemoRunsInAWindow) {
     if (shell("command -v xvfb-run && command -v xdotool").status != 0)
         GTEST_SKIP() << "xvfb and xdotool are not installed";
-    const std::string script = "cd " + folder.string() + "\n" SUNFLECK_DEMO
-        " --validation --size 160x90 --lights 8 & P=$!\n"
-        "for i in $(seq 100); do W=$(xdotool search --name Sunfleck | head -1); [ -n \"$W\" ] && break; sleep 0.2; done\n"
+    const std::string script =
+        "cd " + folder.string() +
+        "\n" SUNFLECK_DEMO " --validation --size 160x90 --lights 8 & P=$!\n"
+        "for i in $(seq 100); do W=$(xdotool search --name Sunfleck | head -1); [ -n \"$W\" ] && break; sleep 0.2; "
+        "done\n"
         "sleep 1; xdotool windowfocus $W; for k in i s space f f i; do xdotool key $k; sleep 0.3; done\n"
         "xdotool windowsize $W 300 300; sleep 0.5; xdotool windowsize $W 111 400; sleep 0.5\n"
         "for i in $(seq 20); do xdotool key p; sleep 0.5; [ -f sunfleck.png ] && break; done\n"
         "for i in $(seq 20); do xdotool key Escape; sleep 0.5; kill -0 $P 2>/dev/null || break; done\n"
         "wait $P\n";
     ASSERT_TRUE(write_file(folder / "drive.sh", script));
-    const Outcome outcome = shell("timeout 90 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
+    const Outcome outcome =
+        shell("timeout 90 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_TRUE(fs::exists(folder / "sunfleck.png")) << outcome.output;
 }

@@ -29,8 +29,9 @@ io::Picture reference_picture(GpuWorld& world, std::uint32_t samples) {
     tracer.accumulate(accumulation, world.request.camera, settings, samples);
     io::Picture picture{settings.width, settings.height, {}};
     for (std::size_t i = 0; i < accumulation.covered.size(); ++i)
-        picture.pixels.emplace_back(float(accumulation.sums[i * 3] / samples), float(accumulation.sums[i * 3 + 1] / samples),
-                                    float(accumulation.sums[i * 3 + 2] / samples), accumulation.covered[i] ? 1.0f : 0.0f);
+        picture.pixels.emplace_back(
+            float(accumulation.sums[i * 3] / samples), float(accumulation.sums[i * 3 + 1] / samples),
+            float(accumulation.sums[i * 3 + 2] / samples), accumulation.covered[i] ? 1.0f : 0.0f);
     return picture;
 }
 
@@ -43,8 +44,8 @@ gi::Settings truth_settings(std::uint32_t lights, std::uint32_t seed) {
     return settings;
 }
 
-// Mean irradiance within 1 %, relative MSE at most 0.01, over all pixels: also those near other surfaces, where the bound
-// of the geometry term acts. (Four thousand paths a pixel leave about 0.1 % of noise in the reference's mean.)
+// Mean irradiance within 1 %, relative MSE at most 0.01, over all pixels: also those near other surfaces, where the
+// bound of the geometry term acts. (Four thousand paths a pixel leave about 0.1 % of noise in the reference's mean.)
 void expect_truth(void (*make)(assets::SceneBuilder&)) {
     GpuWorld world(make, "view");
     world.request.width = 80;
@@ -61,16 +62,23 @@ void expect_truth(void (*make)(assets::SceneBuilder&)) {
     EXPECT_GT(metrics.pixels, 3000u);
 }
 
-TEST_F(Truth, Cornell) { expect_truth(assets::make_cornell); }
-TEST_F(Truth, AreaRoom) { expect_truth(assets::make_area_room); }
-TEST_F(Truth, FourPillars) { expect_truth(assets::make_four_pillars); }
+TEST_F(Truth, Cornell) {
+    expect_truth(assets::make_cornell);
+}
+TEST_F(Truth, AreaRoom) {
+    expect_truth(assets::make_area_room);
+}
+TEST_F(Truth, FourPillars) {
+    expect_truth(assets::make_four_pillars);
+}
 
 // A yard under a uniform sky and a sun: light from outside, through orthographic maps.
 TEST_F(Truth, SkyAndSun) {
     expect_truth([](assets::SceneBuilder& scene) {
         scene.quad("ground", vec3(-3, 0, -3), vec3(0, 0, 6), vec3(6, 0, 0), assets::diffuse(vec3(0.6f, 0.5f, 0.4f)));
         scene.box("block", vec3(-0.6f, 0, -0.6f), vec3(0.6f, 1.2f, 0.6f), assets::diffuse(vec3(0.7f)));
-        scene.quad("wall", vec3(-2.5f, 0, -2.0f), vec3(5, 0, 0), vec3(0, 2, 0), assets::diffuse(vec3(0.2f, 0.4f, 0.7f)));
+        scene.quad("wall", vec3(-2.5f, 0, -2.0f), vec3(5, 0, 0), vec3(0, 2, 0),
+                   assets::diffuse(vec3(0.2f, 0.4f, 0.7f)));
         ecs::Registry& registry = scene.registry();
         registry.emplace<scene::Environment>(registry.create(), {vec3(0.5f, 0.6f, 0.8f)});
         const ecs::Entity sun = registry.create();
@@ -82,9 +90,10 @@ TEST_F(Truth, SkyAndSun) {
     });
 }
 
-// The error falls with the number of samples, five seeds each. The pixels are the same at every count: those farther from
-// other surfaces than 1/sqrt(G_max) at the smallest one, where no sample is ever clamped. (Nearer to other surfaces the
-// variance of point samples is unbounded but for the clamp, which rises with the count: there the slope is about -0.3.)
+// The error falls with the number of samples, five seeds each. The pixels are the same at every count: those farther
+// from other surfaces than 1/sqrt(G_max) at the smallest one, where no sample is ever clamped. (Nearer to other
+// surfaces the variance of point samples is unbounded but for the clamp, which rises with the count: there the slope is
+// about -0.3.)
 TEST_F(Truth, ErrorFallsWithTheNumberOfSamples) {
     GpuWorld world(assets::make_cornell, "view");
     world.request.width = 48;
@@ -143,7 +152,8 @@ TEST(Metrics, KnownDifferencesGiveKnownNumbers) {
     EXPECT_LT(m.structural_similarity, 0.999);
     EXPECT_GT(m.flip, 0.01);
     // Black against white is as different as can be.
-    const io::Picture black{32, 32, std::vector<vec4>(1024, vec4(0, 0, 0, 1))}, white{32, 32, std::vector<vec4>(1024, vec4(1))};
+    const io::Picture black{32, 32, std::vector<vec4>(1024, vec4(0, 0, 0, 1))},
+        white{32, 32, std::vector<vec4>(1024, vec4(1))};
     EXPECT_GT(command_line::compare_pictures(black, white, false).flip, 0.9);
 }
 

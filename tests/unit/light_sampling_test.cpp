@@ -133,8 +133,8 @@ TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
             }
 }
 
-// Reflected flux of bounce k, from samples, against the adjoint computation: radiosity (albedo times irradiance that was
-// reflected k - 1 times before) integrated over the static surfaces by the path tracer from random surface points.
+// Reflected flux of bounce k, from samples, against the adjoint computation: radiosity (albedo times irradiance that
+// was reflected k - 1 times before) integrated over the static surfaces by the path tracer from random surface points.
 TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
     for (auto make : {assets::make_cornell, assets::make_four_pillars}) {
         World world(make);
@@ -187,7 +187,8 @@ TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
             const RandomSequence random(SequenceKind::sobol, 99, i);
             const std::size_t chosen = std::min<std::size_t>(
                 std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), double(random.at(0)) * area) -
-                            cumulative.begin()), triangles.size() - 1);
+                            cumulative.begin()),
+                triangles.size() - 1);
             const Triangle& t = triangles[chosen];
             const float root = std::sqrt(random.at(1)), v = random.at(2);
             const vec3 position = t.p[0] + root * (1.0f - v) * (t.p[1] - t.p[0]) + root * v * (t.p[2] - t.p[0]);

@@ -47,7 +47,8 @@ TEST(Reference, FurnaceHasItsClosedForm) {
             for (const double sum : accumulation.sums)
                 mean += sum / double(accumulation.sums.size()) / accumulation.samples;
             const double expected = furnace(double(albedo), 1.5, bounces);
-            EXPECT_NEAR(mean / 3.14159265358979 / expected, 1.0, 0.005) << "albedo " << albedo << " bounces " << bounces;
+            EXPECT_NEAR(mean / 3.14159265358979 / expected, 1.0, 0.005)
+                << "albedo " << albedo << " bounces " << bounces;
         }
     }
 }
@@ -123,8 +124,8 @@ TEST(Reference, DirectAndIndirectAddUpToIrradiance) {
     EXPECT_GT(means[1], 0.1 * means[2]);
 }
 
-// The density integrates to what sample() does: a Monte Carlo estimate of the albedo by sampling the BSDF agrees with one
-// by uniform directions, and no surface reflects more than it receives.
+// The density integrates to what sample() does: a Monte Carlo estimate of the albedo by sampling the BSDF agrees with
+// one by uniform directions, and no surface reflects more than it receives.
 TEST(Bsdf, SamplingAgreesWithEvaluationAndEnergyIsConserved) {
     for (const float roughness : {0.2f, 0.5f, 1.0f})
         for (const float metallic : {0.0f, 1.0f})
@@ -150,7 +151,8 @@ TEST(Bsdf, SamplingAgreesWithEvaluationAndEnergyIsConserved) {
                             const float r = std::sqrt(1.0f - z * z);
                             return vec3(r * std::cos(angle), r * std::sin(angle), z);
                         }();
-                        uniform += double(bsdf.evaluate(outgoing, direction).x * direction.z) * 2.0 * double(pi) / count;
+                        uniform +=
+                            double(bsdf.evaluate(outgoing, direction).x * direction.z) * 2.0 * double(pi) / count;
                         density += double(bsdf.density(outgoing, direction)) * 2.0 * double(pi) / count;
                     }
                     EXPECT_NEAR(sampled, uniform, 0.01) << roughness << metallic << specular << cosine;
@@ -168,7 +170,8 @@ TEST(Bsdf, FresnelOfGlassHasItsKnownValues) {
     EXPECT_EQ(fresnel_dielectric(0.5f, 1.0f / 1.5f), 1.0f); // total reflection
     // Brewster's angle: only the perpendicular part is reflected.
     const float brewster = std::cos(std::atan(1.5f));
-    EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * std::pow((1.5f * 1.5f - 1.0f) / (1.5f * 1.5f + 1.0f), 2.0f), 1e-4f);
+    EXPECT_NEAR(fresnel_dielectric(brewster, 1.5f), 0.5f * std::pow((1.5f * 1.5f - 1.0f) / (1.5f * 1.5f + 1.0f), 2.0f),
+                1e-4f);
 }
 
 // A glass ball in a uniform surrounding takes nothing away: its pixels show the surroundings' radiance.
