@@ -124,14 +124,17 @@ TEST_F(CommandLine, AFullDiskLeavesTheOldPicture) {
 }
 
 TEST_F(CommandLine, AnInterruptedReferenceGoesOn) {
-    const std::string options = "reference cornell --size 160x120 --spp 64 -o ";
+    const std::string options = "reference cornell --size 160x120 --spp 256 -o ";
     ASSERT_EQ(tool(options + "whole.exr").status, 0);
-    const Outcome stopped = tool(options + "parts.exr", "timeout -s INT 0.7");
+    // Interrupted as soon as the first samples are reported.
+    const Outcome stopped = shell("cd " + folder.string() + " && (" SUNFLECK_TOOL " " + options +
+                                  "parts.exr > log 2>&1 & P=$!; for i in $(seq 600); do grep -q spp log && break; "
+                                  "sleep 0.05; done; kill -INT $P; wait $P; S=$?; cat log; exit $S)");
     EXPECT_NE(stopped.status, 0) << stopped.output;
     EXPECT_FALSE(fs::exists(folder / "parts.exr"));
     ASSERT_TRUE(fs::exists(folder / "parts.exr.state")) << stopped.output;
     // Another picture must not be continued from it.
-    expect_clear_error(tool("reference cornell --size 80x60 --spp 64 -o parts.exr"), {"parts.exr.state"});
+    expect_clear_error(tool("reference cornell --size 80x60 --spp 256 -o parts.exr"), {"parts.exr.state"});
     const Outcome resumed = tool(options + "parts.exr");
     ASSERT_EQ(resumed.status, 0) << resumed.output;
     EXPECT_NE(resumed.output.find("going on from"), std::string::npos);
