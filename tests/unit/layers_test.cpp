@@ -34,6 +34,7 @@ const Layers& allowed() {
         {"gi_module/transport", foundation},
         {"gi_module/light_sampling", with(foundation, {"gi_module/transport", "gi_module"})},
         {"gi_module/shadows", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
+        {"gi_module/visibility", with(foundation, {"gi_module/transport"})},
         {"gi_module/brute_force", with(foundation, {"gi_module/transport", "gi_module/shadows", "gi_module"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",

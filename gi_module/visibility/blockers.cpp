@@ -1,0 +1,209 @@
+#include "gi_module/visibility/blockers.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sunfleck::gi {
+namespace {
+
+// Blocked light must meet its blocker between these parts of its way: blockers that touch an end do not count as full.
+constexpr double earliest = 2e-4, latest = 1.0 - 2e-4;
+
+// Whether all segments from the gate to the light cross the convex polygon. Shadows of convex bodies are convex, so the
+// gate's corners speak for all of it.
+bool covers_gate(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon) {
+    if (pyramid.gate_count == 0)
+        return false;
+    const dvec3 area = area_vector(polygon);
+    const double length = glm::length(area);
+    if (length < 1e-12)
+        return false;
+    const dvec3 normal = area / length;
+    for (const dvec3& corner : pyramid.gate_points()) {
+        const dvec3 direction = pyramid.to_light(corner);
+        const double slope = glm::dot(normal, direction);
+        if (std::abs(slope) < 1e-12)
+            return false;
+        const double t = glm::dot(normal, polygon[0] - corner) / slope;
+        if (t < earliest || (!pyramid.parallel && t > latest))
+            return false;
+        const dvec3 point = corner + t * direction;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const dvec3 a = polygon[i], edge = polygon[(i + 1) % polygon.size()] - a;
+            if (glm::dot(glm::cross(normal, edge), point - a) < 1e-7 * glm::length(edge))
+                return false;
+        }
+    }
+    return true;
+}
+
+bool covers_gate(const OcclusionPyramid& pyramid, const std::vector<Plane>& body) {
+    if (pyramid.gate_count == 0)
+        return false;
+    for (const dvec3& corner : pyramid.gate_points()) {
+        const dvec3 direction = pyramid.to_light(corner);
+        double enter = -1e300, leave = 1e300;
+        for (const Plane& plane : body) {
+            const double start = plane.distance(corner) - 1e-7, slope = glm::dot(plane.normal, direction);
+            if (std::abs(slope) < 1e-14) {
+                if (start < 0.0)
+                    return false;
+                continue;
+            }
+            const double t = -start / slope;
+            if (slope > 0.0)
+                enter = std::max(enter, t);
+            else
+                leave = std::min(leave, t);
+        }
+        if (enter >= leave || enter < earliest || (!pyramid.parallel && enter > latest))
+            return false;
+    }
+    return true;
+}
+
+} // namespace
+
+std::vector<Plane> planes_of_convex_body(const FlatMesh& mesh) {
+    if (!mesh.closed || mesh.faces.size() < 4 || mesh.faces.size() > 64)
+        return {};
+    std::vector<Plane> planes;
+    for (const PlanarFace& face : mesh.faces) {
+        const dvec3 inward = -face.normal;
+        planes.push_back({inward, -glm::dot(inward, mesh.corner(face.triangles[0], 0))});
+    }
+    const double tolerance = 1e-6 * std::sqrt(mesh.area);
+    for (const Plane& plane : planes)
+        for (const dvec3& position : mesh.positions)
+            if (plane.distance(position) < -tolerance)
+                return {};
+    return planes;
+}
+
+MovingBlocker::MovingBlocker(const scene::Mesh& mesh) : local_bounds_(mesh.bounds()) {
+    const FlatMesh flat = find_planar_faces(mesh, mat4(1.0f));
+    convex_ = !planes_of_convex_body(flat).empty();
+    if (flat.faces.size() <= simple_polygons)
+        for (const PlanarFace& face : flat.faces)
+            for (Polygon& polygon : convex_pieces(flat, face))
+                local_polygons_.push_back(std::move(polygon));
+    if (local_polygons_.size() > simple_polygons)
+        local_polygons_.clear();
+    polygons_ = local_polygons_;
+    place(mat4(1.0f));
+}
+
+void MovingBlocker::place(const mat4& matrix) {
+    box_ = OrientedBox::of(local_bounds_, matrix);
+    bounds_ = {};
+    for (int i = 0; i < 8; ++i)
+        bounds_.add(vec3(box_.corner(i)));
+    for (std::size_t i = 0; i < polygons_.size(); ++i)
+        for (std::size_t k = 0; k < polygons_[i].size(); ++k)
+            polygons_[i][k] = dvec3(vec3(matrix * vec4(vec3(local_polygons_[i][k]), 1.0f)));
+}
+
+Blocking MovingBlocker::test(const OcclusionPyramid& pyramid) const {
+    if (!may_enter(pyramid, box_))
+        return Blocking::none;
+    if (polygons_.empty())
+        return Blocking::partial;
+    bool any = false;
+    for (const Polygon& polygon : polygons_) {
+        if (!enters(pyramid, polygon))
+            continue;
+        any = true;
+        if (covers_gate(pyramid, polygon))
+            return Blocking::full;
+    }
+    return any ? Blocking::partial : Blocking::none;
+}
+
+void StaticBlockers::add(const FlatMesh& mesh) {
+    std::uint32_t body = 0xffffffffu;
+    if (std::vector<Plane> planes = planes_of_convex_body(mesh); !planes.empty()) {
+        body = std::uint32_t(bodies_.size());
+        bodies_.push_back(std::move(planes));
+    }
+    for (const PlanarFace& face : mesh.faces)
+        for (Polygon& polygon : convex_pieces(mesh, face)) {
+            Bounds bounds;
+            for (const dvec3& point : polygon)
+                bounds.add(vec3(point));
+            bounds_.push_back(bounds);
+            polygons_.push_back(std::move(polygon));
+            body_of_.push_back(body);
+        }
+}
+
+void StaticBlockers::build() {
+    order_.resize(polygons_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    nodes_.clear();
+    if (!order_.empty())
+        build(0, std::uint32_t(order_.size()));
+}
+
+std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count) {
+    const std::uint32_t index = std::uint32_t(nodes_.size());
+    nodes_.push_back({});
+    Bounds bounds, centres;
+    for (std::uint32_t i = first; i < first + count; ++i) {
+        bounds.add(bounds_[order_[i]]);
+        centres.add(bounds_[order_[i]].centre());
+    }
+    nodes_[index].bounds = bounds;
+    if (count <= 4) {
+        nodes_[index].first = first;
+        nodes_[index].count = count;
+        return index;
+    }
+    const vec3 extent = centres.extent();
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::uint32_t half = count / 2;
+    std::nth_element(order_.begin() + first, order_.begin() + first + half, order_.begin() + first + count,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                         const float ca = bounds_[a].centre()[axis], cb = bounds_[b].centre()[axis];
+                         return ca != cb ? ca < cb : a < b;
+                     });
+    const std::uint32_t left = build(first, half);
+    const std::uint32_t right = build(first + half, count - half);
+    nodes_[index].first = left;
+    nodes_[index].right = right;
+    return index;
+}
+
+Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
+    if (nodes_.empty())
+        return Blocking::none;
+    std::array<std::uint32_t, 64> stack;
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    bool any = false;
+    std::uint32_t last_body = 0xffffffffu;
+    while (depth > 0) {
+        const Node& node = nodes_[stack[--depth]];
+        if (!may_enter(pyramid, node.bounds))
+            continue;
+        if (node.count == 0) {
+            stack[depth++] = node.first;
+            stack[depth++] = node.right;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const std::uint32_t polygon = order_[i];
+            if (!enters(pyramid, polygons_[polygon]))
+                continue;
+            any = true;
+            if (covers_gate(pyramid, polygons_[polygon]))
+                return Blocking::full;
+            const std::uint32_t body = body_of_[polygon];
+            if (body != 0xffffffffu && body != last_body && covers_gate(pyramid, bodies_[body]))
+                return Blocking::full;
+            last_body = body;
+        }
+    }
+    return any ? Blocking::partial : Blocking::none;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,67 @@
+// What can stand between a sample and a receiver, and how much of the light it takes. Thesis sec. 4.3.1: simple objects
+// are tested polygon by polygon, complex ones by a bounding volume (a box here, which fits tighter than a sphere).
+#pragma once
+
+#include "gi_module/visibility/occlusion_pyramid.h"
+#include "gi_module/visibility/planar_faces.h"
+
+namespace sunfleck::gi {
+
+// How much of the light from a sample to a receiver something blocks.
+enum class Blocking : std::uint8_t { none, partial, full };
+
+// A moving object. Simple ones (few polygons) are exact; of complex ones only the box is known, and they never block
+// fully.
+class MovingBlocker {
+public:
+    static constexpr std::size_t simple_polygons = 64;
+
+    MovingBlocker() = default;
+    explicit MovingBlocker(const scene::Mesh& mesh);
+    // Brings it to where it is now.
+    void place(const mat4& matrix);
+
+    Blocking test(const OcclusionPyramid& pyramid) const;
+    const OrientedBox& box() const { return box_; }
+    const Bounds& bounds() const { return bounds_; }
+    // A convex closed body does not shadow itself: what it hides faces away from the light.
+    bool convex() const { return convex_; }
+
+private:
+    Bounds local_bounds_, bounds_;
+    OrientedBox box_;
+    std::vector<Polygon> local_polygons_, polygons_; // empty: complex
+    bool convex_ = false;
+};
+
+// All static geometry: a tree of polygons.
+class StaticBlockers {
+public:
+    // Adds a mesh of static geometry; opaque on both sides.
+    void add(const FlatMesh& mesh);
+    // Builds the tree. Nothing can be tested before.
+    void build();
+
+    Blocking test(const OcclusionPyramid& pyramid) const;
+    std::size_t polygons() const { return polygons_.size(); }
+
+private:
+    struct Node {
+        Bounds bounds;
+        std::uint32_t first = 0, count = 0; // of polygons in a leaf; in an inner node count is 0, first the left child
+        std::uint32_t right = 0;
+    };
+    std::uint32_t build(std::uint32_t first, std::uint32_t count);
+
+    std::vector<Polygon> polygons_;
+    std::vector<std::vector<Plane>> bodies_; // convex closed bodies, by their planes (inside is positive)
+    std::vector<std::uint32_t> body_of_;     // of a polygon; 0xffffffff: none
+    std::vector<Bounds> bounds_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+// The planes of a closed convex body with few faces; empty if it is not one.
+std::vector<Plane> planes_of_convex_body(const FlatMesh& mesh);
+
+} // namespace sunfleck::gi

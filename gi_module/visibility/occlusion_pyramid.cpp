@@ -1,0 +1,239 @@
+#include "gi_module/visibility/occlusion_pyramid.h"
+
+namespace sunfleck::gi {
+namespace {
+
+// Length of the prism of a directional light, m: longer than any scene that single precision can hold sensibly.
+constexpr double far_away = 1e5;
+
+void finish_bounds(OcclusionPyramid& pyramid) {
+    for (const dvec3& point : pyramid.gate_points())
+        pyramid.bounds.add(vec3(point));
+    if (!pyramid.parallel) {
+        pyramid.bounds.add(vec3(pyramid.apex));
+    } else {
+        const std::array<dvec3, 12> gate = pyramid.gate;
+        for (int i = 0; i < pyramid.gate_count; ++i)
+            pyramid.bounds.add(vec3(gate[std::size_t(i)] - pyramid.apex * far_away));
+    }
+    const vec3 slack(1e-4f);
+    pyramid.bounds.minimum -= slack;
+    pyramid.bounds.maximum += slack;
+}
+
+// Planes through the light and each edge of the gate.
+void add_sides(OcclusionPyramid& pyramid) {
+    dvec3 centre(0.0);
+    for (const dvec3& point : pyramid.gate_points())
+        centre += point / double(pyramid.gate_count);
+    for (int i = 0; i < pyramid.gate_count; ++i) {
+        const dvec3 a = pyramid.gate[std::size_t(i)], b = pyramid.gate[std::size_t((i + 1) % pyramid.gate_count)];
+        dvec3 normal = glm::cross(b - a, pyramid.to_light(a));
+        const double length = glm::length(normal);
+        if (length < 1e-14)
+            continue;
+        normal /= length;
+        if (glm::dot(normal, centre - a) < 0.0)
+            normal = -normal;
+        pyramid.add({normal, -glm::dot(normal, a)});
+    }
+}
+
+bool has_front(const LightSample& sample) {
+    return sample.kind == SampleKind::surface;
+}
+
+Plane front_of(const LightSample& sample) {
+    const dvec3 normal(sample.normal);
+    return {normal, -glm::dot(normal, dvec3(sample.position))};
+}
+
+void set_apex(OcclusionPyramid& pyramid, const LightSample& sample) {
+    pyramid.parallel = sample.kind == SampleKind::directional;
+    pyramid.apex = dvec3(pyramid.parallel ? sample.normal : sample.position);
+}
+
+// Whether a sphere lies outside a spot light's cone.
+bool outside_cone(const LightSample& sample, dvec3 centre, double radius) {
+    if (sample.kind != SampleKind::spot || sample.cone_scale <= 0.0f)
+        return false;
+    const double cosine = std::clamp(-double(sample.cone_offset) / double(sample.cone_scale), -1.0, 1.0);
+    const dvec3 v = centre - dvec3(sample.position);
+    const double distance = glm::length(v);
+    if (distance <= radius)
+        return false;
+    const double angle = std::acos(std::clamp(glm::dot(v, dvec3(sample.normal)) / distance, -1.0, 1.0));
+    return angle > std::acos(cosine) + std::asin(radius / distance) + 1e-6;
+}
+
+void bounding_sphere(std::span<const dvec3> points, dvec3& centre, double& radius) {
+    centre = dvec3(0.0);
+    for (const dvec3& point : points)
+        centre += point / double(points.size());
+    radius = 0.0;
+    for (const dvec3& point : points)
+        radius = std::max(radius, glm::length(point - centre));
+}
+
+// No direction separates the light from the box: all that can be said is that the region lies in the box around both.
+OcclusionPyramid pyramid_around(const LightSample& sample, const OrientedBox& box) {
+    OcclusionPyramid pyramid;
+    set_apex(pyramid, sample);
+    Bounds bounds;
+    for (int i = 0; i < 8; ++i)
+        bounds.add(vec3(box.corner(i)));
+    bounds.add(sample.position);
+    for (int axis = 0; axis < 3; ++axis) {
+        dvec3 normal(0.0);
+        normal[axis] = 1.0;
+        pyramid.add({normal, -double(bounds.minimum[axis]) + 1e-4});
+        pyramid.add({-normal, double(bounds.maximum[axis]) + 1e-4});
+    }
+    pyramid.bounds = bounds;
+    return pyramid; // without a gate nothing can block all of it
+}
+
+} // namespace
+
+std::optional<OcclusionPyramid> pyramid_of_patch(const LightSample& sample, std::span<const dvec3> polygon,
+                                                 dvec3 normal) {
+    OcclusionPyramid pyramid;
+    set_apex(pyramid, sample);
+    const Plane patch{normal, -glm::dot(normal, polygon[0])};
+    const double height = pyramid.parallel ? -glm::dot(normal, pyramid.apex) : patch.distance(pyramid.apex);
+    if (height <= 1e-9)
+        return std::nullopt;
+    ClippedPolygon lit;
+    lit.assign(polygon);
+    if (has_front(sample) && !lit.clip(front_of(sample), 1e-9))
+        return std::nullopt;
+    dvec3 centre;
+    double radius;
+    bounding_sphere(lit.span(), centre, radius);
+    if (outside_cone(sample, centre, radius))
+        return std::nullopt;
+    pyramid.gate_count = std::min(lit.count, int(pyramid.gate.size()));
+    std::copy_n(lit.points.begin(), pyramid.gate_count, pyramid.gate.begin());
+    pyramid.ends_at_gate = true;
+    pyramid.add(patch);
+    if (has_front(sample))
+        pyramid.add(front_of(sample));
+    add_sides(pyramid);
+    finish_bounds(pyramid);
+    return pyramid;
+}
+
+std::optional<OcclusionPyramid> pyramid_of_box(const LightSample& sample, const OrientedBox& box) {
+    if (has_front(sample) && box.reach(front_of(sample)) <= 1e-9)
+        return std::nullopt;
+    const double radius = glm::length(box.corner(7) - box.centre);
+    if (outside_cone(sample, box.centre, radius))
+        return std::nullopt;
+    OcclusionPyramid pyramid;
+    set_apex(pyramid, sample);
+    const dvec3 origin = pyramid.parallel ? box.centre : pyramid.apex;
+    dvec3 axis = pyramid.parallel ? pyramid.apex : box.centre - pyramid.apex;
+    const double distance = glm::length(axis);
+    if (distance < 1e-9)
+        return pyramid_around(sample, box);
+    axis /= distance;
+    vec3 tangent, bitangent;
+    orthonormal_basis(vec3(axis), tangent, bitangent);
+    const dvec3 x = glm::normalize(dvec3(tangent) - axis * glm::dot(axis, dvec3(tangent))), y = glm::cross(axis, x);
+    // Rectangle around the box as seen from the light, at the depth where the box begins.
+    double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, nearest = 1e300, farthest = -1e300;
+    for (int i = 0; i < 8; ++i) {
+        const dvec3 v = box.corner(i) - origin;
+        const double depth = glm::dot(v, axis);
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+        if (!pyramid.parallel && depth <= 1e-3 * distance)
+            return pyramid_around(sample, box);
+        const double scale = pyramid.parallel ? 1.0 : 1.0 / depth;
+        const double place[2] = {glm::dot(v, x) * scale, glm::dot(v, y) * scale};
+        for (int k = 0; k < 2; ++k) {
+            low[k] = std::min(low[k], place[k]);
+            high[k] = std::max(high[k], place[k]);
+        }
+    }
+    for (int k = 0; k < 2; ++k) { // a flat box still has a gate with an area
+        const double slack = 1e-9 + 1e-6 * (high[k] - low[k]);
+        low[k] -= slack;
+        high[k] += slack;
+    }
+    const auto at = [&](double u, double v, double depth) {
+        const double scale = pyramid.parallel ? 1.0 : depth;
+        return origin + axis * depth + (x * u + y * v) * scale;
+    };
+    pyramid.gate = {at(low[0], low[1], nearest), at(high[0], low[1], nearest), at(high[0], high[1], nearest),
+                    at(low[0], high[1], nearest)};
+    pyramid.gate_count = 4;
+    add_sides(pyramid);
+    pyramid.add({-axis, glm::dot(axis, origin) + farthest + 2.0 * touching});
+    if (has_front(sample))
+        pyramid.add(front_of(sample));
+    finish_bounds(pyramid);
+    for (const double u : {low[0], high[0]})
+        for (const double v : {low[1], high[1]})
+            pyramid.bounds.add(vec3(at(u, v, farthest)));
+    return pyramid;
+}
+
+bool enters(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon) {
+    // Cheap first: the whole polygon outside one plane.
+    for (int i = 0; i < pyramid.plane_count; ++i) {
+        double deepest = -1e300;
+        for (const dvec3& point : polygon)
+            deepest = std::max(deepest, pyramid.planes[std::size_t(i)].distance(point));
+        if (deepest <= touching)
+            return false;
+    }
+    ClippedPolygon rest;
+    rest.assign(polygon);
+    for (int i = 0; i < pyramid.plane_count; ++i)
+        if (!rest.clip(pyramid.planes[std::size_t(i)], touching))
+            return false;
+    return true;
+}
+
+bool may_enter(const OcclusionPyramid& pyramid, const OrientedBox& box) {
+    for (int i = 0; i < pyramid.plane_count; ++i)
+        if (box.reach(pyramid.planes[std::size_t(i)]) <= touching)
+            return false;
+    // The box's own faces as separating planes: all of the region on one face's outer side.
+    if (!pyramid.ends_at_gate || pyramid.parallel)
+        return true;
+    for (const dvec3& half_axis : box.half_axes) {
+        const double square = glm::dot(half_axis, half_axis);
+        if (square < 1e-18)
+            continue;
+        double low = 1e300, high = -1e300;
+        const auto add = [&](dvec3 point) {
+            const double place = glm::dot(point - box.centre, half_axis) / square;
+            low = std::min(low, place);
+            high = std::max(high, place);
+        };
+        add(pyramid.apex);
+        for (const dvec3& point : pyramid.gate_points())
+            add(point);
+        const double slack = touching / std::sqrt(square);
+        if (low >= 1.0 - slack || high <= -1.0 + slack)
+            return false;
+    }
+    return true;
+}
+
+bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (bounds.minimum[axis] > pyramid.bounds.maximum[axis] || bounds.maximum[axis] < pyramid.bounds.minimum[axis])
+            return false;
+    const dvec3 centre(bounds.centre()), half(0.5f * bounds.extent());
+    for (int i = 0; i < pyramid.plane_count; ++i) {
+        const Plane& plane = pyramid.planes[std::size_t(i)];
+        if (plane.distance(centre) + glm::dot(glm::abs(plane.normal), half) <= touching)
+            return false;
+    }
+    return true;
+}
+
+} // namespace sunfleck::gi

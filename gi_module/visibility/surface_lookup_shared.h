@@ -1,0 +1,81 @@
+// How a pixel finds the visibility node it belongs to: instance row -> charts -> cell -> node. Nothing of it comes from
+// the host but position, geometric normal and surface id.
+#ifndef SUNFLECK_GI_VISIBILITY_SURFACE_LOOKUP_SHARED_H
+#define SUNFLECK_GI_VISIBILITY_SURFACE_LOOKUP_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+SHARED_CONSTANT uint no_node = 0xffffffffu;
+
+// By instance row.
+struct SurfaceInstance {
+    uint first_chart;
+    uint chart_count;
+    uint first_box_node; // for what lies in no chart; no_node if there is none
+    uint octants;        // 1: eight box nodes, by the octant about `centre`
+    vec4 centre;
+};
+
+// A flat rectangle: place (u, v) in [0, 1]^2 = (dot(u_axis, (p, 1)), dot(v_axis, (p, 1))).
+struct SurfaceChart {
+    vec4 plane; // dot(xyz, p) + w = 0, xyz towards the lit side
+    vec4 u_axis;
+    vec4 v_axis;
+    uint first_cell;
+    uint columns; // of cells
+    uint rows;
+    uint unused;
+};
+
+// Bits of a pair in a visibility row, sixteen pairs a word.
+SHARED_CONSTANT uint pair_full = 0u;    // no light arrives: blocked
+SHARED_CONSTANT uint pair_none = 1u;    // nothing is in the way
+SHARED_CONSTANT uint pair_partial = 2u; // something may be in the way: the shadow map must tell
+SHARED_CONSTANT uint pair_unlit = 3u;   // no light arrives: facing away
+SHARED_CONSTANT uint pairs_per_word = 16u;
+
+// Tolerances of a pixel's reconstructed position and packed normal.
+SHARED_CONSTANT float chart_distance = 2e-3f; // m, from the chart's plane
+SHARED_CONSTANT float chart_cosine = 0.999f;
+SHARED_CONSTANT float chart_margin = 1e-3f; // of the chart's sides, beyond its border
+
+// Whether a point with this geometric normal lies on the chart; its place is clamped to the chart.
+SHARED_FUNCTION bool on_chart(SurfaceChart chart, vec3 position, vec3 geometric_normal) {
+    float u = dot(vec3(chart.u_axis), position) + chart.u_axis.w;
+    float v = dot(vec3(chart.v_axis), position) + chart.v_axis.w;
+    return dot(vec3(chart.plane), geometric_normal) > chart_cosine &&
+           abs(dot(vec3(chart.plane), position) + chart.plane.w) < chart_distance &&
+           abs(u - 0.5f) < 0.5f + chart_margin && abs(v - 0.5f) < 0.5f + chart_margin;
+}
+
+SHARED_FUNCTION uint chart_cell(SurfaceChart chart, vec3 position) {
+    float u = dot(vec3(chart.u_axis), position) + chart.u_axis.w;
+    float v = dot(vec3(chart.v_axis), position) + chart.v_axis.w;
+    uint column = uint(clamp(u * float(chart.columns), 0.0f, float(chart.columns) - 1.0f));
+    uint row = uint(clamp(v * float(chart.rows), 0.0f, float(chart.rows) - 1.0f));
+    return chart.first_cell + row * chart.columns + column;
+}
+
+SHARED_FUNCTION uint box_node(SurfaceInstance instance, vec3 position) {
+    if (instance.octants == 0u || instance.first_box_node == no_node)
+        return instance.first_box_node;
+    return instance.first_box_node + (position.x >= instance.centre.x ? 1u : 0u) +
+           (position.y >= instance.centre.y ? 2u : 0u) + (position.z >= instance.centre.z ? 4u : 0u);
+}
+
+#ifdef __cplusplus
+inline uint find_node(const SurfaceInstance& instance, const SurfaceChart* charts, const uint* cells, vec3 position,
+                      vec3 geometric_normal) {
+    for (uint i = 0; i < instance.chart_count; ++i)
+        if (on_chart(charts[instance.first_chart + i], position, geometric_normal))
+            return cells[chart_cell(charts[instance.first_chart + i], position)];
+    return box_node(instance, position);
+}
+#endif
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::SurfaceInstance) == 32);
+static_assert(sizeof(sunfleck::shared::SurfaceChart) == 64);
+#endif
+#endif

@@ -1,0 +1,221 @@
+#include "gi_module/visibility/surface_patches.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+// A face becomes a chart if it is a good part of its mesh or large by itself; small facets of curved meshes do not.
+constexpr double chart_share = 0.04, chart_area = 0.5; // of the mesh's area; m2
+constexpr std::size_t charts_per_instance = 64;
+constexpr double octants_from = 0.5; // m: boxes larger than this are divided in eight
+
+// The rectangle of least area around the face that has a side along one of the outline's edges.
+void enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 normal, Chart& chart) {
+    std::vector<dvec3> points;
+    for (const std::uint32_t t : face.triangles)
+        for (int k = 0; k < 3; ++k)
+            points.push_back(mesh.corner(t, k));
+    const std::vector<Polygon> pieces = convex_pieces(mesh, face);
+    double least = 1e300;
+    for (std::size_t piece = 0; piece < std::min<std::size_t>(pieces.size(), 8); ++piece)
+        for (std::size_t i = 0; i < pieces[piece].size(); ++i) {
+            dvec3 u = pieces[piece][(i + 1) % pieces[piece].size()] - pieces[piece][i];
+            const double length = glm::length(u);
+            if (length < 1e-9)
+                continue;
+            u /= length;
+            const dvec3 v = glm::cross(normal, u);
+            double low_u = 1e300, low_v = 1e300, high_u = -1e300, high_v = -1e300;
+            for (const dvec3& point : points) {
+                low_u = std::min(low_u, glm::dot(point, u));
+                high_u = std::max(high_u, glm::dot(point, u));
+                low_v = std::min(low_v, glm::dot(point, v));
+                high_v = std::max(high_v, glm::dot(point, v));
+            }
+            const double area = (high_u - low_u) * (high_v - low_v);
+            if (area >= least * (1.0 - 1e-9))
+                continue;
+            least = area;
+            chart.origin = u * low_u + v * low_v + normal * glm::dot(normal, points[0]);
+            chart.u = u * (high_u - low_u);
+            chart.v = v * (high_v - low_v);
+        }
+    chart.normal = normal;
+}
+
+shared::SurfaceChart row_of(const Chart& chart) {
+    const auto axis = [&](dvec3 edge) {
+        const dvec3 scaled = edge / glm::dot(edge, edge);
+        return vec4(vec3(scaled), float(-glm::dot(scaled, chart.origin)));
+    };
+    shared::SurfaceChart row{};
+    row.plane = vec4(vec3(chart.normal), float(-glm::dot(chart.normal, chart.origin)));
+    row.u_axis = axis(chart.u);
+    row.v_axis = axis(chart.v);
+    row.first_cell = chart.first_cell;
+    row.columns = chart.columns();
+    row.rows = chart.rows();
+    return row;
+}
+
+} // namespace
+
+void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
+                           StaticBlockers& blockers) {
+    *this = {};
+    registry.view<scene::MeshInstance, scene::WorldTransform>().each(
+        [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
+            if (instance.mesh >= meshes.size() || !scene::is_static(registry, entity))
+                return;
+            const FlatMesh flat = find_planar_faces(meshes[instance.mesh], world.matrix);
+            if (!(flat.area > 0.0))
+                return;
+            blockers.add(flat);
+            add_instance(entity, flat, options);
+        });
+    blockers.build();
+    roots_ = std::uint32_t(nodes_.size());
+}
+
+void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, const PatchOptions& options) {
+    shared::SurfaceInstance instance{};
+    instance.first_chart = std::uint32_t(charts_.size());
+    instance.first_box_node = shared::no_node;
+    double charted = 0.0;
+    for (const PlanarFace& face : mesh.faces) {
+        if (face.area < chart_share * mesh.area && face.area < chart_area)
+            continue;
+        if (charts_.size() - instance.first_chart + 2 > charts_per_instance)
+            break;
+        add_chart(entity, mesh, face, false, options);
+        if (!mesh.closed) // a sheet can be seen from behind
+            add_chart(entity, mesh, face, true, options);
+        charted += face.area;
+    }
+    instance.chart_count = std::uint32_t(charts_.size()) - instance.first_chart;
+    if (charted < mesh.area * (1.0 - 1e-6))
+        add_boxes(entity, mesh, instance);
+    instances_[entity] = instance;
+}
+
+void SurfacePatches::add_chart(ecs::Entity entity, const FlatMesh& mesh, const PlanarFace& face, bool reversed,
+                               const PatchOptions& options) {
+    Chart chart;
+    chart.entity = entity;
+    enclose(mesh, face, reversed ? -face.normal : face.normal, chart);
+    const double width = glm::length(chart.u), height = glm::length(chart.v);
+    if (!(width > 1e-6) || !(height > 1e-6))
+        return;
+    chart.root_columns = std::uint32_t(std::clamp(std::lround(width / height), 1l, 8l));
+    chart.root_rows = std::uint32_t(std::clamp(std::lround(height / width), 1l, 8l));
+    const double side = std::min(width / chart.root_columns, height / chart.root_rows);
+    while (chart.levels < options.levels && side / double(2u << chart.levels) >= double(options.smallest))
+        ++chart.levels;
+    chart.first_root = std::uint32_t(nodes_.size());
+    const std::uint32_t index = std::uint32_t(charts_.size());
+    for (std::uint32_t row = 0; row < chart.root_rows; ++row)
+        for (std::uint32_t column = 0; column < chart.root_columns; ++column) {
+            const vec4 place(float(column) / float(chart.root_columns), float(row) / float(chart.root_rows),
+                             1.0f / float(chart.root_columns), 1.0f / float(chart.root_rows));
+            nodes_.push_back(patch_of(chart, index, place));
+        }
+    charts_.push_back(chart);
+}
+
+SurfacePatch SurfacePatches::patch_of(const Chart& chart, std::uint32_t chart_index, vec4 place) const {
+    SurfacePatch patch;
+    patch.chart = chart_index;
+    patch.place = place;
+    patch.normal = chart.normal;
+    patch.entity = chart.entity;
+    const dvec3 corner = chart.origin + chart.u * double(place.x) + chart.v * double(place.y);
+    const dvec3 u = chart.u * double(place.z), v = chart.v * double(place.w);
+    patch.corners = {corner, corner + u, corner + u + v, corner + v};
+    for (const dvec3& point : patch.corners)
+        patch.bounds.add(vec3(point));
+    return patch;
+}
+
+void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, shared::SurfaceInstance& instance) {
+    Bounds bounds;
+    for (const dvec3& position : mesh.positions)
+        bounds.add(vec3(position));
+    bounds.minimum -= vec3(1e-4f);
+    bounds.maximum += vec3(1e-4f);
+    const vec3 centre = bounds.centre();
+    instance.first_box_node = std::uint32_t(nodes_.size());
+    instance.centre = vec4(centre, 0.0f);
+    instance.octants = double(glm::length(bounds.extent())) > octants_from ? 1 : 0;
+    for (int octant = 0; octant < (instance.octants ? 8 : 1); ++octant) {
+        Bounds part = bounds;
+        for (int axis = 0; axis < 3 && instance.octants; ++axis)
+            ((octant >> axis) & 1 ? part.minimum : part.maximum)[axis] = centre[axis];
+        SurfacePatch patch;
+        patch.planar = false;
+        patch.box = OrientedBox::of(part);
+        patch.bounds = part;
+        patch.entity = entity;
+        nodes_.push_back(patch);
+    }
+}
+
+std::uint32_t SurfacePatches::leaves() const {
+    return std::uint32_t(std::count_if(nodes_.begin(), nodes_.end(), [](const auto& node) { return node.is_leaf(); }));
+}
+
+bool SurfacePatches::can_split(std::uint32_t node) const {
+    const SurfacePatch& patch = nodes_[node];
+    return patch.planar && patch.is_leaf() && patch.level < charts_[patch.chart].levels;
+}
+
+void SurfacePatches::split(std::uint32_t node) {
+    const std::uint32_t first = std::uint32_t(nodes_.size());
+    const SurfacePatch parent = nodes_[node];
+    for (int child = 0; child < 4; ++child) {
+        const vec2 size(0.5f * parent.place.z, 0.5f * parent.place.w);
+        const vec4 place(parent.place.x + (child & 1 ? size.x : 0.0f), parent.place.y + (child & 2 ? size.y : 0.0f),
+                         size.x, size.y);
+        SurfacePatch patch = patch_of(charts_[parent.chart], parent.chart, place);
+        patch.parent = node;
+        patch.level = parent.level + 1;
+        nodes_.push_back(patch);
+    }
+    nodes_[node].first_child = first;
+}
+
+void SurfacePatches::finish() {
+    cells_.clear();
+    chart_rows_.clear();
+    for (Chart& chart : charts_) {
+        chart.first_cell = std::uint32_t(cells_.size());
+        cells_.resize(cells_.size() + std::size_t(chart.columns()) * chart.rows(), shared::no_node);
+        chart_rows_.push_back(row_of(chart));
+    }
+    for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+        const SurfacePatch& patch = nodes_[i];
+        if (!patch.planar || !patch.is_leaf())
+            continue;
+        const Chart& chart = charts_[patch.chart];
+        const std::uint32_t first_column = std::uint32_t(std::lround(patch.place.x * float(chart.columns())));
+        const std::uint32_t first_row = std::uint32_t(std::lround(patch.place.y * float(chart.rows())));
+        const std::uint32_t side = 1u << (chart.levels - patch.level);
+        for (std::uint32_t row = first_row; row < first_row + side; ++row)
+            for (std::uint32_t column = first_column; column < first_column + side; ++column)
+                cells_[chart.first_cell + row * chart.columns() + column] = i;
+    }
+}
+
+const shared::SurfaceInstance* SurfacePatches::instance(ecs::Entity entity) const {
+    const auto found = instances_.find(entity);
+    return found == instances_.end() ? nullptr : &found->second;
+}
+
+std::uint32_t SurfacePatches::node_at(ecs::Entity entity, vec3 position, vec3 geometric_normal) const {
+    const shared::SurfaceInstance* instance = this->instance(entity);
+    if (instance == nullptr)
+        return shared::no_node;
+    return shared::find_node(*instance, chart_rows_.data(), cells_.data(), position, geometric_normal);
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,219 @@
+// The static half of the database: patches, their subdivision, and what static geometry does to each pair.
+#include "gi_module/visibility/visibility_database.h"
+
+#include "engine/core/jobs.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr std::size_t samples_per_cluster = 16;
+constexpr std::size_t roots_per_group = 2;
+
+// Place of a point on a curve that keeps neighbours together (Morton order of ten bits an axis).
+std::uint32_t morton(vec3 point, const Bounds& bounds) {
+    const vec3 unit = (point - bounds.minimum) / glm::max(bounds.extent(), vec3(1e-6f));
+    std::uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::uint32_t place = std::uint32_t(std::clamp(unit[axis], 0.0f, 1.0f) * 1023.0f);
+        for (std::uint32_t bit = 0; bit < 10; ++bit)
+            code |= ((place >> bit) & 1u) << (3 * bit + std::uint32_t(axis));
+    }
+    return code;
+}
+
+PairState state_of(Blocking blocking) {
+    switch (blocking) {
+    case Blocking::none:
+        return PairState::none;
+    case Blocking::partial:
+        return PairState::partial;
+    case Blocking::full:
+        return PairState::full;
+    }
+    return PairState::partial;
+}
+
+} // namespace
+
+void VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& meshes,
+                               std::span<const LightSample> samples, const VisibilityOptions& options) {
+    options_ = options;
+    samples_.assign(samples.begin(), samples.end());
+    static_blockers_ = {};
+    patches_.build(registry, meshes, options.patches, static_blockers_);
+    movers_.clear();
+    mover_slots_.clear();
+    changes_.clear();
+    affected_.assign(samples_.size(), 0);
+    static_states_.clear();
+    split_and_decide();
+    patches_.finish();
+    full_counts_.assign(static_states_.size(), 0);
+    partial_counts_.assign(static_states_.size(), 0);
+    make_clusters();
+    groups_.clear();
+    std::vector<std::uint32_t> roots(patches_.roots());
+    std::iota(roots.begin(), roots.end(), 0u);
+    if (!roots.empty())
+        make_group(std::move(roots));
+    rows_.clear();
+    dirty_.clear();
+    grow_rows();
+    recount();
+    ++generation_;
+}
+
+// Level by level: decide all pairs of the level's nodes, then split those with enough partial pairs.
+void VisibilityDatabase::split_and_decide() {
+    std::uint32_t first = 0;
+    while (first < patches_.nodes().size()) {
+        const std::uint32_t end = std::uint32_t(patches_.nodes().size());
+        static_states_.resize(at(end, 0));
+        parallel_for_chunks(end - first, 4, [&](std::size_t begin, std::size_t stop) {
+            for (std::uint32_t node = first + std::uint32_t(begin); node < first + stop; ++node)
+                for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+                    static_states_[at(node, sample)] = std::uint8_t(decide_static(node, sample));
+        });
+        for (std::uint32_t node = first; node < end; ++node) {
+            if (!patches_.can_split(node) ||
+                (patches_.nodes().size() + 4) * std::uint64_t(samples_.size()) > options_.most_pairs)
+                continue;
+            std::size_t partial = 0, reached = 0;
+            for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
+                const PairState state = static_state(node, sample);
+                partial += state == PairState::partial;
+                reached += state == PairState::partial || state == PairState::none;
+            }
+            if (partial > 0 && double(partial) >= double(options_.split_share) * double(reached))
+                patches_.split(node);
+        }
+        first = end;
+    }
+}
+
+PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sample) const {
+    const SurfacePatch& patch = patches_.nodes()[node];
+    PairState parent = PairState::partial;
+    if (patch.parent != shared::no_node)
+        parent = PairState(static_states_[at(patch.parent, sample)]);
+    if (parent == PairState::full || parent == PairState::unlit)
+        return parent;
+    if (!patch.planar)
+        return decide_box(patch.box, samples_[sample]);
+    const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal);
+    if (!pyramid)
+        return PairState::unlit;
+    return parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
+}
+
+PairState VisibilityDatabase::decide_box(const OrientedBox& box, const LightSample& sample) const {
+    const auto pyramid = pyramid_of_box(sample, box);
+    return pyramid ? state_of(static_blockers_.test(*pyramid)) : PairState::unlit;
+}
+
+void VisibilityDatabase::make_clusters() {
+    clusters_.clear();
+    Bounds bounds;
+    for (const LightSample& sample : samples_)
+        bounds.add(sample.position);
+    std::vector<std::uint32_t> order(samples_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](std::uint32_t i) {
+        const bool unbounded = samples_[i].kind == SampleKind::directional;
+        return std::pair(unbounded ? 0xffffffffu : morton(samples_[i].position, bounds), i);
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const LightSample& sample = samples_[order[i]];
+        const bool unbounded = sample.kind == SampleKind::directional;
+        if (clusters_.empty() || clusters_.back().samples.size() >= samples_per_cluster ||
+            clusters_.back().unbounded != unbounded)
+            clusters_.emplace_back();
+        Cluster& cluster = clusters_.back();
+        cluster.unbounded = unbounded;
+        cluster.bounds.add(sample.position);
+        cluster.samples.push_back(order[i]);
+    }
+}
+
+std::uint32_t VisibilityDatabase::make_group(std::vector<std::uint32_t> roots) {
+    const std::uint32_t index = std::uint32_t(groups_.size());
+    groups_.emplace_back();
+    Bounds bounds, centres;
+    for (const std::uint32_t root : roots) {
+        bounds.add(patches_.nodes()[root].bounds);
+        centres.add(patches_.nodes()[root].bounds.centre());
+    }
+    groups_[index].bounds = bounds;
+    if (roots.size() <= roots_per_group) {
+        groups_[index].roots = std::move(roots);
+        return index;
+    }
+    const vec3 extent = centres.extent();
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return patches_.nodes()[a].bounds.centre()[axis] < patches_.nodes()[b].bounds.centre()[axis];
+    });
+    const auto middle = roots.begin() + std::ptrdiff_t(roots.size() / 2);
+    const std::uint32_t left = make_group({roots.begin(), middle});
+    const std::uint32_t right = make_group({middle, roots.end()});
+    groups_[index].left = left;
+    groups_[index].right = right;
+    return index;
+}
+
+void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {
+    for (const std::uint32_t sample : changed)
+        samples_[sample] = samples[sample];
+    const std::uint32_t nodes = std::uint32_t(patches_.nodes().size());
+    parallel_for_chunks(changed.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::uint32_t node = 0; node < nodes; ++node)
+                static_states_[at(node, changed[i])] = std::uint8_t(decide_static(node, changed[i]));
+    });
+    for (const std::uint32_t sample : changed) {
+        affected_[sample] = 1;
+        for (auto& [bits, mover] : movers_) {
+            apply(sample, mover.footprint[sample], {}, changes_);
+            mover.footprint[sample].clear();
+        }
+    }
+    make_clusters();
+    for (auto& [bits, mover] : movers_)
+        replace_footprints(mover, true);
+    for (std::uint32_t slot = 0; slot < mover_slots_.size(); ++slot)
+        set_mover_row(slot);
+    rows_.clear();
+    grow_rows();
+    recount();
+    changes_.clear();
+    ++generation_;
+}
+
+void VisibilityDatabase::recount() {
+    const std::uint64_t tests = counters_.tests;
+    counters_ = {};
+    counters_.tests = tests;
+    for (std::uint32_t node = 0; node < node_count(); ++node)
+        for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
+            const PairState now = state(node, sample);
+            write_pair(node, sample, now);
+            if (counts(node))
+                ++count_of(now);
+        }
+    std::fill(dirty_.begin(), dirty_.end(), std::uint8_t(1));
+}
+
+std::uint64_t VisibilityDatabase::memory_bytes() const {
+    std::uint64_t bytes = static_states_.size() * 5 + rows_.size() * 4 +
+                          patches_.nodes().size() * sizeof(SurfacePatch) + changes_.capacity() * sizeof(PairChange);
+    for (const auto& [bits, mover] : movers_)
+        for (const Footprint& list : mover.footprint)
+            bytes += sizeof list + list.capacity() * 4;
+    return bytes;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,160 @@
+// What stands between every light sample and every surface patch: state and blockers of each pair, kept while objects
+// move. Thesis sec. 4.3.1 (how a pair is decided) and 4.5.1 (how decisions are maintained).
+//
+// A pair's state is a pure function of the static geometry, the sample and the movers' present places:
+//   unlit    the patch faces away from the sample, or lies behind it
+//   full     one convex blocker takes all the light
+//   partial  something may take some of it
+//   none     nothing does
+// Static geometry is decided once. Of each mover, the database keeps its footprint: for each sample the sorted list of
+// the nodes that it shadows, and whether fully. When a mover moves, its new footprint is made and compared with the old
+// one; the differences are the cases of table 4-1, and only they touch pairs. (The thesis keeps the list of blockers at
+// each pair instead; the footprint holds the same facts sorted by blocker, so that one mover's are found and replaced
+// without a search, and counts at the pair are enough to infer its state.) Nodes within are found top-down: what a
+// parent settles (none, full), its children inherit without tests.
+//
+// Movers are nodes, too. They shadow themselves and each other, so between "unlit", "full" (by static geometry) and
+// "partial" they have no state "none"; whether static geometry is clear is in `static_state`.
+#pragma once
+
+#include "gi_module/visibility/surface_patches.h"
+
+#include <map>
+
+namespace sunfleck::gi {
+
+enum class PairState : std::uint8_t {
+    full = shared::pair_full,
+    none = shared::pair_none,
+    partial = shared::pair_partial,
+    unlit = shared::pair_unlit,
+};
+
+struct MoverPlace {
+    ecs::Entity entity;
+    std::uint32_t mesh = 0;
+    mat4 matrix{1.0f};
+};
+
+struct PairChange {
+    std::uint32_t node, sample;
+    PairState before, after;
+};
+
+struct VisibilityOptions {
+    PatchOptions patches;
+    float split_share = 0.08f; // patches are split if at least this share of the samples that reach them is partial
+    std::uint64_t most_pairs = std::uint64_t(24) << 20; // no further splits beyond
+    bool clustered = true; // samples in clusters and a hierarchy of nodes, before single pairs are tested
+};
+
+struct VisibilityCounters {
+    std::uint64_t tests = 0;                                  // of blockers against pyramids, and of clusters
+    std::uint64_t full = 0, partial = 0, none = 0, unlit = 0; // pairs of leaves and movers
+};
+
+class VisibilityDatabase {
+public:
+    // Starts anew: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
+    void build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
+               const VisibilityOptions& options);
+    // Samples with these indices have changed; their number has not. The patches stay.
+    void change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
+    // Follows the movers: new ones are added, missing ones removed, moved ones tested. In any order; the state depends
+    // on the set alone. Clears the list of changes first.
+    void update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes);
+
+    std::uint32_t node_count() const { return std::uint32_t(patches_.nodes().size() + mover_slots_.size()); }
+    std::uint32_t sample_count() const { return std::uint32_t(samples_.size()); }
+    const SurfacePatches& patches() const { return patches_; }
+    // The node of a mover; no_node if it is none.
+    std::uint32_t mover_node(ecs::Entity entity) const;
+
+    PairState state(std::uint32_t node, std::uint32_t sample) const;
+    PairState static_state(std::uint32_t node, std::uint32_t sample) const;
+    struct Blocker {
+        ecs::Entity entity; // null: static geometry
+        bool full = false;
+        bool operator==(const Blocker&) const = default;
+    };
+    // Static geometry first, then movers by entity.
+    std::vector<Blocker> blockers(std::uint32_t node, std::uint32_t sample) const;
+
+    // Since the last update_movers.
+    const std::vector<PairChange>& changes() const { return changes_; }
+    // Samples whose shadow map shows a mover that moved (and is, or was, in sight of them), was added or removed.
+    const std::vector<std::uint8_t>& affected_samples() const { return affected_; }
+    const VisibilityCounters& counters() const { return counters_; }
+
+    // Rows for shaders: `words_per_row` words a node, two bits a sample. Nodes whose row changed since the last call.
+    std::uint32_t words_per_row() const;
+    const std::vector<std::uint32_t>& rows() const { return rows_; }
+    std::vector<std::uint32_t> take_dirty_rows();
+    // Raised by build: everything read before is void.
+    std::uint64_t generation() const { return generation_; }
+    std::uint64_t memory_bytes() const;
+
+private:
+    struct Mover {
+        ecs::Entity entity;
+        std::uint32_t mesh = 0;
+        mat4 matrix{1.0f};
+        MovingBlocker blocker;
+        // By sample: node * 2 + (full ? 1 : 0), sorted.
+        std::vector<std::vector<std::uint32_t>> footprint;
+    };
+    struct Cluster {
+        Bounds bounds;
+        std::vector<std::uint32_t> samples;
+        bool unbounded = false; // directional samples
+    };
+    struct Group { // of root nodes
+        Bounds bounds;
+        std::uint32_t left = 0, right = 0;
+        std::vector<std::uint32_t> roots;
+    };
+    using Footprint = std::vector<std::uint32_t>;
+
+    void split_and_decide();
+    PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
+    PairState decide_box(const OrientedBox& box, const LightSample& sample) const;
+    void make_clusters();
+    std::uint32_t make_group(std::vector<std::uint32_t> roots);
+    // Roots that a mover may shadow from a cluster of samples.
+    void candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group, Footprint& roots,
+                         std::uint64_t& tests) const;
+    void descend(std::uint32_t node, std::uint32_t sample, const MovingBlocker& blocker, Footprint& out,
+                 std::uint64_t& tests) const;
+    void add_all(std::uint32_t node, std::uint32_t sample, Footprint& out) const;
+    void replace_footprints(Mover& mover, bool present);
+    void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
+    void set_mover_row(std::uint32_t slot);
+    void record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after);
+    bool counts(std::uint32_t node) const;
+    std::uint64_t& count_of(PairState state);
+    void write_pair(std::uint32_t node, std::uint32_t sample, PairState state);
+    std::size_t at(std::uint32_t node, std::uint32_t sample) const {
+        return std::size_t(node) * samples_.size() + sample;
+    }
+    void recount();
+    void grow_rows();
+
+    VisibilityOptions options_;
+    std::vector<LightSample> samples_;
+    SurfacePatches patches_;
+    StaticBlockers static_blockers_;
+    std::vector<Cluster> clusters_;
+    std::vector<Group> groups_;
+    std::map<EntityBits, Mover> movers_;   // ordered: results never depend on insertion
+    std::vector<ecs::Entity> mover_slots_; // node = static nodes + slot; null entity: free
+    std::vector<std::uint8_t> static_states_;
+    std::vector<std::uint16_t> full_counts_, partial_counts_;
+    std::vector<PairChange> changes_;
+    std::vector<std::uint8_t> affected_;
+    std::vector<std::uint32_t> rows_;
+    std::vector<std::uint8_t> dirty_;
+    VisibilityCounters counters_;
+    std::uint64_t generation_ = 0;
+};
+
+} // namespace sunfleck::gi
