@@ -146,7 +146,7 @@ Status run_window(const Options& options) {
         request.camera = demo::fly_through(request.step);
         request.show_samples = controls.show_samples;
         gi::Settings settings = renderer->lighting().settings();
-        settings.indirect = controls.indirect ? gi::IndirectTechnique::brute_force : gi::IndirectTechnique::none;
+        settings.indirect = controls.indirect ? gi::IndirectTechnique::light_samples : gi::IndirectTechnique::none;
         SUNFLECK_TRY(renderer->lighting().set_settings(settings));
         SUNFLECK_ASSIGN(const bool visible, swapchain->acquire(renderer->submission().serial()));
         if (!visible) {

@@ -7,8 +7,10 @@ const TypeDescription& Settings::description() {
         "Settings",
         1,
         "Lighting by light samples.",
-        {SUNFLECK_CHOICE(Settings, direct, "Technique for light straight from emitters", "brute_force", "none"),
-         SUNFLECK_CHOICE(Settings, indirect, "Technique for light that was reflected", "brute_force", "none"),
+        {SUNFLECK_CHOICE(Settings, direct, "Technique for light straight from emitters", "light_samples", "brute_force",
+                         "none"),
+         SUNFLECK_CHOICE(Settings, indirect, "Technique for light that was reflected", "light_samples", "brute_force",
+                         "none"),
          SUNFLECK_CHOICE(Settings, movers, "Movers are lit like all else, or also reflect light like static geometry",
                          "per_pixel", "static"),
          SUNFLECK_FIELD(Settings, lights, "", 0, 65536, "Number of light samples; more is smoother and slower"),
@@ -28,8 +30,34 @@ const TypeDescription& Settings::description() {
          SUNFLECK_FIELD(Settings, shadows, "", 0, 1, "Off: every sample lights through walls"),
          SUNFLECK_FIELD(Settings, clamp_scale, "", 0.001, 1e6,
                         "Scales the bound of the geometry term; more is brighter in corners and blotchier"),
-         SUNFLECK_FIELD(Settings, count_clamped, "", 0, 1, "Measures the light that the bound removes")}};
+         SUNFLECK_FIELD(Settings, count_clamped, "", 0, 1,
+                        "Measures the light that the bound removes (brute force only)"),
+         SUNFLECK_FIELD(Settings, visibility, "", 0, 1,
+                        "Shadow tests only where the visibility database says that something may be in the way"),
+         SUNFLECK_FIELD(Settings, patch_levels, "", 0, 6, "How often patches of surfaces are divided at most"),
+         SUNFLECK_FIELD(Settings, light_maps, "", 0, 1,
+                        "Unshadowed light is kept in light maps; only what is blocked is evaluated by pixel"),
+         SUNFLECK_FIELD(Settings, low_resolution, "pixels", 1, 8,
+                        "Light is evaluated once for so many pixels in each direction: 1 (all), 2, 4 or 8"),
+         SUNFLECK_FIELD(Settings, repair_contrast, "", 0, 1,
+                        "Pixels whose low-resolution neighbours differ by more than this share are lit again"),
+         SUNFLECK_FIELD(Settings, repair_angle, "degrees", 0.1, 90,
+                        "Pixels whose normals differ by more from all neighbours are lit again"),
+         SUNFLECK_FIELD(Settings, static_maps, "", 0, 1,
+                        "Static geometry's part of shadow maps is kept; only movers are redrawn"),
+         SUNFLECK_FIELD(Settings, map_detail, "", 0, 1,
+                        "Movers are drawn into shadow maps with as much detail as a texel shows"),
+         SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "flux_and_age", "age"),
+         SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,
+                        "Visibility tests begin with clusters of samples and groups of patches")}};
     return type;
+}
+
+Settings Settings::brute_force() {
+    Settings settings;
+    settings.direct = DirectTechnique::brute_force;
+    settings.indirect = IndirectTechnique::brute_force;
+    return settings;
 }
 
 } // namespace sunfleck::gi

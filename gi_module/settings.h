@@ -6,15 +6,17 @@
 
 namespace sunfleck::gi {
 
-enum class DirectTechnique : std::uint32_t { brute_force, none };
-enum class IndirectTechnique : std::uint32_t { brute_force, none };
+// light_samples: the many-light system. brute_force: the same samples, each with its map at every pixel.
+enum class DirectTechnique : std::uint32_t { light_samples, brute_force, none };
+enum class IndirectTechnique : std::uint32_t { light_samples, brute_force, none };
 enum class Sequence : std::uint32_t { pseudo_random, sobol };
 enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
+enum class MapPriority : std::uint32_t { flux_and_age, age };
 enum class MoverHandling : std::uint32_t { per_pixel, as_static };
 
 struct Settings {
-    DirectTechnique direct = DirectTechnique::brute_force;
-    IndirectTechnique indirect = IndirectTechnique::brute_force;
+    DirectTechnique direct = DirectTechnique::light_samples;
+    IndirectTechnique indirect = IndirectTechnique::light_samples;
     MoverHandling movers = MoverHandling::per_pixel;
 
     std::uint32_t lights = 300; // light samples, exactly
@@ -32,7 +34,21 @@ struct Settings {
     float clamp_scale = 1.0f;
     bool count_clamped = false;
 
+    // The many-light system; each part can be switched off, to see what it is worth.
+    bool visibility = true;
+    std::uint32_t patch_levels = 3;
+    bool light_maps = true;
+    std::uint32_t low_resolution = 4;
+    float repair_contrast = 0.3f;
+    float repair_angle = 12.0f;
+    bool static_maps = true;
+    bool map_detail = true;
+    MapPriority map_priority = MapPriority::flux_and_age;
+    bool cluster_tests = true;
+
     static const TypeDescription& description();
+    // Defaults, with the baseline as the technique for all light.
+    static Settings brute_force();
 };
 
 } // namespace sunfleck::gi

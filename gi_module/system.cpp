@@ -50,9 +50,10 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
 }
 
 bool same_sampling(const Settings& a, const Settings& b) {
-    return a.direct == b.direct && a.indirect == b.indirect && a.movers == b.movers && a.lights == b.lights &&
-           a.direct_share == b.direct_share && a.bounces == b.bounces && a.seed == b.seed && a.sequence == b.sequence &&
-           a.termination == b.termination;
+    const auto without = [](auto technique) { return technique == std::remove_cvref_t<decltype(technique)>::none; };
+    return without(a.direct) == without(b.direct) && without(a.indirect) == without(b.indirect) &&
+           a.movers == b.movers && a.lights == b.lights && a.direct_share == b.direct_share && a.bounces == b.bounces &&
+           a.seed == b.seed && a.sequence == b.sequence && a.termination == b.termination;
 }
 
 } // namespace
@@ -65,6 +66,7 @@ Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::Pipelin
     std::unique_ptr<System> system(new System(device));
     SUNFLECK_ASSIGN(system->shadow_maps_, ShadowMaps::create(device, pipelines));
     SUNFLECK_ASSIGN(system->brute_force_, BruteForce::create(device, pipelines));
+    SUNFLECK_ASSIGN(system->many_light_, ManyLight::create(device, pipelines));
     return system;
 }
 
@@ -80,8 +82,21 @@ Status System::set_settings(const Settings& settings) {
                      "; an even number from 8 to 2048 is needed"};
     if (settings.lights > 65536)
         return Error{"lights is " + std::to_string(settings.lights) + "; at most 65536 are possible"};
+    if (settings.low_resolution != 1 && settings.low_resolution != 2 && settings.low_resolution != 4 &&
+        settings.low_resolution != 8)
+        return Error{"low_resolution is " + std::to_string(settings.low_resolution) + "; 1, 2, 4 or 8 is needed"};
+    const bool some =
+        settings.direct == DirectTechnique::light_samples || settings.indirect == IndirectTechnique::light_samples;
+    if (some &&
+        (settings.direct == DirectTechnique::brute_force || settings.indirect == IndirectTechnique::brute_force))
+        return Error{"direct and indirect light share one pass: choose light_samples for both or brute_force for both "
+                     "(or none for one of them)"};
     settings_ = settings;
     return {};
+}
+
+bool System::uses_many_light() const {
+    return settings_.direct == DirectTechnique::light_samples || settings_.indirect == IndirectTechnique::light_samples;
 }
 
 bool System::needs_new_samples(const raytrace::RayScene& rays) {
@@ -108,7 +123,8 @@ void System::make_samples(ecs::Registry& registry, const raytrace::RayScene& ray
     });
     for (std::uint32_t i = 0; i < samples_.size(); ++i)
         samples_[i].index = i;
-    stale_.assign(samples_.size(), 1);
+    scheduler_.reset(samples_.size());
+    ++sample_generation_;
     mirror_samples(registry);
 }
 
@@ -128,8 +144,70 @@ void System::mirror_samples(ecs::Registry& registry) {
     }
 }
 
+void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
+    std::uint32_t surface_samples = 0;
+    for (const LightSample& sample : samples_)
+        surface_samples += sample.kind == SampleKind::surface;
+    bound_ = gi::geometry_bound(surface_samples, rays.static_area(), settings_.clamp_scale);
+    // The maps of directional lights cover the scene's bounds, so all of them follow a change of those.
+    if (bounds.minimum != scene_bounds_.minimum || bounds.maximum != scene_bounds_.maximum)
+        for (std::uint32_t i = 0; i < samples_.size(); ++i)
+            if (samples_[i].kind == SampleKind::directional)
+                scheduler_.mark_static(i);
+    scene_bounds_ = bounds;
+    const std::uint32_t slots = std::max(shadow_maps_->slots(), 1u);
+    rows_.resize(samples_.size());
+    for (std::uint32_t i = 0; i < samples_.size(); ++i)
+        rows_[i] = make_light_row(samples_[i], i % slots, bound_, scene_bounds_);
+}
+
+// The many-light system keeps a map for every sample: with more samples than memory_bytes holds at full size, maps are
+// smaller. Each sample is then dimmer, too.
+Status System::configure_maps() {
+    if (!settings_.shadows)
+        return {};
+    MapLayout layout;
+    layout.resolution = settings_.shadow_map_resolution;
+    layout.bits = settings_.shadow_map_bits;
+    layout.wanted = std::uint32_t(samples_.size());
+    layout.memory_bytes = std::uint64_t(double(settings_.shadow_memory) * 1048576.0);
+    layout.keep_static = uses_many_light() && settings_.static_maps;
+    layout.shrink = uses_many_light();
+    SUNFLECK_ASSIGN(const bool cleared, shadow_maps_->configure(layout, resources_));
+    if (cleared)
+        for (std::uint32_t i = 0; i < samples_.size(); ++i)
+            scheduler_.mark_static(i);
+    return {};
+}
+
+void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes,
+                               const scene::GpuScene& gpu_scene, bool static_changed) {
+    VisibilityOptions options;
+    options.patches.levels = settings_.patch_levels;
+    options.clustered = settings_.cluster_tests;
+    const bool same_options =
+        options.patches.levels == database_options_.patches.levels && options.clustered == database_options_.clustered;
+    if (database_samples_ != sample_generation_ || static_changed || !same_options) {
+        database_.build(registry, meshes, samples_, options);
+        database_options_ = options;
+        database_samples_ = sample_generation_;
+    }
+    std::vector<MoverPlace> movers;
+    for (const scene::DrawItem& item : gpu_scene.draws())
+        if (!item.is_static)
+            movers.push_back({item.entity, registry.get<scene::MeshInstance>(item.entity).mesh,
+                              registry.get<scene::WorldTransform>(item.entity).matrix});
+    database_.update_movers(movers, meshes);
+}
+
+void System::mark_by_visibility() {
+    for (std::uint32_t i = 0; i < samples_.size(); ++i)
+        if (database_.affected_samples()[i])
+            scheduler_.mark(i);
+}
+
 // A moved object touches the map of every sample that sees the box where it was, or the one where it is.
-void System::mark_stale(const scene::GpuScene& gpu_scene) {
+void System::mark_by_bounds(const scene::GpuScene& gpu_scene) {
     std::vector<Bounds> touched = gpu_scene.removed_bounds();
     for (const scene::DrawItem& item : gpu_scene.draws())
         if (item.moved) {
@@ -137,154 +215,54 @@ void System::mark_stale(const scene::GpuScene& gpu_scene) {
             if (!item.previous_bounds.empty())
                 touched.push_back(item.previous_bounds);
         }
-    for (std::uint32_t& age : stale_)
-        age += age > 0 ? 1 : 0;
     if (touched.empty())
         return;
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
-        if (stale_[i] > 0)
-            continue;
-        const ShadowRequest request{0, light_class(samples_[i].kind), row_of(i)};
-        const bool sees = std::any_of(touched.begin(), touched.end(), [&](const Bounds& bounds) {
-            return ShadowMaps::faces_that_see(request, bounds) != 0;
-        });
-        stale_[i] = sees ? 1 : 0;
+        const ShadowRequest request{0, light_class(samples_[i].kind), rows_[i], true};
+        if (std::any_of(touched.begin(), touched.end(),
+                        [&](const Bounds& bounds) { return ShadowMaps::faces_that_see(request, bounds) != 0; }))
+            scheduler_.mark(i);
     }
-}
-
-shared::LightRow System::row_of(std::uint32_t sample) const {
-    const std::uint32_t slots = std::max(shadow_maps_->slots(), 1u);
-    return make_light_row(samples_[sample], sample % slots, bound_, scene_bounds_);
 }
 
 Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
                       raytrace::RayScene& rays, const FrameInput& input) {
     cpu_times_.clear();
+    counters_ = {};
     input_ = input;
     resources_.begin_frame(input.serial, input.completed_serial);
     const Bounds bounds = gpu_scene.bounds();
+    const bool static_changed = database_geometry_ != rays.static_generation();
+    database_geometry_ = rays.static_generation();
     {
         const StageTimer timer(cpu_times_, "light samples");
         emitters_ =
             collect_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
         if (needs_new_samples(rays))
             make_samples(registry, rays);
+        if (static_changed)
+            scheduler_.reset(samples_.size());
+        SUNFLECK_TRY(configure_maps());
+        update_rows(bounds, rays);
+    }
+    if (uses_many_light()) {
+        const StageTimer timer(cpu_times_, "visibility");
+        update_visibility(registry, meshes, gpu_scene, static_changed);
+    } else {
+        database_samples_ = 0;
     }
     const StageTimer timer(cpu_times_, "shadow scheduling");
-    std::uint32_t surface_samples = 0;
-    for (const LightSample& sample : samples_)
-        surface_samples += sample.kind == SampleKind::surface;
-    bound_ = gi::geometry_bound(surface_samples, rays.static_area(), settings_.clamp_scale);
-    // The maps of directional lights cover the scene's bounds, so all maps follow a change of those.
-    const bool bounds_changed = bounds.minimum != scene_bounds_.minimum || bounds.maximum != scene_bounds_.maximum;
-    scene_bounds_ = bounds;
-    if (settings_.shadows) {
-        SUNFLECK_ASSIGN(const bool cleared,
-                        shadow_maps_->configure(
-                            settings_.shadow_map_resolution, settings_.shadow_map_bits, std::uint32_t(samples_.size()),
-                            std::uint64_t(double(settings_.shadow_memory) * 1048576.0), resources_));
-        if (cleared)
-            std::fill(stale_.begin(), stale_.end(), 1u);
-    }
-    if (bounds_changed)
-        for (std::size_t i = 0; i < samples_.size(); ++i)
-            if (samples_[i].kind == SampleKind::directional)
-                stale_[i] = std::max(stale_[i], 1u);
-    mark_stale(gpu_scene);
-    to_draw_ = choose_maps(input.map_budget);
-    counters_ = {};
+    scheduler_.advance();
+    if (uses_many_light())
+        mark_by_visibility();
+    else
+        mark_by_bounds(gpu_scene);
+    to_draw_ = settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, input.map_budget)
+                                 : std::vector<std::uint32_t>();
     counters_.light_samples = samples_.size();
     counters_.light_samples_direct = std::uint64_t(
         std::count_if(samples_.begin(), samples_.end(), [](const LightSample& s) { return s.bounce == 0; }));
     return {};
-}
-
-std::vector<std::uint32_t> System::choose_maps(std::uint32_t budget) {
-    std::vector<std::uint32_t> chosen;
-    if (!settings_.shadows)
-        return chosen;
-    for (std::uint32_t i = 0; i < samples_.size(); ++i)
-        if (stale_[i] > 0)
-            chosen.push_back(i);
-    if (chosen.size() > budget) {
-        std::stable_sort(chosen.begin(), chosen.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return stale_[a] > stale_[b]; });
-        chosen.resize(budget);
-        std::sort(chosen.begin(), chosen.end());
-    }
-    return chosen;
-}
-
-std::vector<ShadowRequest> System::make_requests(std::span<const std::uint32_t> samples) const {
-    std::vector<ShadowRequest> requests;
-    for (const std::uint32_t sample : samples)
-        requests.push_back({sample % shadow_maps_->slots(), light_class(samples_[sample].kind), row_of(sample)});
-    return requests;
-}
-
-Result<std::vector<LightBatch>> System::make_batches(std::uint32_t first, std::uint32_t count) {
-    std::vector<LightBatch> batches;
-    std::uint32_t place = first;
-    do {
-        LightBatch batch;
-        batch.light_class = place < samples_.size() ? light_class(samples_[place].kind) : 0;
-        SUNFLECK_ASSIGN(batch.rows, resources_.allocate(sizeof(shared::LightRow) * shared::lights_per_batch));
-        while (place < first + count && batch.count < shared::lights_per_batch &&
-               light_class(samples_[place].kind) == batch.light_class) {
-            const shared::LightRow row = row_of(place++);
-            std::memcpy(batch.rows.data + sizeof row * batch.count++, &row, sizeof row);
-        }
-        batches.push_back(batch);
-    } while (place < first + count);
-    counters_.light_batches += batches.size();
-    return batches;
-}
-
-Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene,
-                                           const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
-                                           VkFormat output_format) {
-    const gpu::ResourceId output = graph.create_image("irradiance", output_format, g_buffer.width, g_buffer.height);
-    const std::uint32_t total = std::uint32_t(samples_.size());
-    const std::uint32_t slots = settings_.shadows ? std::max(shadow_maps_->slots(), 1u) : std::max(total, 1u);
-    const bool slots_shared = total > slots;
-    const bool one_batch = !slots_shared && total <= shared::lights_per_batch &&
-                           (total == 0 || light_class(samples_.front().kind) == light_class(samples_.back().kind));
-    SUNFLECK_TRY(brute_force_->begin_frame(g_buffer.width, g_buffer.height, !one_batch, input_.serial,
-                                           input_.completed_serial, resources_));
-    counters_.clamped_flux = brute_force_->clamped().flux;
-    counters_.clamped_irradiance = brute_force_->clamped().mean_irradiance;
-    BruteForceOptions options;
-    options.shadows = settings_.shadows;
-    options.filter = settings_.shadow_filter;
-    options.count_clamped = settings_.count_clamped;
-
-    ShadowCounters shadow_counters;
-    std::uint32_t first = 0;
-    // With more samples than slots, groups of samples take turns: their maps are drawn, used and overwritten.
-    do {
-        const std::uint32_t count = std::min(slots, total - first);
-        std::vector<std::uint32_t> drawn;
-        if (settings_.shadows && slots_shared)
-            for (std::uint32_t i = first; i < first + count; ++i)
-                drawn.push_back(i);
-        else if (settings_.shadows)
-            drawn = to_draw_;
-        if (!drawn.empty()) {
-            SUNFLECK_TRY(shadow_maps_->add_passes(graph, gpu_scene, resources_, make_requests(drawn), shadow_counters));
-            for (const std::uint32_t sample : drawn)
-                stale_[sample] = 0;
-        }
-        SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(first, count));
-        SUNFLECK_TRY(brute_force_->add_pass(graph, g_buffer, camera, *shadow_maps_, batches, options, first == 0,
-                                            first + count == total, output));
-        first += count;
-    } while (first < total);
-    counters_.shadow_map_updates = shadow_counters.maps;
-    counters_.shadow_map_faces = shadow_counters.faces;
-    counters_.shadow_map_vertices = shadow_counters.vertices;
-    counters_.shadow_maps_stale =
-        std::uint64_t(std::count_if(stale_.begin(), stale_.end(), [](std::uint32_t age) { return age > 0; }));
-    return output;
 }
 
 } // namespace sunfleck::gi

@@ -18,8 +18,11 @@
 #include "engine/raytrace/ray_scene.h"
 #include "gi_module/brute_force/brute_force.h"
 #include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/many_light/many_light.h"
 #include "gi_module/settings.h"
+#include "gi_module/shadows/map_scheduler.h"
 #include "gi_module/transport/g_buffer.h"
+#include "gi_module/visibility/visibility_database.h"
 
 #include <map>
 #include <memory>
@@ -32,7 +35,8 @@ std::span<const gpu::EmbeddedShader> shaders();
 struct FrameInput {
     std::uint64_t serial = 1;
     std::uint64_t completed_serial = 0;
-    // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; the oldest are drawn first.
+    // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; Settings::map_priority says which
+    // go first.
     std::uint32_t map_budget = 0xffffffffu;
 };
 
@@ -45,6 +49,11 @@ struct Counters {
     std::uint64_t shadow_map_vertices = 0;
     std::uint64_t shadow_maps_stale = 0; // after this frame
     std::uint64_t light_batches = 0;
+    VisibilityCounters visibility; // of the many-light system, as the rest below
+    std::uint64_t surface_patches = 0;
+    std::uint64_t light_map_updates = 0;
+    std::uint64_t light_map_texels = 0;
+    ManyLightCounters pixels;
     double clamped_flux = 0;       // W over the visible surface, luminance; needs settings.count_clamped
     double clamped_irradiance = 0; // W/m2, mean over pixels
 };
@@ -76,31 +85,50 @@ public:
     const ShadowMaps& shadow_maps() const { return *shadow_maps_; }
     BruteForce& brute_force() { return *brute_force_; }
     const std::vector<LightSample>& samples() const { return samples_; }
+    // Empty unless the technique is light_samples.
+    const VisibilityDatabase& visibility() const { return database_; }
+    const ManyLight& many_light() const { return *many_light_; }
+    const MapScheduler& map_scheduler() const { return scheduler_; }
     // The bound of the geometry term in use, 1/m2 (see transport/clamping.h).
     float geometry_bound() const { return bound_; }
 
 private:
     System(gpu::Device& device) : device_(device), resources_(device) {}
+    bool uses_many_light() const;
     bool needs_new_samples(const raytrace::RayScene& rays);
     void make_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
     void mirror_samples(ecs::Registry& registry);
-    void mark_stale(const scene::GpuScene& gpu_scene);
-    std::vector<std::uint32_t> choose_maps(std::uint32_t budget);
-    shared::LightRow row_of(std::uint32_t sample) const;
+    Status configure_maps();
+    void update_rows(const Bounds& bounds, const raytrace::RayScene& rays);
+    void update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
+                           bool static_changed);
+    void mark_by_visibility();
+    void mark_by_bounds(const scene::GpuScene& gpu_scene);
     Result<std::vector<LightBatch>> make_batches(std::uint32_t first, std::uint32_t count);
     std::vector<ShadowRequest> make_requests(std::span<const std::uint32_t> samples) const;
+    Status add_brute_force(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                           const gpu::UploadSlice& camera, gpu::ResourceId output);
+    Status add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                          const gpu::UploadSlice& camera, gpu::ResourceId output);
 
     gpu::Device& device_;
     gpu::FrameResources resources_;
     std::unique_ptr<ShadowMaps> shadow_maps_;
     std::unique_ptr<BruteForce> brute_force_;
+    std::unique_ptr<ManyLight> many_light_;
     Settings settings_, sampled_settings_;
     std::vector<Emitter> emitters_;
-    std::vector<LightSample> samples_; // grouped by class, direct before indirect
-    std::vector<std::uint32_t> stale_; // by sample: frames out of date, 0 is fresh
+    std::vector<LightSample> samples_;   // grouped by class, direct before indirect
+    std::vector<shared::LightRow> rows_; // of the samples
+    std::vector<ecs::Entity> entities_;  // of the samples
+    MapScheduler scheduler_;
     std::vector<std::uint32_t> to_draw_;
-    std::vector<ecs::Entity> entities_; // of the samples
+    VisibilityDatabase database_;
+    VisibilityOptions database_options_;
+    std::uint64_t database_samples_ = 0; // the set of samples that the database knows
+    std::uint64_t database_geometry_ = 0;
     bool samples_valid_ = false;
+    std::uint64_t sample_generation_ = 0;
     std::uint64_t geometry_generation_ = 0;
     std::uint64_t emitter_hash_ = 0;
     Bounds scene_bounds_;

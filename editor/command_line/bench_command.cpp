@@ -90,7 +90,7 @@ Result<BenchTable> bench_kernel(const BenchOptions& options) {
     const std::size_t shapes = candidates.size();
     for (const bool shadows : {false, true}) // what brute force itself uses, measured like the others
         candidates.push_back({standard, shadows, {}});
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = lights;
     Progress progress("bench kernel");
     for (std::uint32_t round = 0; round < options.repeat; ++round)
@@ -134,7 +134,7 @@ Result<BenchTable> bench_brute_force(const BenchOptions& options) {
     for (const Size size : {Size{640, 360}, Size{1024, 768}}) {
         SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "bench_1", size));
         for (const std::uint32_t lights : {64u, 300u, 1024u}) {
-            gi::Settings settings;
+            gi::Settings settings = gi::Settings::brute_force();
             settings.lights = lights;
             SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 2, options.repeat, true));
             table.rows.push_back({{"size", std::to_string(size.width) + "x" + std::to_string(size.height)},
@@ -160,7 +160,7 @@ Result<BenchTable> bench_shadow_maps(const BenchOptions& options) {
     for (const char* scene : {"cornell", "table_room", "four_pillars"})
         for (const std::uint32_t resolution : {128u, 256u, 512u}) {
             SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "bench_1", {64, 36}));
-            gi::Settings settings;
+            gi::Settings settings = gi::Settings::brute_force();
             settings.lights = 256;
             settings.shadow_map_resolution = resolution;
             std::vector<double> draw, copy;
@@ -216,7 +216,7 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
         for (std::uint32_t lights = 256; lights <= 16384; lights *= 2) {
             std::vector<double> errors;
             for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-                gi::Settings settings;
+                gi::Settings settings = gi::Settings::brute_force();
                 settings.lights = lights;
                 settings.direct_share = 0.5f;
                 settings.seed = seed;

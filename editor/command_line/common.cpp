@@ -179,7 +179,18 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
                         {"shadow_maps_stale", counters.shadow_maps_stale},
                         {"render_passes", counters.light_batches},
                         {"clamped_flux", counters.clamped_flux},
-                        {"clamped_irradiance", counters.clamped_irradiance}};
+                        {"clamped_irradiance", counters.clamped_irradiance},
+                        {"visibility_tests", counters.visibility.tests},
+                        {"pairs_full", counters.visibility.full},
+                        {"pairs_partial", counters.visibility.partial},
+                        {"pairs_none", counters.visibility.none},
+                        {"pairs_unlit", counters.visibility.unlit},
+                        {"surface_patches", counters.surface_patches},
+                        {"light_map_updates", counters.light_map_updates},
+                        {"light_map_texels", counters.light_map_texels},
+                        {"pixels_low_resolution", counters.pixels.pixels_low_resolution},
+                        {"pixels_repaired", counters.pixels.pixels_repaired},
+                        {"pixels_not_repaired", counters.pixels.pixels_not_repaired}};
     json["memory_bytes"] = Json::object();
     for (const auto& [what, bytes] : measurement.memory)
         json["memory_bytes"][what] = bytes;

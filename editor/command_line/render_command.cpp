@@ -10,7 +10,7 @@ namespace {
 struct RenderOptions {
     SceneOptions scene;
     std::string output;
-    std::string direct = "brute_force", indirect = "brute_force", specular = "none", source = "random_walk";
+    std::string direct = "light_samples", indirect = "light_samples", specular = "none", source = "random_walk";
     std::uint32_t lights = 300;
     float direct_share = 0.25f;
     std::string view = "final";
@@ -119,10 +119,10 @@ Command make_render_command(CLI::App& program) {
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
         ->required();
     app->add_option("--direct", options->direct, "Technique for direct light")
-        ->check(CLI::IsMember({"brute_force", "none"}))
+        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
         ->capture_default_str();
     app->add_option("--indirect", options->indirect, "Technique for reflected light")
-        ->check(CLI::IsMember({"brute_force", "none"}))
+        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
         ->capture_default_str();
     app->add_option("--specular", options->specular, "Technique for mirrors and glass")
         ->check(CLI::IsMember({"none"}))

@@ -32,12 +32,6 @@ layout(push_constant) uniform Constants { BruteForceConstants constants; };
 
 shared vec4 group_sums[64];
 
-struct Pixel {
-    vec3 position;
-    vec3 normal;
-    vec3 geometric_normal;
-};
-
 float map_value(uint slot, ivec2 texel) {
     const int resolution = int(constants.map_resolution);
     const int place = (int(slot) * resolution + texel.y) * resolution + texel.x;
@@ -49,96 +43,9 @@ float map_value(uint slot, ivec2 texel) {
     return float((place & 1) != 0 ? word >> 16 : word & 0xffffu) / 65535.0;
 }
 
-vec2 map_place(vec2 uv) { return (uv * 0.5 + 0.5) * float(constants.map_resolution); }
-ivec2 inside_map(ivec2 texel) { return clamp(texel, ivec2(0), ivec2(int(constants.map_resolution) - 1)); }
+float map_side() { return float(constants.map_resolution); }
 
-// 1 if nothing in the map is nearer to the light than the receiver, whose stored value with its bias is `receiver`.
-float visibility(uint slot, vec2 uv, float receiver) {
-    return receiver >= map_value(slot, inside_map(ivec2(map_place(uv)))) ? 1.0 : 0.0;
-}
-
-float blend(vec4 lit, vec2 weight) { return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y); }
-
-// The same from the four nearest texels, for the parallel light of an orthographic map.
-float filtered_visibility(uint slot, vec2 uv, float receiver) {
-    const vec2 place = map_place(uv) - 0.5;
-    const ivec2 corner = ivec2(floor(place));
-    vec4 lit;
-    [[unroll]] for (int i = 0; i < 4; ++i)
-        lit[i] = receiver >= map_value(slot, inside_map(corner + ivec2(i & 1, i >> 1))) ? 1.0 : 0.0;
-    return blend(lit, place - floor(place));
-}
-
-// The same for octahedral maps: each texel against the receiver's plane at the texel's centre.
-float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_space_normal, float plane_distance,
-                                float bias, float reach) {
-    const vec2 place = map_place(uv) - 0.5;
-    const ivec2 corner = ivec2(floor(place));
-    vec4 lit;
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-        const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
-        const vec2 centre_uv = (vec2(texel) + 0.5) / float(constants.map_resolution) * 2.0 - 1.0;
-        const vec3 centre =
-            light_class == light_class_surface ? hemisphere_direction(centre_uv) : sphere_direction(centre_uv);
-        const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
-        lit[i] = min(value, 1.0) + depth_step(map_bits) >= map_value(slot, texel) ? 1.0 : 0.0;
-    }
-    return blend(lit, place - floor(place));
-}
-
-// Irradiance of one light at one pixel as a factor of its intensity; y: what the bound of the geometry term took away.
-vec2 light_factor(LightRow light, Pixel pixel) {
-    const uint slot = uint(light.intensity_slot.w);
-    const vec3 v = pixel.position - light.position_bound.xyz;
-    const float along = dot(light.normal_offset.xyz, v);
-    const float resolution = float(constants.map_resolution);
-    if (light_class == light_class_directional) {
-        const float cosine = -dot(pixel.normal, light.normal_offset.xyz);
-        const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
-        float factor = geometric_cosine > 0.0 ? max(cosine, 0.0) : 0.0;
-        if (maps != maps_none) {
-            const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
-            const float bias = orthographic_bias(resolution, geometric_cosine);
-            const float receiver = 1.0 - along * light.normal_offset.w + depth_step(map_bits);
-            if (filtered == 0)
-                factor *= visibility(slot, uv, receiver + bias);
-            else
-                factor *= filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
-        }
-        return vec2(factor, 0.0);
-    }
-    const float squared_distance = max(dot(v, v), 1e-12);
-    const float receiver_distance = -dot(pixel.normal, v);           // |v| times the receiver's cosine
-    const float plane_distance = -dot(pixel.geometric_normal, v);    // of the light to the receiver's plane
-    const float lit_side = plane_distance > 0.0 ? max(receiver_distance, 0.0) : 0.0;
-    vec2 factor;
-    if (light_class == light_class_surface) {
-        const float inverse = 1.0 / squared_distance;
-        const float term = max(along, 0.0) * lit_side * inverse * inverse;
-        factor.x = min(term, light.position_bound.w);
-        factor.y = term - factor.x;
-    } else {
-        const float inverse_distance = inversesqrt(squared_distance);
-        const float cone = clamp(along * inverse_distance * light.tangent_scale.w + light.normal_offset.w, 0.0, 1.0);
-        factor = vec2(cone * cone * lit_side * inverse_distance * inverse_distance * inverse_distance, 0.0);
-    }
-    if (maps != maps_none) {
-        const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
-        const bool hemisphere = light_class == light_class_surface;
-        const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
-        const float reach = hemisphere ? hemisphere_texel_reach(resolution) : sphere_texel_reach(resolution);
-        const float bias = perspective_bias(reach, plane_distance, place.z);
-        if (filtered == 0) {
-            factor *= visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits));
-        } else {
-            const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
-                                     dot(light.bitangent.xyz, pixel.geometric_normal),
-                                     dot(light.normal_offset.xyz, pixel.geometric_normal));
-            factor *= filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach);
-        }
-    }
-    return factor;
-}
+#include "gi_module/shadows/shadowed_light.glsl"
 
 // Area of the surface that a pixel shows, m2.
 float pixel_area(Pixel pixel, vec2 centre) {
@@ -184,10 +91,11 @@ void main() {
             else
                 light = uniform_lights[i];
             [[unroll]] for (uint k = 0; k < pixels; ++k) {
-                const vec2 factor = light_factor(light, surface[k]);
-                sum[k] += light.intensity_slot.rgb * factor.x;
+                const LightFactor factor = light_factor(light, surface[k], true);
+                sum[k] += light.intensity_slot.rgb * (factor.unshadowed * factor.visibility);
                 if (count_clamped != 0)
-                    clamped[k] += dot(light.intensity_slot.rgb, vec3(0.2126, 0.7152, 0.0722)) * factor.y;
+                    clamped[k] += dot(light.intensity_slot.rgb, vec3(0.2126, 0.7152, 0.0722)) *
+                                  (factor.clamped * factor.visibility);
             }
         }
     }

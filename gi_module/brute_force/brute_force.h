@@ -2,8 +2,10 @@
 #pragma once
 
 #include "gi_module/brute_force/brute_force_shared.h"
+#include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/transport/g_buffer.h"
+#include "gi_module/transport/light_batch.h"
 
 #include <map>
 
@@ -15,13 +17,6 @@ struct KernelShape {
     std::uint32_t maps = shared::maps_texel_buffer;
     bool storage_lights = false;
     auto operator<=>(const KernelShape&) const = default;
-};
-
-// Samples of one class, at most shared::lights_per_batch of them.
-struct LightBatch {
-    std::uint32_t light_class = 0;
-    gpu::UploadSlice rows; // LightRow[lights_per_batch], the first `count` used
-    std::uint32_t count = 0;
 };
 
 struct BruteForceOptions {

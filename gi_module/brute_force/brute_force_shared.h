@@ -6,10 +6,6 @@ SHARED_BEGIN
 // Values of the kernel's specialisation constants, by id:
 // 0 pixels an invocation, 1 light class, 2 how maps are read, 3 filter (0, 1), 4 count clamped flux (0, 1),
 // 5 lights from a storage buffer instead of a uniform buffer (0, 1), 6 bits of a map texel
-SHARED_CONSTANT uint maps_none = 0u;           // no shadow test
-SHARED_CONSTANT uint maps_texel_buffer = 1u;   // uniform texel buffer
-SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
-
 SHARED_CONSTANT uint kernel_rows = 8u; // work group: 8 invocations wide, 8 high
 SHARED_CONSTANT uint kernel_lanes = 8u;
 

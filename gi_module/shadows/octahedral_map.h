@@ -52,6 +52,11 @@ SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
     return vec3(s.x * (w - s.y * d.y), s.y * (w - s.x * d.x), w);
 }
 
+// How kernels read the maps.
+SHARED_CONSTANT uint maps_none = 0u;           // no shadow test
+SHARED_CONSTANT uint maps_texel_buffer = 1u;   // uniform texel buffer
+SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
+
 // --- Bias, derived and not tuned -----------------------------------------------------------------------------------
 // A look-up reads the texel centre c nearest to the receiver's direction q (both as points with w = 1). The receiver's
 // plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at

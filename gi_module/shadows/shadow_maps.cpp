@@ -4,6 +4,7 @@
 #include "gi_module/shadows/octahedral_map.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace sunfleck::gi {
 namespace {
@@ -48,42 +49,57 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     return maps;
 }
 
-Result<bool> ShadowMaps::configure(std::uint32_t resolution, std::uint32_t bits, std::uint32_t wanted,
-                                   std::uint64_t memory_budget_bytes, gpu::FrameResources& resources) {
-    const std::uint64_t texels_per_map = std::uint64_t(resolution) * resolution;
-    const std::uint64_t bytes_per_map = texels_per_map * bits / 8;
-    const std::uint64_t limit =
-        std::min({std::uint64_t(std::max(wanted, 1u)), memory_budget_bytes / bytes_per_map,
-                  device_.traits().max_texel_elements / texels_per_map, (std::uint64_t(1) << 31) / bytes_per_map});
-    if (limit == 0)
+Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources& resources) {
+    const std::uint32_t layers = layout.keep_static ? 2 : 1;
+    const auto most_maps = [&](std::uint32_t resolution) {
+        const std::uint64_t texels = std::uint64_t(resolution) * resolution, bytes = texels * layout.bits / 8;
+        return std::min({layout.memory_bytes / (bytes * layers), device_.traits().max_texel_elements / texels,
+                         (std::uint64_t(1) << 31) / bytes});
+    };
+    const std::uint32_t wanted = std::max(layout.wanted, 1u);
+    std::uint32_t resolution = layout.resolution;
+    while (layout.shrink && resolution > 2 && most_maps(resolution) < wanted)
+        resolution -= 2;
+    const std::uint32_t slots = std::uint32_t(std::min<std::uint64_t>(most_maps(resolution), wanted));
+    if (slots == 0)
         return Error{"one shadow map of " + std::to_string(resolution) +
                      " texels a side does not fit shadow_memory or this device; lower shadow_map_resolution"};
-    const std::uint32_t slots = std::uint32_t(limit);
-    if (texels_ && resolution == resolution_ && bits == bits_ && slots <= slots_)
+    if (texels_ && resolution == resolution_ && layout.bits == bits_ && slots <= slots_ &&
+        layout.keep_static == layout_.keep_static)
         return false;
-    if (texels_)
-        resources.retire(std::move(texels_));
+    for (gpu::Buffer* buffer : {&texels_, &static_texels_})
+        if (*buffer)
+            resources.retire(std::move(*buffer));
     if (staging_)
         resources.retire(std::move(staging_));
     slots_ = 0;
+    layout_ = layout;
     resolution_ = resolution;
-    bits_ = bits;
+    bits_ = layout.bits;
+    const std::uint64_t bytes_per_map = std::uint64_t(resolution) * resolution * bits_ / 8;
     gpu::BufferDescription buffer;
     buffer.name = "shadow maps";
     buffer.size = bytes_per_map * slots;
     buffer.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    buffer.texel_format = bits == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
+    buffer.texel_format = bits_ == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
     SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
+    if (layout.keep_static) {
+        buffer.name = "static shadow maps";
+        buffer.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        buffer.texel_format = VK_FORMAT_UNDEFINED;
+        SUNFLECK_ASSIGN(static_texels_, gpu::Buffer::create(device_, buffer));
+    }
     layers_ = std::uint32_t(std::clamp<std::uint64_t>(
         staging_budget_bytes / bytes_per_map, 1, std::min({staging_layers, slots, device_.traits().max_image_layers})));
     gpu::ImageDescription image;
     image.name = "shadow map staging";
-    image.format = depth_format(bits);
+    image.format = depth_format(bits_);
     image.width = image.height = resolution;
     image.layers = layers_;
     image.array = true;
-    image.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    image.usage =
+        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     SUNFLECK_ASSIGN(staging_, gpu::Image::create(device_, image));
     slots_ = slots;
     return true;
@@ -110,8 +126,8 @@ std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bou
 }
 
 Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
-                                                    std::span<const ShadowRequest> requests,
-                                                    ShadowCounters& counters) const {
+                                                    std::span<const ShadowRequest> requests, Occluders occluders,
+                                                    bool detail, ShadowCounters& counters) const {
     Chunk chunk;
     std::vector<shared::LightRow> lights;
     for (const ShadowRequest& request : requests) {
@@ -121,7 +137,10 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     std::vector<shared::ShadowJob> jobs;
     std::vector<VkDrawIndexedIndirectCommand> commands;
     std::vector<std::uint32_t> seen(requests.size());
+    (void)detail;
     for (const scene::DrawItem& item : scene.draws()) {
+        if (occluders != Occluders::all && item.is_static != (occluders == Occluders::static_only))
+            continue;
         const std::uint32_t first = std::uint32_t(jobs.size());
         for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
             const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
@@ -137,7 +156,6 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     }
     for (const std::uint32_t faces : seen)
         counters.faces += std::uint64_t(std::popcount(faces));
-    counters.maps += requests.size();
     counters.draws += commands.empty() ? 0 : 1;
     chunk.command_count = std::uint32_t(commands.size());
     SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
@@ -147,26 +165,56 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
 }
 
 Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
-                              std::span<const ShadowRequest> requests, ShadowCounters& counters) {
+                              std::span<const ShadowRequest> requests, const MapOptions& options,
+                              ShadowCounters& counters) {
+    counters.maps += requests.size();
+    const auto in_chunks = [&](std::span<const ShadowRequest> all, Occluders occluders, const gpu::Buffer& target,
+                               bool over_static) -> Status {
+        for (std::size_t first = 0; first < all.size(); first += layers_) {
+            const auto part = all.subspan(first, std::min<std::size_t>(layers_, all.size() - first));
+            SUNFLECK_ASSIGN(const Chunk chunk,
+                            prepare_chunk(scene, resources, part, occluders, options.detail && over_static, counters));
+            SUNFLECK_TRY(add_drawing(graph, scene, chunk, target, over_static));
+        }
+        return {};
+    };
+    if (!options.keep_static || !static_texels_)
+        return in_chunks(requests, Occluders::all, texels_, false);
+    std::vector<ShadowRequest> anew;
+    std::copy_if(requests.begin(), requests.end(), std::back_inserter(anew),
+                 [](const ShadowRequest& request) { return request.redraw_static; });
+    SUNFLECK_TRY(in_chunks(anew, Occluders::static_only, static_texels_, false));
+    return in_chunks(requests, Occluders::movers, texels_, true);
+}
+
+// Draws a chunk in the staging image, over the kept static layers or from nothing, and copies it to its slots.
+Status ShadowMaps::add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
+                               const gpu::Buffer& target, bool over_static) {
     const gpu::ResourceId staging = graph.import_image(staging_);
-    const gpu::ResourceId texels = graph.import_buffer(texels_);
-    for (std::size_t first = 0; first < requests.size(); first += layers_) {
-        const auto part = requests.subspan(first, std::min<std::size_t>(layers_, requests.size() - first));
-        SUNFLECK_ASSIGN(const Chunk chunk, prepare_chunk(scene, resources, part, counters));
-        graph.add_pass("shadow maps")
-            .write(staging, gpu::Usage::depth_attachment)
-            .execute([this, &scene, chunk](gpu::PassContext& context) { return draw_chunk(context, scene, chunk); });
+    const gpu::ResourceId texels = graph.import_buffer(target);
+    if (over_static)
         graph.add_pass("shadow map copies")
-            .read(staging, gpu::Usage::transfer_source)
-            .write(texels, gpu::Usage::transfer_destination)
-            .execute([this, chunk](gpu::PassContext& context) { return copy_chunk(context, chunk); });
-    }
+            .read(graph.import_buffer(static_texels_), gpu::Usage::transfer_source)
+            .write(staging, gpu::Usage::transfer_destination)
+            .execute(
+                [this, chunk](gpu::PassContext& context) { return copy_chunk(context, chunk, static_texels_, false); });
+    graph.add_pass("shadow maps")
+        .write(staging, gpu::Usage::depth_attachment)
+        .execute([this, &scene, chunk, over_static](gpu::PassContext& context) {
+            return draw_chunk(context, scene, chunk, over_static);
+        });
+    graph.add_pass("shadow map copies")
+        .read(staging, gpu::Usage::transfer_source)
+        .write(texels, gpu::Usage::transfer_destination)
+        .execute(
+            [this, chunk, &target](gpu::PassContext& context) { return copy_chunk(context, chunk, target, true); });
     return {};
 }
 
-Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const {
+Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk,
+                              bool load) const {
     const VkRenderingAttachmentInfo depth =
-        gpu::rendering_attachment(staging_.view(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
+        gpu::rendering_attachment(staging_.view(), VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, load);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {resolution_, resolution_};
     rendering.layerCount = std::uint32_t(chunk.slots.size());
@@ -195,7 +243,8 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
     return status;
 }
 
-Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk) const {
+Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer,
+                              bool to_buffer) const {
     const VkDeviceSize bytes_per_map = VkDeviceSize(resolution_) * resolution_ * bits_ / 8;
     std::vector<VkBufferImageCopy> regions;
     for (std::uint32_t layer = 0; layer < chunk.slots.size(); ++layer) {
@@ -205,8 +254,14 @@ Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk) con
         region.imageExtent = {resolution_, resolution_, 1};
         regions.push_back(region);
     }
-    context.device.vk.vkCmdCopyImageToBuffer(context.commands, staging_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                             texels_.handle(), std::uint32_t(regions.size()), regions.data());
+    const std::uint32_t count = std::uint32_t(regions.size());
+    if (to_buffer)
+        context.device.vk.vkCmdCopyImageToBuffer(context.commands, staging_.handle(),
+                                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle(), count,
+                                                 regions.data());
+    else
+        context.device.vk.vkCmdCopyBufferToImage(context.commands, buffer.handle(), staging_.handle(),
+                                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, count, regions.data());
     return {};
 }
 

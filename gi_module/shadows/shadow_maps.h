@@ -21,6 +21,22 @@ struct ShadowRequest {
     std::uint32_t slot = 0;
     std::uint32_t light_class = 0;
     shared::LightRow light;
+    bool redraw_static = true; // the static part is stale, too
+};
+
+struct MapLayout {
+    std::uint32_t resolution = 256;
+    std::uint32_t bits = 16;
+    std::uint32_t wanted = 0;       // maps
+    std::uint64_t memory_bytes = 0; // bound of all layers together
+    bool keep_static = false;       // a second layer a map, with static geometry alone
+    bool shrink = false;            // a lower resolution rather than fewer maps
+    bool operator==(const MapLayout&) const = default;
+};
+
+struct MapOptions {
+    bool keep_static = false; // draw movers over the kept static layer
+    bool detail = false;      // draw movers with as much detail as a texel shows
 };
 
 struct ShadowCounters {
@@ -35,9 +51,8 @@ public:
     static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
     // Sets resolution, bits and number of slots; content is lost when anything changes (returns true then). The number
-    // of slots is limited by `wanted`, the memory budget and the device.
-    Result<bool> configure(std::uint32_t resolution, std::uint32_t bits, std::uint32_t wanted,
-                           std::uint64_t memory_budget_bytes, gpu::FrameResources& resources);
+    // of slots is limited by what is wanted, the memory and the device; with `shrink`, the resolution is instead.
+    Result<bool> configure(const MapLayout& layout, gpu::FrameResources& resources);
 
     std::uint32_t slots() const { return slots_; }
     std::uint32_t resolution() const { return resolution_; }
@@ -47,7 +62,7 @@ public:
     // Adds passes that draw the requested maps with everything in `scene` as occluders. Faces that no occluder reaches
     // are left empty without being drawn.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
-                      std::span<const ShadowRequest> requests, ShadowCounters& counters);
+                      std::span<const ShadowRequest> requests, const MapOptions& options, ShadowCounters& counters);
 
     // Bit per face: the box may be seen through it. For directional lights bit 0.
     static std::uint32_t faces_that_see(const ShadowRequest& request, const Bounds& bounds);
@@ -55,15 +70,20 @@ public:
 private:
     ShadowMaps(gpu::Device& device) : device_(device) {}
     struct Chunk;
+    enum class Occluders { all, static_only, movers };
     Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
-                                std::span<const ShadowRequest> requests, ShadowCounters& counters) const;
-    Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const;
-    Status copy_chunk(gpu::PassContext& context, const Chunk& chunk) const;
+                                std::span<const ShadowRequest> requests, Occluders occluders, bool detail,
+                                ShadowCounters& counters) const;
+    Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
+                       const gpu::Buffer& target, bool over_static);
+    Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk, bool load) const;
+    Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;
     const gpu::Pipeline* pipeline16_ = nullptr;
     const gpu::Pipeline* pipeline32_ = nullptr;
-    gpu::Buffer texels_;
+    gpu::Buffer texels_, static_texels_;
+    MapLayout layout_;
     gpu::Image staging_;
     std::uint32_t resolution_ = 0, bits_ = 0, slots_ = 0, layers_ = 0;
 };

@@ -18,7 +18,7 @@ void add_floor(GpuWorld& world) {
 }
 
 gi::Settings one_light() {
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 1;
     settings.indirect = gi::IndirectTechnique::none;
     return settings;
@@ -145,7 +145,7 @@ TEST_F(Lighting, FurnaceWithinThreePercent) {
             assets::SceneBuilder builder(world.renderer->registry(), world.renderer->meshes());
             assets::make_furnace_of(builder, albedo, 1.0f);
             world.finish("view");
-            gi::Settings settings;
+            gi::Settings settings = gi::Settings::brute_force();
             settings.lights = 16384;
             settings.direct_share = 0.5f;
             settings.bounces = bounces;
@@ -169,7 +169,7 @@ TEST_F(Lighting, FurnaceWithinThreePercent) {
 
 TEST_F(Lighting, WhatTheBoundTakesAwayIsCounted) {
     GpuWorld world(assets::make_furnace, "view");
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 512;
     settings.direct_share = 0.5f;
     settings.count_clamped = true;
@@ -200,7 +200,7 @@ TEST_F(Lighting, EveryKernelShapeGivesTheSamePicture) {
     GpuWorld world(assets::make_four_pillars, "view");
     world.request.width = 100; // not a multiple of any tile
     world.request.height = 37;
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 70;
     settings.shadow_map_resolution = 64;
     world.set(settings);
@@ -225,7 +225,7 @@ TEST_F(Lighting, EveryKernelShapeGivesTheSamePicture) {
 
 TEST_F(Lighting, FewerSlotsThanSamplesGiveTheSamePicture) {
     GpuWorld world(assets::make_cornell, "corner");
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 100;
     settings.shadow_map_resolution = 256;
     world.set(settings);
@@ -244,7 +244,7 @@ TEST_F(Lighting, FewerSlotsThanSamplesGiveTheSamePicture) {
 TEST_F(Lighting, AnyNumberOfSamples) {
     for (const std::uint32_t lights : {0u, 1u, 7u, 300u, 2049u, 65536u}) {
         GpuWorld world(assets::make_cornell, "view");
-        gi::Settings settings;
+        gi::Settings settings = gi::Settings::brute_force();
         settings.lights = lights;
         settings.shadow_map_resolution = 16;
         world.set(settings);
@@ -264,7 +264,7 @@ TEST_F(Lighting, AnyNumberOfSamples) {
 TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
     for (const gi::MoverHandling movers : {gi::MoverHandling::per_pixel, gi::MoverHandling::as_static}) {
         GpuWorld world(assets::make_four_pillars, "view");
-        gi::Settings settings;
+        gi::Settings settings = gi::Settings::brute_force();
         settings.lights = 300;
         settings.shadow_map_resolution = 32;
         settings.movers = movers;
@@ -285,7 +285,7 @@ TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
 
 TEST_F(Lighting, AFilteredLookUpKeepsTheMean) {
     GpuWorld world(assets::make_table_room, "view");
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 64;
     world.set(settings);
     const io::Picture sharp = world.picture();

@@ -186,7 +186,7 @@ ecs::Entity first_lamp(GpuWorld& world) {
 
 void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs) {
     GpuWorld world(make);
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 96;
     settings.shadow_map_resolution = 512;
     settings.shadow_map_bits = bits;
@@ -276,7 +276,7 @@ void make_box_on_floor(assets::SceneBuilder& scene) {
 
 TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
     GpuWorld world(make_box_on_floor);
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 64;
     settings.indirect = gi::IndirectTechnique::none;
     settings.shadow_map_resolution = 256;
@@ -315,7 +315,7 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
 
 TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
     GpuWorld world(assets::make_table_room, "view");
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);
@@ -333,7 +333,7 @@ TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
 
 TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     GpuWorld world(assets::make_four_pillars, "view");
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);

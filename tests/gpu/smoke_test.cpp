@@ -22,7 +22,7 @@ class Smoke : public GpuTest {};
 TEST_F(Smoke, OneFrameOfEveryScene) {
     for (const assets::BuiltInScene& scene : assets::built_in_scenes()) {
         GpuWorld world(scene.make);
-        gi::Settings settings;
+        gi::Settings settings = gi::Settings::brute_force();
         settings.lights = 40;
         settings.shadow_map_resolution = 32;
         settings.count_clamped = true;

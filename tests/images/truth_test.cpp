@@ -36,7 +36,7 @@ io::Picture reference_picture(GpuWorld& world, std::uint32_t samples) {
 }
 
 gi::Settings truth_settings(std::uint32_t lights, std::uint32_t seed) {
-    gi::Settings settings;
+    gi::Settings settings = gi::Settings::brute_force();
     settings.lights = lights;
     settings.seed = seed;
     settings.direct_share = 0.5f;

@@ -36,9 +36,11 @@ const Layers& allowed() {
         {"gi_module/shadows", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module/visibility", with(foundation, {"gi_module/transport"})},
         {"gi_module/brute_force", with(foundation, {"gi_module/transport", "gi_module/shadows", "gi_module"})},
+        {"gi_module/many_light", with(foundation, {"gi_module/transport", "gi_module/light_sampling",
+                                                   "gi_module/shadows", "gi_module/visibility", "gi_module"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
-                                        "gi_module/brute_force"})},
+                                        "gi_module/brute_force", "gi_module/visibility", "gi_module/many_light"})},
     };
     return layers;
 }
@@ -54,7 +56,7 @@ TEST(Layers, IncludesPointDownOnly) {
     int read = 0;
     for (const char* top : {"engine", "gi_module"})
         for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
-            static const std::set<std::string> extensions = {".h", ".cpp", ".comp", ".vert", ".frag"};
+            static const std::set<std::string> extensions = {".h", ".cpp", ".comp", ".vert", ".frag", ".glsl"};
             if (!entry.is_regular_file() || !extensions.count(entry.path().extension()))
                 continue;
             const std::string file = fs::relative(entry.path(), root);

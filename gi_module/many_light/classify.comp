@@ -1,0 +1,95 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Merges the visibility rows of a group's nodes into its two lists for one batch of samples. An invocation a group: lists
+// come out in the order of samples, whatever the device does.
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/visibility/surface_lookup_shared.h"
+
+layout(local_size_x = 8) in;
+layout(constant_id = 0) const uint indirect = 0;   // 1: the number of groups is in the commands
+layout(constant_id = 1) const uint light_maps = 1; // this class of samples is in the light maps
+layout(constant_id = 2) const uint visibility = 1; // 0: every sample is tested everywhere
+
+layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
+layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
+layout(set = 0, binding = 2) readonly buffer Nodes { NodeRow node_rows[]; };
+layout(set = 0, binding = 3) readonly buffer Rows { uint rows[]; };
+layout(set = 0, binding = 4) writeonly buffer Slots { uint entry_slots[]; };
+layout(set = 0, binding = 5) writeonly buffer Entries { uint entries[]; };
+layout(set = 0, binding = 6) writeonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 7) readonly buffer Commands { uint commands[]; };
+layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+void main() {
+    const uint group = gl_GlobalInvocationID.x;
+    const uint group_count = indirect != 0 ? commands[command_totals + 2u] : constants.group_count;
+    if (group >= group_count)
+        return;
+    uint slot_nodes[any_node_slot];
+    [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
+        slot_nodes[s] = no_node;
+    bool any_pixel = false, any_node = false;
+    for (uint i = 0; i < group_pixels; ++i) {
+        const uint entry = group * group_pixels + i;
+        const bool exists = (pixels[entry] & unlit_pixel) == 0u;
+        const uint node = entry_nodes[entry];
+        uint slot = any_node_slot;
+        if (exists && node != no_node && visibility != 0) {
+            [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
+                if (slot == any_node_slot && (slot_nodes[s] == node || slot_nodes[s] == no_node)) {
+                    slot_nodes[s] = node;
+                    slot = s;
+                }
+            }
+        }
+        any_pixel = any_pixel || exists;
+        any_node = any_node || (exists && slot == any_node_slot);
+        entry_slots[entry] = slot;
+    }
+    bool mapped[any_node_slot];
+    [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
+        mapped[s] = light_maps != 0 && slot_nodes[s] != no_node && node_rows[min(slot_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
+
+    const uint first = group * constants.list_stride;
+    uint tested = 0u, untested = 0u;
+    const uint end = any_pixel ? constants.batch_first + constants.batch_count : constants.batch_first;
+    for (uint word = constants.batch_first / pairs_per_word; word * pairs_per_word < end; ++word) {
+        // Two bits a sample; after this the lower one of each pair speaks.
+        uint partial[any_node_slot], none[any_node_slot];
+        uint any_partial = any_node ? 0x55555555u : 0u, any_free = 0u;
+        [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
+            partial[s] = none[s] = 0u;
+            if (slot_nodes[s] != no_node) {
+                const uint states = rows[slot_nodes[s] * constants.words_per_row + word];
+                const uint low = states & 0x55555555u, high = (states >> 1) & 0x55555555u;
+                partial[s] = high & ~low;
+                none[s] = low & ~high;
+                any_partial |= partial[s];
+                if (!mapped[s])
+                    any_free |= none[s];
+            }
+        }
+        if ((any_partial | any_free) == 0u)
+            continue;
+        for (uint k = 0; k < pairs_per_word; ++k) {
+            const uint sample_index = word * pairs_per_word + k;
+            const uint bit = 1u << (2u * k);
+            if (((any_partial | any_free) & bit) == 0u || sample_index < constants.batch_first || sample_index >= end)
+                continue;
+            uint in_map = 0u, to_add = 0u;
+            [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
+                if (mapped[s])
+                    in_map |= ((none[s] | partial[s]) & bit) != 0u ? 1u << s : 0u;
+                else
+                    to_add |= (none[s] & bit) != 0u ? 1u << s : 0u;
+            }
+            const uint sample_bits = sample_index - constants.batch_first;
+            if ((any_partial & bit) != 0u)
+                entries[first + tested++] = sample_bits | (in_map << entry_slots_shift);
+            else
+                entries[first + constants.list_stride - 1u - untested++] = sample_bits | (to_add << entry_slots_shift);
+        }
+    }
+    counts[group] = GroupCounts(tested, untested);
+}

@@ -1,0 +1,84 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Fills groups: which pixel each entry is, which node it lies on, and what its light map holds there. Low-resolution
+// pixels are subsampled from the full G-buffer (thesis sec. 4.3.3): each stands for the pixel in the middle of its block.
+#include "engine/core/octahedral.h"
+#include "engine/scene/camera_shared.h"
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/visibility/surface_lookup_shared.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint from_list = 0; // 0: tiles of the low-resolution picture, 1: the pixels are given
+layout(constant_id = 1) const uint light_maps = 1;
+
+layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 1) uniform sampler2D depth_image;
+layout(set = 0, binding = 2) uniform usampler2D normals_image;
+layout(set = 0, binding = 3) uniform usampler2D surface_image;
+layout(set = 0, binding = 4) readonly buffer Instances { SurfaceInstance instances[]; };
+layout(set = 0, binding = 5) readonly buffer Charts { SurfaceChart charts[]; };
+layout(set = 0, binding = 6) readonly buffer Cells { uint cells[]; };
+layout(set = 0, binding = 7) readonly buffer Nodes { NodeRow node_rows[]; };
+layout(set = 0, binding = 8) buffer Pixels { uint pixels[]; };
+layout(set = 0, binding = 9) writeonly buffer NodeOfEntry { uint entry_nodes[]; };
+layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
+layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
+    const SurfaceInstance instance = instances[(surface & 0x7fffffffu) - 1u];
+    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count; ++i)
+        if (on_chart(charts[i], position, geometric_normal))
+            return cells[chart_cell(charts[i], position)];
+    return box_node(instance, position);
+}
+
+// Bilinear, within the patch: patches share the values on their borders where they share their samples.
+vec3 light_map(uint node, vec3 position) {
+    const NodeRow row = node_rows[node];
+    if (row.first_texel == no_light_map)
+        return vec3(0.0);
+    const SurfaceChart chart = charts[row.chart];
+    const vec2 place = vec2(dot(chart.u_axis.xyz, position) + chart.u_axis.w, dot(chart.v_axis.xyz, position) + chart.v_axis.w);
+    const vec2 texel = clamp((place - row.place.xy) / row.place.zw, 0.0, 1.0) * vec2(row.columns - 1u, row.rows - 1u);
+    const uvec2 corner = uvec2(min(texel, vec2(row.columns - 2u, row.rows - 2u)));
+    const vec2 weight = texel - vec2(corner);
+    const uint first = row.first_texel + corner.y * row.columns + corner.x;
+    const vec3 low = mix(vec3(light_map_texels[first].xyz), vec3(light_map_texels[first + 1u].xyz), weight.x);
+    const vec3 high = mix(vec3(light_map_texels[first + row.columns].xyz),
+                          vec3(light_map_texels[first + row.columns + 1u].xyz), weight.x);
+    return mix(low, high, weight.y) / constants.fixed_point;
+}
+
+void main() {
+    const uint entry = gl_WorkGroupID.x * group_pixels + gl_LocalInvocationID.x;
+    ivec2 pixel;
+    bool exists;
+    if (from_list != 0) {
+        const uint packed = pixels[entry];
+        exists = packed != no_pixel;
+        pixel = exists ? ivec2(packed & 0xffffu, packed >> 16) : ivec2(0);
+    } else {
+        const uint column = (gl_WorkGroupID.x % constants.group_columns) * group_side + gl_LocalInvocationID.x % group_side;
+        const uint row = (gl_WorkGroupID.x / constants.group_columns) * group_side + gl_LocalInvocationID.x / group_side;
+        exists = column < constants.low_width && row < constants.low_height;
+        pixel = min(ivec2(column, row) * int(constants.scale) + int(constants.scale / 2u),
+                    ivec2(constants.width, constants.height) - 1);
+    }
+    const float depth = texelFetch(depth_image, pixel, 0).r;
+    const uint surface = texelFetch(surface_image, pixel, 0).r;
+    const bool in_picture = exists;
+    exists = exists && surface != 0u;
+    uint node = no_node;
+    vec3 sum = vec3(0.0);
+    if (exists) {
+        const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
+        node = find_node(surface, position, unpack_normal(texelFetch(normals_image, pixel, 0).g));
+        if (light_maps != 0 && node != no_node)
+            sum = light_map(node, position);
+    }
+    if (from_list == 0)
+        pixels[entry] = in_picture ? uint(pixel.x) | (uint(pixel.y) << 16) | (exists ? 0u : unlit_pixel) : no_pixel;
+    entry_nodes[entry] = node;
+    sums[entry] = vec4(sum, 0.0);
+}

@@ -1,0 +1,92 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Lights the pixels of a group by its lists: samples that need a shadow test, then those that do not. As in the
+// baseline, an invocation lights several pixels on a CPU, so that they share each sample's loads.
+#include "engine/core/octahedral.h"
+#include "engine/scene/camera_shared.h"
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/shadows/octahedral_map.h"
+#include "gi_module/transport/light_row_shared.h"
+
+layout(constant_id = 0) const uint pixels_per_invocation = 8;
+layout(constant_id = 1) const uint light_class = light_class_surface;
+layout(constant_id = 2) const uint maps = maps_texel_buffer;
+layout(constant_id = 3) const uint filtered = 0;
+layout(constant_id = 4) const uint map_bits = 16;
+layout(constant_id = 5) const uint to_image = 0; // 1: the sums go to the full picture
+layout(constant_id = 6) const uint lanes = 8;
+layout(local_size_x_id = 6) in;
+
+layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 1) uniform sampler2D depth_image;
+layout(set = 0, binding = 2) uniform usampler2D normals_image;
+layout(set = 0, binding = 3) uniform Lights { LightRow light_rows[lights_per_batch]; };
+layout(set = 0, binding = 4) uniform samplerBuffer map_texels;
+layout(set = 0, binding = 5) readonly buffer Pixels { uint pixels[]; };
+layout(set = 0, binding = 6) readonly buffer Slots { uint entry_slots[]; };
+layout(set = 0, binding = 7) readonly buffer Entries { uint entries[]; };
+layout(set = 0, binding = 8) readonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 10) writeonly uniform image2D output_image;
+layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+float map_side() { return float(constants.map_resolution); }
+float map_value(uint slot, ivec2 texel) {
+    const int side = int(constants.map_resolution);
+    return texelFetch(map_texels, (int(slot) * side + texel.y) * side + texel.x).r;
+}
+#include "gi_module/shadows/shadowed_light.glsl"
+
+void main() {
+    const uint group = gl_WorkGroupID.x;
+    Pixel surface[pixels_per_invocation];
+    vec3 sum[pixels_per_invocation];
+    uint slot[pixels_per_invocation];
+    ivec2 place[pixels_per_invocation];
+    bool exists[pixels_per_invocation];
+    [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+        const uint entry = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
+        const uint packed = pixels[entry];
+        exists[k] = (packed & unlit_pixel) == 0u;
+        place[k] = packed != no_pixel ? ivec2(packed & 0xffffu, (packed & ~unlit_pixel) >> 16) : ivec2(-1);
+        const ivec2 inside = max(place[k], ivec2(0));
+        const float depth = texelFetch(depth_image, inside, 0).r;
+        const uvec2 normals = texelFetch(normals_image, inside, 0).rg;
+        surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
+        surface[k].normal = unpack_normal(normals.x);
+        surface[k].geometric_normal = unpack_normal(normals.y);
+        slot[k] = entry_slots[entry] + entry_slots_shift;
+        sum[k] = sums[entry].rgb;
+    }
+    const GroupCounts count = counts[group];
+    const uint first = group * constants.list_stride;
+    for (uint i = 0; i < count.tested; ++i) {
+        const uint entry = entries[first + i];
+        const LightRow light = light_rows[entry & entry_sample_mask];
+        [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+            const LightFactor factor = light_factor(light, surface[k], true);
+            const float held = float((entry >> slot[k]) & 1u); // by the light map
+            sum[k] += light.intensity_slot.rgb * (factor.unshadowed * (factor.visibility - held));
+        }
+    }
+    const uint last = first + constants.list_stride - 1u;
+    for (uint i = 0; i < count.untested; ++i) {
+        const uint entry = entries[last - i];
+        const LightRow light = light_rows[entry & entry_sample_mask];
+        [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+            const float wanted = float((entry >> slot[k]) & 1u);
+            sum[k] += light.intensity_slot.rgb * (light_factor(light, surface[k], false).unshadowed * wanted);
+        }
+    }
+    [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+        const uint entry = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
+        // What the light map interpolates may exceed what is subtracted, by a little: never below darkness.
+        if (to_image != 0) {
+            if (place[k].x >= 0)
+                imageStore(output_image, place[k], exists[k] ? vec4(max(sum[k], vec3(0.0)), 1.0) : vec4(0.0));
+        } else {
+            sums[entry] = vec4(sum[k], exists[k] ? 1.0 : 0.0);
+        }
+    }
+}

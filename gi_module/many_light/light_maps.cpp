@@ -1,0 +1,149 @@
+#include "gi_module/many_light/light_maps.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace sunfleck::gi {
+namespace {
+
+// A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
+constexpr float texels_per_radius = 5.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
+constexpr std::uint32_t most_texels = 256;   // along a patch's side
+constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
+
+bool reaches(PairState state) {
+    return state == PairState::none || state == PairState::partial;
+}
+
+} // namespace
+
+Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+    std::unique_ptr<LightMaps> maps(new LightMaps(device, pipelines));
+    gpu::ComputeDescription description;
+    description.shader = "gi_module/many_light/light_maps.comp";
+    description.bindings.assign(4, gpu::BindingKind::storage_buffer);
+    description.push_constant_bytes = sizeof(shared::LightMapConstants);
+    SUNFLECK_ASSIGN(maps->kernel_, pipelines.compute(description));
+    SUNFLECK_ASSIGN(maps->texels_, gpu::Buffer::create(device, {"light maps", 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                                gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    return maps;
+}
+
+Status LightMaps::lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources) {
+    node_rows_.assign(database.patches().nodes().size(), {});
+    std::uint32_t next = 0;
+    for (std::size_t i = 0; i < node_rows_.size(); ++i) {
+        const SurfacePatch& patch = database.patches().nodes()[i];
+        shared::NodeRow& row = node_rows_[i];
+        row.first_texel = shared::no_light_map;
+        if (!patch.planar || !patch.is_leaf())
+            continue;
+        const auto texels = [&](const dvec3& a, const dvec3& b) {
+            return std::clamp(std::uint32_t(std::ceil(float(glm::length(b - a)) / texel_side)) + 1u, 2u, most_texels);
+        };
+        row.place = patch.place;
+        row.chart = patch.chart;
+        row.columns = texels(patch.corners[0], patch.corners[1]);
+        row.rows = texels(patch.corners[0], patch.corners[3]);
+        row.first_texel = next;
+        next += row.columns * row.rows;
+    }
+    counters_.texels = next;
+    const std::uint64_t bytes = std::max<std::uint64_t>(next, 1) * sizeof(glm::ivec4);
+    if (texels_.size() >= bytes)
+        return {};
+    resources.retire(std::move(texels_));
+    SUNFLECK_ASSIGN(texels_,
+                    gpu::Buffer::create(device_, {"light maps", bytes,
+                                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    return {};
+}
+
+void LightMaps::add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear) {
+    const SurfacePatch& patch = database.patches().nodes()[node];
+    const shared::NodeRow& row = node_rows_[node];
+    shared::LightMapJob job{};
+    job.corner = vec4(vec3(patch.corners[0]), 1.0f);
+    job.u_edge = vec4(vec3(patch.corners[1] - patch.corners[0]), 0.0f);
+    job.v_edge = vec4(vec3(patch.corners[3] - patch.corners[0]), 0.0f);
+    job.normal = vec4(vec3(patch.normal), 0.0f);
+    job.first_texel = row.first_texel;
+    job.columns = row.columns;
+    job.rows = row.rows;
+    job.clear = clear;
+    job.first_change = std::uint32_t(changes_.size());
+    jobs_.push_back(job);
+}
+
+Status LightMaps::update(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                         std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
+    jobs_.clear();
+    changes_.clear();
+    const bool same_rows = rows.size() == summed_rows_.size() &&
+                           (rows.empty() || std::memcmp(rows.data(), summed_rows_.data(), rows.size_bytes()) == 0);
+    const bool anew = generation_ != database.generation() || !same_rows;
+    if (!anew) {
+        std::vector<PairChange> wanted;
+        for (const PairChange& change : database.changes())
+            if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
+                holds(samples[change.sample].kind) && reaches(change.before) != reaches(change.after))
+                wanted.push_back(change);
+        std::stable_sort(wanted.begin(), wanted.end(),
+                         [](const PairChange& a, const PairChange& b) { return a.node < b.node; });
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            if (i == 0 || wanted[i].node != wanted[i - 1].node)
+                add_job(database, wanted[i].node, false);
+            changes_.push_back(wanted[i].sample | (reaches(wanted[i].after) ? 0u : shared::light_map_subtract));
+            ++jobs_.back().change_count;
+        }
+        counters_.updates = changes_.size();
+        return {};
+    }
+    generation_ = database.generation();
+    summed_rows_.assign(rows.begin(), rows.end());
+    double most = 0.0;
+    float bound = 0.0f;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (holds(samples[i].kind)) {
+            const vec4& intensity = rows[i].intensity_slot;
+            most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(rows[i].position_bound.w);
+            bound = std::max(bound, rows[i].position_bound.w);
+        }
+    fixed_point_ = most > 0.0 ? float(double(highest_sum) / most) : 1.0f;
+    const float radius = bound > 0.0f ? 1.0f / std::sqrt(bound) : 1.0f;
+    SUNFLECK_TRY(lay_out(database, std::clamp(radius / texels_per_radius, smallest_texel, largest_texel), resources));
+    for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
+        if (node_rows_[node].first_texel == shared::no_light_map)
+            continue;
+        add_job(database, node, true);
+        for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
+            if (holds(samples[sample].kind) && reaches(database.state(node, sample))) {
+                changes_.push_back(sample);
+                ++jobs_.back().change_count;
+            }
+    }
+    counters_.updates = changes_.size();
+    return {};
+}
+
+Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
+    if (jobs_.empty())
+        return {};
+    SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(std::span<const shared::LightMapJob>(jobs_)));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(std::span<const std::uint32_t>(changes_)));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(summed_rows_)));
+    graph.add_pass("light maps")
+        .write(graph.import_buffer(texels_), gpu::Usage::storage_read_write)
+        .execute([this, jobs, changes, rows, count = std::uint32_t(jobs_.size())](gpu::PassContext& context) -> Status {
+            const gpu::Binding bindings[] = {gpu::Binding::slice(jobs), gpu::Binding::slice(changes),
+                                             gpu::Binding::slice(rows), gpu::Binding::buffer(texels_)};
+            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel_, bindings));
+            context.resources.push(context.commands, *kernel_, shared::LightMapConstants{fixed_point_});
+            context.device.vk.vkCmdDispatch(context.commands, count, 1, 1);
+            return {};
+        });
+    return {};
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,63 @@
+// Light maps: for each flat patch, the unshadowed irradiance of all samples that reach it ("none" and "partial"), as a
+// grid of texels. Thesis sec. 4.3.2 and 4.5.2.
+//
+// Sums are kept in fixed point, so that adding and subtracting single samples in any order gives the same bits as
+// summing anew. A texel's first and last columns and rows lie on the patch's border: where neighbouring patches have
+// the same samples, they have the same values there, and no seam shows.
+//
+// Point and spot lights are left out: their irradiance has no bound, and a fixed point needs one. So are samples whose
+// class is directional, which need no map: their irradiance is constant on a plane.
+#pragma once
+
+#include "engine/gpu/frame_graph.h"
+#include "gi_module/many_light/light_maps_shared.h"
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/many_light/surface_tables.h"
+#include "gi_module/transport/light_row.h"
+#include "gi_module/visibility/visibility_database.h"
+
+namespace sunfleck::gi {
+
+struct LightMapCounters {
+    std::uint64_t updates = 0; // single contributions added or subtracted in the last update
+    std::uint64_t texels = 0;
+};
+
+class LightMaps {
+public:
+    static Result<std::unique_ptr<LightMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+
+    // Follows the database's changes; `rows` are the samples' rows by index. All is summed anew when the database's
+    // generation, the samples or their bound changed.
+    Status update(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                  std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
+    // Adds the passes that bring the maps up to date; nothing if they are.
+    Status add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources);
+
+    // By node of the database.
+    const std::vector<shared::NodeRow>& node_rows() const { return node_rows_; }
+    const gpu::Buffer& texels() const { return texels_; }
+    // Steps a W/m2.
+    float fixed_point() const { return fixed_point_; }
+    static bool holds(SampleKind kind) { return kind == SampleKind::surface; }
+    const LightMapCounters& counters() const { return counters_; }
+
+private:
+    LightMaps(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
+    void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
+
+    gpu::Device& device_;
+    gpu::PipelineStore& pipelines_;
+    std::vector<shared::NodeRow> node_rows_;
+    gpu::Buffer texels_;
+    float fixed_point_ = 1.0f;
+    std::uint64_t generation_ = 0;
+    std::vector<shared::LightRow> summed_rows_; // what the maps were made with
+    std::vector<shared::LightMapJob> jobs_;
+    std::vector<std::uint32_t> changes_;
+    const gpu::Pipeline* kernel_ = nullptr;
+    LightMapCounters counters_;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,32 @@
+#ifndef SUNFLECK_GI_MANY_LIGHT_LIGHT_MAPS_SHARED_H
+#define SUNFLECK_GI_MANY_LIGHT_LIGHT_MAPS_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+// What happens to one patch's light map: its texels are cleared or kept, then samples are added and subtracted.
+struct LightMapJob {
+    vec4 corner; // world space
+    vec4 u_edge;
+    vec4 v_edge;
+    vec4 normal;
+    uint first_texel;
+    uint columns;
+    uint rows;
+    uint clear;
+    uint first_change;
+    uint change_count;
+    uint unused0;
+    uint unused1;
+};
+
+SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // in a change: subtract the sample instead of adding it
+
+struct LightMapConstants {
+    float fixed_point;
+};
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::LightMapJob) == 96);
+#endif
+#endif

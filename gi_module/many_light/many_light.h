@@ -1,0 +1,98 @@
+// The many-light system's lighting of pixels (thesis sec. 4.3): lists of samples by tile from the visibility database,
+// light maps, a low-resolution pass, reconstruction, and repair at full resolution.
+//
+// The thesis merges objects and samples into render passes (sec. 4.3.5). Here a dispatch handles all tiles, each with
+// its own two lists; see pass_optimisation.h for the passes that the thesis's renderer would need.
+#pragma once
+
+#include "gi_module/many_light/light_maps.h"
+#include "gi_module/many_light/surface_tables.h"
+#include "gi_module/shadows/shadow_maps.h"
+#include "gi_module/transport/g_buffer.h"
+#include "gi_module/transport/light_batch.h"
+
+#include <deque>
+#include <map>
+
+namespace sunfleck::gi {
+
+struct ManyLightOptions {
+    bool shadows = true;
+    bool filter = false;
+    bool visibility = true; // off: every sample is tested at every pixel
+    bool light_maps = true;
+    std::uint32_t scale = 4; // of the low-resolution pass: 1 (off), 2, 4 or 8
+    float contrast = 0.3f;
+    float normal_degrees = 12.0f;
+    auto operator<=>(const ManyLightOptions&) const = default;
+};
+
+// Of the newest frame that is complete on the GPU.
+struct ManyLightCounters {
+    std::uint64_t pixels_low_resolution = 0;
+    std::uint64_t pixels_repaired = 0;
+    std::uint64_t pixels_not_repaired =
+        0; // wanted it, but the lists were full: they took their nearest neighbour's light
+    std::uint64_t serial = 0;
+};
+
+class ManyLight {
+public:
+    static Result<std::unique_ptr<ManyLight>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+    ~ManyLight();
+
+    // Follows the database; call once a frame before add_passes.
+    Status update(VisibilityDatabase& database, const scene::GpuScene& scene, std::span<const LightSample> samples,
+                  std::span<const shared::LightRow> rows, const ManyLightOptions& options, std::uint64_t serial,
+                  std::uint64_t completed_serial, gpu::FrameResources& resources);
+    // Adds the frame's passes, which write all of `output`.
+    Status add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
+                      const ShadowMaps& maps, std::span<const LightBatch> batches, const ManyLightOptions& options,
+                      gpu::FrameResources& resources, gpu::ResourceId output);
+
+    const ManyLightCounters& counters() const { return counters_; }
+    const LightMaps& light_maps() const { return *light_maps_; }
+    std::uint64_t memory_bytes() const;
+
+private:
+    struct Frame; // what the passes of one frame share
+    enum class Stage { low_resolution, repair };
+
+    ManyLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    Status make_buffers(const shared::ManyLightConstants& constants, std::uint32_t blocks,
+                        gpu::FrameResources& resources);
+    Status make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
+                       gpu::FrameResources& resources);
+    Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<gpu::BindingKind> bindings,
+                                          std::vector<std::uint32_t> specialization);
+    Status add_gather(const Frame& frame, Stage stage);
+    Status add_classify(const Frame& frame, Stage stage, const LightBatch& batch);
+    Status add_light(const Frame& frame, Stage stage, const LightBatch& batch, bool last);
+    Status add_reconstruction(const Frame& frame);
+    Status add_compaction(const Frame& frame);
+    Status add_counters(const Frame& frame);
+    void dispatch(gpu::PassContext& context, Stage stage, std::uint32_t command, std::uint32_t groups) const;
+    void collect(std::uint64_t completed_serial);
+
+    gpu::Device& device_;
+    gpu::PipelineStore& pipelines_;
+    std::unique_ptr<LightMaps> light_maps_;
+    SurfaceTables tables_;
+    std::vector<shared::NodeRow> node_rows_;
+    std::uint64_t node_rows_generation_ = 0;
+    std::uint32_t words_per_row_ = 0;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    std::map<std::pair<std::string, std::vector<std::uint32_t>>, const gpu::Pipeline*> kernels_;
+    gpu::Buffer pixels_, nodes_, slots_, sums_, entries_, counts_, cell_masks_, block_groups_, commands_,
+        unused_texels_;
+    struct Readback {
+        gpu::Buffer words;
+        std::uint64_t serial = 0;
+        std::uint64_t low_resolution = 0;
+    };
+    std::deque<Readback> readbacks_; // a deque: passes hold on to its elements
+    std::uint64_t serial_ = 0, completed_serial_ = 0;
+    ManyLightCounters counters_;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,78 @@
+// What the kernels of the many-light system and the CPU agree on.
+//
+// Pixels are lit in groups of 64: tiles of 8x8 pixels of the low-resolution picture, or 64 pixels of one region that
+// are lit again at full resolution. A group's pixels lie on few nodes (surface patches, movers); the visibility rows of
+// those nodes are merged into two lists of samples: those that somewhere need a shadow test, and those that do not.
+#ifndef SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
+#define SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+SHARED_CONSTANT uint group_pixels = 64u;
+SHARED_CONSTANT uint group_side = 8u; // of a tile, in pixels of the low-resolution picture
+// An entry's pixel: x in the low 16 bits, y from bit 16. The top bit: nothing to light there (background, or no pixel).
+SHARED_CONSTANT uint no_pixel = 0xffffffffu;
+SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
+
+// Nodes of a group have slots 0 to 6. Slot 7 is for pixels of any further node, or of none: every sample is tested.
+SHARED_CONSTANT uint group_slots = 8u;
+SHARED_CONSTANT uint any_node_slot = 7u;
+
+// A list entry: sample (of the batch) in bits 0 to 15; from bit 16 a bit for each slot. In the list with tests the bit
+// says that the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; in
+// the list without, that the sample's light is still to be added.
+SHARED_CONSTANT uint entry_sample_mask = 0xffffu;
+SHARED_CONSTANT uint entry_slots_shift = 16u;
+
+// By node: where its light map is.
+struct NodeRow {
+    vec4 place; // planar: lowest u, v and extents in its chart
+    uint chart;
+    uint first_texel; // of its light map; no_light_map if it has none
+    uint columns;     // of texels; the first and last lie on the patch's border
+    uint rows;
+};
+SHARED_CONSTANT uint no_light_map = 0xffffffffu;
+
+// A group's lists for one batch.
+struct GroupCounts {
+    uint tested;
+    uint untested;
+};
+
+struct ManyLightConstants {
+    uint width; // of the full picture
+    uint height;
+    uint low_width;
+    uint low_height;
+    uint scale;          // full pixels a low-resolution pixel, in each direction
+    uint group_columns;  // of the low-resolution picture
+    uint group_capacity; // groups that the buffers hold
+    uint list_stride;    // entries that a group may have
+    uint batch_first;    // sample
+    uint batch_count;
+    uint words_per_row;
+    uint map_resolution;
+    uint cell_columns; // cells between low-resolution pixels
+    uint cell_rows;
+    uint block_columns; // blocks of 8x8 cells
+    uint block_count;
+    float contrast; // neighbours that differ by more, relative to the brighter, are not blended
+    float normal_cosine;
+    float fixed_point; // steps of a light map a W/m2
+    uint node_count;
+    uint group_count; // of the low-resolution picture
+};
+
+// Places of the indirect commands that the compaction writes, in uints.
+SHARED_CONSTANT uint command_groups = 0u; // a work group for each group
+SHARED_CONSTANT uint command_packed = 4u; // a work group for eight groups
+SHARED_CONSTANT uint command_totals = 8u; // pixels wanted, pixels lit again, groups
+SHARED_CONSTANT uint command_words = 12u;
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
+static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 84);
+#endif
+#endif

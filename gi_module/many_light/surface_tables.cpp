@@ -1,0 +1,104 @@
+#include "gi_module/many_light/surface_tables.h"
+
+namespace sunfleck::gi {
+
+Result<bool> UploadedBuffer::reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name,
+                                     std::uint64_t bytes) {
+    if (buffer_ && buffer_.size() >= bytes)
+        return false;
+    if (buffer_)
+        resources.retire(std::move(buffer_));
+    pieces_.clear();
+    const std::uint64_t roomy = buffer_ ? bytes + bytes / 2 : bytes;
+    SUNFLECK_ASSIGN(
+        buffer_,
+        gpu::Buffer::create(device, {name, roomy, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                     gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    return true;
+}
+
+Status UploadedBuffer::write(gpu::FrameResources& resources, std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (bytes.empty())
+        return {};
+    SUNFLECK_ASSIGN(const gpu::UploadSlice source, resources.upload(bytes));
+    pieces_.push_back({source, {source.offset, offset, bytes.size()}});
+    return {};
+}
+
+void UploadedBuffer::add_pass(gpu::FrameGraph& graph) {
+    if (pieces_.empty())
+        return;
+    graph.add_pass("visibility upload")
+        .write(graph.import_buffer(buffer_), gpu::Usage::transfer_destination)
+        .execute([this, pieces = std::move(pieces_)](gpu::PassContext& context) -> Status {
+            for (const Piece& piece : pieces)
+                context.device.vk.vkCmdCopyBuffer(context.commands, piece.source.buffer, buffer_.handle(), 1,
+                                                  &piece.region);
+            return {};
+        });
+    pieces_.clear();
+}
+
+Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, const scene::GpuScene& scene,
+                             std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
+                             gpu::FrameResources& resources) {
+    const SurfacePatches& patches = database.patches();
+    const bool fresh = generation_ != database.generation();
+    generation_ = database.generation();
+    if (fresh) {
+        const auto charts = std::as_bytes(std::span(patches.chart_rows()));
+        const auto cells = std::as_bytes(std::span(patches.cells()));
+        SUNFLECK_TRY(charts_.reserve(device, resources, "surface charts", charts.size()));
+        SUNFLECK_TRY(cells_.reserve(device, resources, "surface cells", cells.size()));
+        SUNFLECK_TRY(charts_.write(resources, 0, charts));
+        SUNFLECK_TRY(cells_.write(resources, 0, cells));
+    }
+    SUNFLECK_ASSIGN(const bool nodes_grew,
+                    nodes_.reserve(device, resources, "surface nodes", std::as_bytes(node_rows).size()));
+    if (fresh || nodes_grew || node_rows_changed)
+        SUNFLECK_TRY(nodes_.write(resources, 0, std::as_bytes(node_rows)));
+    SUNFLECK_ASSIGN(const bool rows_grew, rows_.reserve(device, resources, "visibility rows",
+                                                        std::as_bytes(std::span(database.rows())).size()));
+    SUNFLECK_TRY(upload_rows(database, fresh || rows_grew, resources));
+
+    std::vector<shared::SurfaceInstance> instances(std::max<std::size_t>(scene.draws().size(), 1));
+    for (const scene::DrawItem& item : scene.draws()) {
+        shared::SurfaceInstance& row = instances[item.row];
+        row.first_box_node = shared::no_node;
+        if (const shared::SurfaceInstance* known = patches.instance(item.entity); known != nullptr && item.is_static)
+            row = *known;
+        else
+            row.first_box_node = database.mover_node(item.entity);
+    }
+    SUNFLECK_ASSIGN(instances_, resources.upload(std::span<const shared::SurfaceInstance>(instances)));
+    return {};
+}
+
+// Neighbouring dirty rows travel together.
+Status SurfaceTables::upload_rows(VisibilityDatabase& database, bool all, gpu::FrameResources& resources) {
+    const std::uint64_t row_bytes = std::uint64_t(database.words_per_row()) * 4;
+    const std::vector<std::uint32_t> dirty = database.take_dirty_rows();
+    const auto bytes = std::as_bytes(std::span(database.rows()));
+    if (all || dirty.size() * 2 > database.node_count())
+        return rows_.write(resources, 0, bytes);
+    for (std::size_t i = 0; i < dirty.size();) {
+        std::size_t end = i + 1;
+        while (end < dirty.size() && dirty[end] <= dirty[end - 1] + 4)
+            ++end;
+        const std::uint64_t first = dirty[i] * row_bytes;
+        SUNFLECK_TRY(rows_.write(resources, first, bytes.subspan(first, (dirty[end - 1] + 1) * row_bytes - first)));
+        i = end;
+    }
+    return {};
+}
+
+void SurfaceTables::add_passes(gpu::FrameGraph& graph) {
+    for (UploadedBuffer* table : {&charts_, &cells_, &nodes_, &rows_})
+        table->add_pass(graph);
+}
+
+std::uint64_t SurfaceTables::memory_bytes() const {
+    return charts_.buffer().size() + cells_.buffer().size() + nodes_.buffer().size() + rows_.buffer().size();
+}
+
+} // namespace sunfleck::gi

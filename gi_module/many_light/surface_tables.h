@@ -1,0 +1,55 @@
+// The visibility database as shaders read it: charts, cells, nodes, rows of pairs, and which instance has which. Kept
+// on the GPU; only what changed is copied.
+#pragma once
+
+#include "engine/gpu/frame_graph.h"
+#include "engine/scene/gpu_scene.h"
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/visibility/visibility_database.h"
+
+namespace sunfleck::gi {
+
+// A device buffer that is written from the CPU now and then, through upload memory.
+class UploadedBuffer {
+public:
+    // Makes room for `bytes`; content is lost when it grows (returns true then).
+    Result<bool> reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name, std::uint64_t bytes);
+    // Queues a piece to be copied by the next add_pass.
+    Status write(gpu::FrameResources& resources, std::uint64_t offset, std::span<const std::byte> bytes);
+    // Adds the copies, if there are any.
+    void add_pass(gpu::FrameGraph& graph);
+    const gpu::Buffer& buffer() const { return buffer_; }
+
+private:
+    struct Piece {
+        gpu::UploadSlice source;
+        VkBufferCopy region;
+    };
+    gpu::Buffer buffer_;
+    std::vector<Piece> pieces_;
+};
+
+class SurfaceTables {
+public:
+    // Uploads what changed in the database. `node_rows` are by node; a change of their number or of the database's
+    // generation uploads all.
+    Status update(gpu::Device& device, VisibilityDatabase& database, const scene::GpuScene& scene,
+                  std::span<const shared::NodeRow> node_rows, bool node_rows_changed, gpu::FrameResources& resources);
+    void add_passes(gpu::FrameGraph& graph);
+
+    const gpu::UploadSlice& instances() const { return instances_; } // SurfaceInstance by instance row, of this frame
+    const gpu::Buffer& charts() const { return charts_.buffer(); }
+    const gpu::Buffer& cells() const { return cells_.buffer(); }
+    const gpu::Buffer& nodes() const { return nodes_.buffer(); }
+    const gpu::Buffer& rows() const { return rows_.buffer(); }
+    std::uint64_t memory_bytes() const;
+
+private:
+    Status upload_rows(VisibilityDatabase& database, bool all, gpu::FrameResources& resources);
+
+    UploadedBuffer charts_, cells_, nodes_, rows_;
+    gpu::UploadSlice instances_;
+    std::uint64_t generation_ = 0;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,59 @@
+#include "gi_module/shadows/map_scheduler.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+
+void MapScheduler::reset(std::size_t count) {
+    age_.assign(count, 1);
+    static_stale_.assign(count, 1);
+}
+
+void MapScheduler::advance() {
+    for (std::uint32_t& age : age_)
+        age += age > 0 ? 1 : 0;
+}
+
+std::size_t MapScheduler::stale() const {
+    return std::size_t(std::count_if(age_.begin(), age_.end(), [](std::uint32_t age) { return age > 0; }));
+}
+
+std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,
+                                                std::uint32_t budget) const {
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t i = 0; i < age_.size(); ++i)
+        if (age_[i] > 0)
+            chosen.push_back(i);
+    if (chosen.size() <= budget)
+        return chosen;
+    if (budget == 0)
+        return {};
+    const std::uint32_t overdue = 4 * std::uint32_t((chosen.size() + budget - 1) / budget);
+    struct Rank {
+        bool overdue;
+        float weight;
+    };
+    const auto rank = [&](std::uint32_t i) -> Rank {
+        const vec3 flux = samples[i].flux;
+        const float brightest = std::max({flux.x, flux.y, flux.z});
+        const float age = float(age_[i]);
+        const bool late = age_[i] >= overdue;
+        return {late, late || priority == MapPriority::age ? age : age * brightest};
+    };
+    std::stable_sort(chosen.begin(), chosen.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Rank ra = rank(a), rb = rank(b);
+        return ra.overdue != rb.overdue ? ra.overdue : ra.weight > rb.weight;
+    });
+    chosen.resize(budget);
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+void MapScheduler::done(std::span<const std::uint32_t> samples) {
+    for (const std::uint32_t sample : samples) {
+        age_[sample] = 0;
+        static_stale_[sample] = 0;
+    }
+}
+
+} // namespace sunfleck::gi

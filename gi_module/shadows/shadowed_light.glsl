@@ -1,0 +1,114 @@
+// Light of one sample at one pixel: what every kernel that evaluates samples per pixel shares.
+//
+// The including shader defines before: light_class, maps (maps_none: no test), filtered, map_bits as constants;
+// map_side(), the texels along a map's side; and map_value(slot, texel), the stored value.
+#include "gi_module/shadows/octahedral_map.h"
+
+struct Pixel {
+    vec3 position;
+    vec3 normal;
+    vec3 geometric_normal;
+};
+
+// What one sample does to a pixel, as factors of its intensity.
+struct LightFactor {
+    float unshadowed;
+    float clamped;    // what the bound of the geometry term took away
+    float visibility; // 0 to 1, by the shadow map
+};
+
+vec2 map_place(vec2 uv) { return (uv * 0.5 + 0.5) * map_side(); }
+ivec2 inside_map(ivec2 texel) { return clamp(texel, ivec2(0), ivec2(int(map_side()) - 1)); }
+
+// 1 if nothing in the map is nearer to the light than the receiver, whose stored value with its bias is `receiver`.
+float nearest_visibility(uint slot, vec2 uv, float receiver) {
+    return receiver >= map_value(slot, inside_map(ivec2(map_place(uv)))) ? 1.0 : 0.0;
+}
+
+float blend(vec4 lit, vec2 weight) { return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y); }
+
+// The same from the four nearest texels, for the parallel light of an orthographic map.
+float filtered_visibility(uint slot, vec2 uv, float receiver) {
+    const vec2 place = map_place(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(place));
+    vec4 lit;
+    [[unroll]] for (int i = 0; i < 4; ++i)
+        lit[i] = receiver >= map_value(slot, inside_map(corner + ivec2(i & 1, i >> 1))) ? 1.0 : 0.0;
+    return blend(lit, place - floor(place));
+}
+
+// The same for octahedral maps: each texel against the receiver's plane at the texel's centre.
+float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_space_normal, float plane_distance,
+                                float bias, float reach) {
+    const vec2 place = map_place(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(place));
+    vec4 lit;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
+        const vec2 centre_uv = (vec2(texel) + 0.5) / map_side() * 2.0 - 1.0;
+        const vec3 centre =
+            light_class == light_class_surface ? hemisphere_direction(centre_uv) : sphere_direction(centre_uv);
+        const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
+        lit[i] = min(value, 1.0) + depth_step(map_bits) >= map_value(slot, texel) ? 1.0 : 0.0;
+    }
+    return blend(lit, place - floor(place));
+}
+
+LightFactor directional_factor(LightRow light, Pixel pixel, vec3 v, float along, bool test) {
+    const float cosine = -dot(pixel.normal, light.normal_offset.xyz);
+    const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
+    LightFactor factor = LightFactor(geometric_cosine > 0.0 ? max(cosine, 0.0) : 0.0, 0.0, 1.0);
+    if (maps != maps_none && test) {
+        const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
+        const float bias = orthographic_bias(map_side(), geometric_cosine);
+        const float receiver = 1.0 - along * light.normal_offset.w + depth_step(map_bits);
+        const uint slot = uint(light.intensity_slot.w);
+        if (filtered == 0)
+            factor.visibility = nearest_visibility(slot, uv, receiver + bias);
+        else
+            factor.visibility = filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
+    }
+    return factor;
+}
+
+// `test`: whether the shadow map is asked; a constant where it is inlined.
+LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
+    const vec3 v = pixel.position - light.position_bound.xyz;
+    const float along = dot(light.normal_offset.xyz, v);
+    if (light_class == light_class_directional)
+        return directional_factor(light, pixel, v, along, test);
+    const float squared_distance = max(dot(v, v), 1e-12);
+    const float receiver_distance = -dot(pixel.normal, v);        // |v| times the receiver's cosine
+    const float plane_distance = -dot(pixel.geometric_normal, v); // of the light to the receiver's plane
+    const float lit_side = plane_distance > 0.0 ? max(receiver_distance, 0.0) : 0.0;
+    LightFactor factor = LightFactor(0.0, 0.0, 1.0);
+    if (light_class == light_class_surface) {
+        const float inverse = 1.0 / squared_distance;
+        const float term = max(along, 0.0) * lit_side * inverse * inverse;
+        factor.unshadowed = min(term, light.position_bound.w);
+        factor.clamped = term - factor.unshadowed;
+    } else {
+        const float inverse_distance = inversesqrt(squared_distance);
+        const float cone = clamp(along * inverse_distance * light.tangent_scale.w + light.normal_offset.w, 0.0, 1.0);
+        factor.unshadowed = cone * cone * lit_side * inverse_distance * inverse_distance * inverse_distance;
+    }
+    if (maps != maps_none && test) {
+        const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
+        const bool hemisphere = light_class == light_class_surface;
+        const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
+        const float reach = hemisphere ? hemisphere_texel_reach(map_side()) : sphere_texel_reach(map_side());
+        const float bias = perspective_bias(reach, plane_distance, place.z);
+        const uint slot = uint(light.intensity_slot.w);
+        if (filtered == 0) {
+            factor.visibility =
+                nearest_visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits));
+        } else {
+            const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
+                                     dot(light.bitangent.xyz, pixel.geometric_normal),
+                                     dot(light.normal_offset.xyz, pixel.geometric_normal));
+            factor.visibility = filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance,
+                                                          bias, reach);
+        }
+    }
+    return factor;
+}

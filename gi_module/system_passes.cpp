@@ -1,0 +1,127 @@
+// The half of gi::System that declares GPU work.
+#include "gi_module/system.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+namespace sunfleck::gi {
+
+std::vector<ShadowRequest> System::make_requests(std::span<const std::uint32_t> samples) const {
+    std::vector<ShadowRequest> requests;
+    for (const std::uint32_t sample : samples)
+        requests.push_back({sample % shadow_maps_->slots(), light_class(samples_[sample].kind), rows_[sample],
+                            scheduler_.is_static_stale(sample)});
+    return requests;
+}
+
+Result<std::vector<LightBatch>> System::make_batches(std::uint32_t first, std::uint32_t count) {
+    std::vector<LightBatch> batches;
+    std::uint32_t place = first;
+    do {
+        LightBatch batch;
+        batch.first = place;
+        batch.light_class = place < samples_.size() ? light_class(samples_[place].kind) : 0;
+        SUNFLECK_ASSIGN(batch.rows, resources_.allocate(sizeof(shared::LightRow) * shared::lights_per_batch));
+        while (place < first + count && batch.count < shared::lights_per_batch &&
+               light_class(samples_[place].kind) == batch.light_class) {
+            const shared::LightRow& row = rows_[place++];
+            std::memcpy(batch.rows.data + sizeof row * batch.count++, &row, sizeof row);
+        }
+        batches.push_back(batch);
+    } while (place < first + count);
+    counters_.light_batches += batches.size();
+    return batches;
+}
+
+Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene,
+                                           const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
+                                           VkFormat output_format) {
+    const gpu::ResourceId output = graph.create_image("irradiance", output_format, g_buffer.width, g_buffer.height);
+    if (uses_many_light())
+        SUNFLECK_TRY(add_many_light(graph, gpu_scene, g_buffer, camera, output));
+    else
+        SUNFLECK_TRY(add_brute_force(graph, gpu_scene, g_buffer, camera, output));
+    counters_.shadow_maps_stale = scheduler_.stale();
+    return output;
+}
+
+Status System::add_brute_force(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                               const gpu::UploadSlice& camera, gpu::ResourceId output) {
+    const std::uint32_t total = std::uint32_t(samples_.size());
+    const std::uint32_t slots = settings_.shadows ? std::max(shadow_maps_->slots(), 1u) : std::max(total, 1u);
+    const bool slots_shared = total > slots;
+    const bool one_batch = !slots_shared && total <= shared::lights_per_batch &&
+                           (total == 0 || light_class(samples_.front().kind) == light_class(samples_.back().kind));
+    SUNFLECK_TRY(brute_force_->begin_frame(g_buffer.width, g_buffer.height, !one_batch, input_.serial,
+                                           input_.completed_serial, resources_));
+    counters_.clamped_flux = brute_force_->clamped().flux;
+    counters_.clamped_irradiance = brute_force_->clamped().mean_irradiance;
+    BruteForceOptions options;
+    options.shadows = settings_.shadows;
+    options.filter = settings_.shadow_filter;
+    options.count_clamped = settings_.count_clamped;
+
+    ShadowCounters shadow_counters;
+    std::uint32_t first = 0;
+    // With more samples than slots, groups of samples take turns: their maps are drawn, used and overwritten.
+    do {
+        const std::uint32_t count = std::min(slots, total - first);
+        std::vector<std::uint32_t> drawn;
+        if (settings_.shadows && slots_shared)
+            for (std::uint32_t i = first; i < first + count; ++i)
+                drawn.push_back(i);
+        else if (settings_.shadows)
+            drawn = to_draw_;
+        if (!drawn.empty()) {
+            SUNFLECK_TRY(shadow_maps_->add_passes(graph, gpu_scene, resources_, make_requests(drawn),
+                                                  {.keep_static = false, .detail = false}, shadow_counters));
+            scheduler_.done(drawn);
+        }
+        SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(first, count));
+        SUNFLECK_TRY(brute_force_->add_pass(graph, g_buffer, camera, *shadow_maps_, batches, options, first == 0,
+                                            first + count == total, output));
+        first += count;
+    } while (first < total);
+    counters_.shadow_map_updates = shadow_counters.maps;
+    counters_.shadow_map_faces = shadow_counters.faces;
+    counters_.shadow_map_vertices = shadow_counters.vertices;
+    return {};
+}
+
+Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                              const gpu::UploadSlice& camera, gpu::ResourceId output) {
+    const auto start = std::chrono::steady_clock::now();
+    ManyLightOptions options;
+    options.shadows = settings_.shadows;
+    options.filter = settings_.shadow_filter;
+    options.visibility = settings_.visibility;
+    options.light_maps = settings_.light_maps && settings_.visibility;
+    options.scale = settings_.low_resolution;
+    options.contrast = settings_.repair_contrast;
+    options.normal_degrees = settings_.repair_angle;
+    SUNFLECK_TRY(many_light_->update(database_, gpu_scene, samples_, rows_, options, input_.serial,
+                                     input_.completed_serial, resources_));
+    ShadowCounters shadow_counters;
+    if (settings_.shadows && !to_draw_.empty()) {
+        SUNFLECK_TRY(shadow_maps_->add_passes(graph, gpu_scene, resources_, make_requests(to_draw_),
+                                              {.keep_static = settings_.static_maps, .detail = settings_.map_detail},
+                                              shadow_counters));
+        scheduler_.done(to_draw_);
+    }
+    SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(0, std::uint32_t(samples_.size())));
+    SUNFLECK_TRY(many_light_->add_passes(graph, g_buffer, camera, *shadow_maps_, batches, options, resources_, output));
+    counters_.shadow_map_updates = shadow_counters.maps;
+    counters_.shadow_map_faces = shadow_counters.faces;
+    counters_.shadow_map_vertices = shadow_counters.vertices;
+    counters_.visibility = database_.counters();
+    counters_.surface_patches = database_.patches().leaves();
+    counters_.light_map_updates = many_light_->light_maps().counters().updates;
+    counters_.light_map_texels = many_light_->light_maps().counters().texels;
+    counters_.pixels = many_light_->counters();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    cpu_times_["light lists"] += elapsed.count();
+    return {};
+}
+
+} // namespace sunfleck::gi
