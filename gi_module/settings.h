@@ -43,6 +43,7 @@ struct Settings {
     float repair_angle = 12.0f;
     bool static_maps = true;
     bool map_detail = true;
+    std::uint32_t map_budget = 100; // shadow maps a frame
     MapPriority map_priority = MapPriority::flux_and_age;
     bool cluster_tests = true;
 

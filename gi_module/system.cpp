@@ -257,8 +257,10 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         mark_by_visibility();
     else
         mark_by_bounds(gpu_scene);
-    to_draw_ = settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, input.map_budget)
-                                 : std::vector<std::uint32_t>();
+    const std::uint32_t budget =
+        uses_many_light() ? std::min(input.map_budget, settings_.map_budget) : input.map_budget;
+    to_draw_ =
+        settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
     counters_.light_samples = samples_.size();
     counters_.light_samples_direct = std::uint64_t(
         std::count_if(samples_.begin(), samples_.end(), [](const LightSample& s) { return s.bounce == 0; }));

@@ -91,12 +91,11 @@ Status run(const RenderOptions& options) {
         std::fputs(renderer->print_graph().c_str(), stdout);
     if (!options.statistics.empty()) {
         // What the GPU counted reaches the CPU one frame later.
-        const gi::Counters last = measurement.counters;
         SUNFLECK_TRY(renderer->render_and_wait(request));
-        measurement.counters = renderer->statistics().counters;
-        measurement.counters.shadow_map_updates = last.shadow_map_updates;
-        measurement.counters.shadow_map_faces = last.shadow_map_faces;
-        measurement.counters.shadow_map_vertices = last.shadow_map_vertices;
+        const gi::Counters& newest = renderer->statistics().counters;
+        measurement.counters.clamped_flux = newest.clamped_flux;
+        measurement.counters.clamped_irradiance = newest.clamped_irradiance;
+        measurement.counters.pixels = newest.pixels;
         measurement.scene = options.scene.scene;
         measurement.settings = settings;
         measurement.size = size;

@@ -7,6 +7,8 @@
 #include "engine/scene/instance_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+// The final tone-mapped picture has a pipeline of its own, without the other views.
+layout(constant_id = 0) const uint final_only = 0;
 layout(set = 0, binding = 0) uniform sampler2D irradiance_image;
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
@@ -22,11 +24,14 @@ const float pi = 3.14159265358979;
 vec3 surface_radiance(ivec2 pixel, uint surface) {
     const vec3 irradiance = texelFetch(irradiance_image, pixel, 0).rgb;
     const vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
-    return albedo / pi * irradiance + rows[(surface & 0x7fffffffu) - 1u].emission.rgb;
+    vec3 radiance = albedo * irradiance * (1.0 / pi);
+    if ((surface & surface_emits) != 0u)
+        radiance += rows[(surface & surface_row_mask) - 1u].emission.rgb;
+    return radiance;
 }
 
 vec3 surface_colour(uint surface) {
-    const uint h = (surface & 0x7fffffffu) * 2654435761u;
+    const uint h = (surface & surface_row_mask) * 2654435761u;
     return vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
 }
 
@@ -36,7 +41,14 @@ void main() {
         return;
     const uint surface = texelFetch(surface_image, pixel, 0).r;
     const bool hit = surface != 0u;
-    const bool emitter = (surface & 0x80000000u) != 0u;
+    if (final_only != 0) {
+        vec3 radiance = vec3(constants.sky_red, constants.sky_green, constants.sky_blue);
+        if (hit)
+            radiance = surface_radiance(pixel, surface);
+        imageStore(output_image, pixel, vec4(display_from_radiance(radiance, constants.exposure), 1.0));
+        return;
+    }
+    const bool emitter = (surface & surface_area_light) != 0u;
     vec4 value = vec4(0.0, 0.0, 0.0, hit ? 1.0 : 0.0);
     bool radiance = false;
     if (constants.view == view_final) {

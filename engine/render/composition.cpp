@@ -12,7 +12,10 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
     description.bindings.push_back(gpu::BindingKind::storage_buffer);
     description.bindings.push_back(gpu::BindingKind::storage_image);
     description.push_constant_bytes = sizeof(shared::CompositionConstants);
+    description.specialization = {0};
     SUNFLECK_ASSIGN(pass.pipeline_, pipelines.compute(description));
+    description.specialization = {1};
+    SUNFLECK_ASSIGN(pass.final_pipeline_, pipelines.compute(description));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.sampler_), "creating a sampler");
     return pass;
@@ -39,16 +42,17 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     constants.sky_red = input.sky.x;
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
+    const gpu::Pipeline* kernel = input.view == shared::view_final && input.tone_map ? final_pipeline_ : pipeline_;
     pass.write(output, gpu::Usage::storage_write)
-        .execute([this, &scene, output, constants,
+        .execute([this, &scene, kernel, output, constants,
                   inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {
             std::vector<gpu::Binding> bindings;
             for (const gpu::ResourceId id : inputs)
                 bindings.push_back(gpu::Binding::sampled_image(context.graph.view(id), sampler_));
             bindings.push_back(gpu::Binding::slice(scene.rows()));
             bindings.push_back(gpu::Binding::storage_image(context.graph.view(output)));
-            SUNFLECK_TRY(context.resources.bind(context.commands, *pipeline_, bindings));
-            context.resources.push(context.commands, *pipeline_, constants);
+            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
+            context.resources.push(context.commands, *kernel, constants);
             context.device.vk.vkCmdDispatch(context.commands, (constants.width + 7) / 8, (constants.height + 7) / 8, 1);
             return {};
         });

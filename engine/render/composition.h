@@ -24,6 +24,7 @@ public:
 
 private:
     const gpu::Pipeline* pipeline_ = nullptr;
+    const gpu::Pipeline* final_pipeline_ = nullptr; // the final tone-mapped picture only
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 

@@ -14,7 +14,7 @@ layout(location = 3) in vec4 in_current;
 layout(location = 4) flat in uint in_row;
 
 layout(location = 0) out uvec2 out_normals; // x: shading normal, y: geometric normal (octahedral, 16 bits each)
-layout(location = 1) out uint out_surface;  // row + 1; the top bit marks area lights
+layout(location = 1) out uint out_surface;  // row + 1, and what instance_shared.h marks
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec2 out_motion;   // in units of the picture: where the point was, minus where it is
 
@@ -28,7 +28,9 @@ void main() {
     if (dot(shading, geometric) < 0.0)
         shading = -shading;
     out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
-    out_surface = (in_row + 1u) | (rows[in_row].emission.w > 0.0 ? 0x80000000u : 0u);
+    const vec4 emission = rows[in_row].emission;
+    out_surface = (in_row + 1u) | (emission.w > 0.0 ? surface_area_light : 0u) |
+                  (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u);
     out_albedo = vec4(rows[in_row].base_colour.rgb, 1.0);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

@@ -1,5 +1,9 @@
 #include "engine/scene/gpu_scene.h"
 
+#include "engine/scene/mesh_detail.h"
+
+#include <algorithm>
+
 namespace sunfleck::scene {
 namespace {
 
@@ -25,11 +29,22 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
     ranges_.clear();
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
         const Mesh& mesh = meshes[i];
-        ranges_.push_back({std::uint32_t(indices.size()), std::uint32_t(mesh.indices.size()),
-                           std::uint32_t(mesh.positions.size()), std::int32_t(positions.size())});
+        ranges_.push_back({std::uint32_t(indices.size()),
+                           std::uint32_t(mesh.indices.size()),
+                           std::uint32_t(mesh.positions.size()),
+                           std::int32_t(positions.size()),
+                           {},
+                           false});
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
         indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
+        const std::vector<MeshDetail> details = make_mesh_details(mesh);
+        ranges_.back().closed = is_closed(details.front().indices);
+        for (const MeshDetail& detail : details) {
+            ranges_.back().details.push_back({std::uint32_t(indices.size()), std::uint32_t(detail.indices.size()),
+                                              detail.vertex_count, detail.error});
+            indices.insert(indices.end(), detail.indices.begin(), detail.indices.end());
+        }
     }
     SUNFLECK_TRY(device_.wait_idle());
     SUNFLECK_ASSIGN(positions_, make_geometry_buffer(device_, submission, "mesh positions", positions,
@@ -63,6 +78,11 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             item.vertex_offset = range.vertex_offset;
             item.vertex_count = range.vertex_count;
             item.row = std::uint32_t(rows.size());
+            item.details = range.details;
+            item.closed = range.closed && glm::determinant(mat3(transform.matrix)) > 0.0f;
+            item.scale = std::sqrt(std::max({glm::dot(transform.matrix[0], transform.matrix[0]),
+                                             glm::dot(transform.matrix[1], transform.matrix[1]),
+                                             glm::dot(transform.matrix[2], transform.matrix[2])}));
             item.bounds = transform_bounds(transform.matrix, meshes.bounds(instance.mesh));
             item.is_static = is_static(registry, entity);
             bounds_.add(item.bounds);

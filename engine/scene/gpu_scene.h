@@ -8,9 +8,16 @@
 #include "engine/scene/instance_shared.h"
 #include "engine/scene/mesh_store.h"
 
+#include <span>
 #include <unordered_map>
 
 namespace sunfleck::scene {
+
+// A range of the index buffer that draws a mesh with less detail.
+struct DetailRange {
+    std::uint32_t first_index = 0, index_count = 0, vertex_count = 0;
+    float error = 0.0f; // m, in the mesh's space
+};
 
 struct DrawItem {
     ecs::Entity entity;
@@ -19,7 +26,10 @@ struct DrawItem {
     std::int32_t vertex_offset = 0;
     std::uint32_t row = 0;
     std::uint32_t vertex_count = 0;
-    Bounds bounds; // world space
+    std::span<const DetailRange> details; // from fine to coarse; the first is the whole mesh
+    bool closed = false;                  // and not mirrored: seen from outside, only front faces show
+    float scale = 1.0f;                   // greatest length of the model matrix's axes
+    Bounds bounds;                        // world space
     bool is_static = true;
     // The bounds changed in the last update, or the item is new; previous_bounds is where it was (empty if new).
     bool moved = false;
@@ -52,6 +62,8 @@ private:
     struct MeshRange {
         std::uint32_t first_index, index_count, vertex_count;
         std::int32_t vertex_offset;
+        std::vector<DetailRange> details;
+        bool closed = false;
     };
     struct Previous {
         mat4 model{1.0f};

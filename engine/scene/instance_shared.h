@@ -12,6 +12,11 @@ struct InstanceRow {
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
 };
 
+// A surface id in the G-buffer: instance row + 1 in the low bits; 0 where nothing is.
+SHARED_CONSTANT uint surface_row_mask = 0x3fffffffu;
+SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an AreaLight
+SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
+
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::InstanceRow) == 224);

@@ -19,6 +19,7 @@ layout(set = 0, binding = 4) writeonly buffer Slots { uint entry_slots[]; };
 layout(set = 0, binding = 5) writeonly buffer Entries { uint entries[]; };
 layout(set = 0, binding = 6) writeonly buffer Counts { GroupCounts counts[]; };
 layout(set = 0, binding = 7) readonly buffer Commands { uint commands[]; };
+layout(set = 0, binding = 8) writeonly buffer Sums { vec4 sums[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 void main() {
@@ -46,6 +47,9 @@ void main() {
         any_pixel = any_pixel || exists;
         any_node = any_node || (exists && slot == any_node_slot);
         entry_slots[entry] = slot;
+        // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
+        if (slot == any_node_slot && constants.batch_first == 0u)
+            sums[entry] = vec4(0.0);
     }
     bool mapped[any_node_slot];
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)

@@ -4,6 +4,7 @@
 // pixels are subsampled from the full G-buffer (thesis sec. 4.3.3): each stands for the pixel in the middle of its block.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
+#include "engine/scene/instance_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
@@ -26,7 +27,7 @@ layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
-    const SurfaceInstance instance = instances[(surface & 0x7fffffffu) - 1u];
+    const SurfaceInstance instance = instances[(surface & surface_row_mask) - 1u];
     for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count; ++i)
         if (on_chart(charts[i], position, geometric_normal))
             return cells[chart_cell(charts[i], position)];

@@ -236,11 +236,8 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
 Status ManyLight::add_classify(const Frame& frame, Stage stage, const LightBatch& batch) {
     const bool maps =
         frame.options.light_maps && frame.options.visibility && batch.light_class == shared::light_class_surface;
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
-                    pipeline("classify.comp",
-                             {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_buffer, storage_buffer},
-                             {stage == Stage::repair, maps, frame.options.visibility}));
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("classify.comp", std::vector(9, storage_buffer),
+                                                          {stage == Stage::repair, maps, frame.options.visibility}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);
@@ -252,12 +249,17 @@ Status ManyLight::add_classify(const Frame& frame, Stage stage, const LightBatch
         .write(frame.slots, gpu::Usage::storage_write)
         .write(frame.entries, gpu::Usage::storage_write)
         .write(frame.counts, gpu::Usage::storage_write)
+        .write(frame.sums, gpu::Usage::storage_write)
         .execute([this, kernel, stage, constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::buffer(pixels_),         gpu::Binding::buffer(nodes_),
-                gpu::Binding::buffer(tables_.nodes()), gpu::Binding::buffer(tables_.rows()),
-                gpu::Binding::buffer(slots_),          gpu::Binding::buffer(entries_),
-                gpu::Binding::buffer(counts_),         gpu::Binding::buffer(commands_)};
+            const gpu::Binding bindings[] = {gpu::Binding::buffer(pixels_),
+                                             gpu::Binding::buffer(nodes_),
+                                             gpu::Binding::buffer(tables_.nodes()),
+                                             gpu::Binding::buffer(tables_.rows()),
+                                             gpu::Binding::buffer(slots_),
+                                             gpu::Binding::buffer(entries_),
+                                             gpu::Binding::buffer(counts_),
+                                             gpu::Binding::buffer(commands_),
+                                             gpu::Binding::buffer(sums_)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             dispatch(context, stage, shared::command_packed, divide_up(constants.group_count, 8));

@@ -31,6 +31,7 @@ float support(const Bounds& bounds, vec3 origin, vec3 axis) {
 struct ShadowMaps::Chunk {
     gpu::UploadSlice jobs, lights, commands;
     std::uint32_t command_count = 0;
+    std::uint32_t culled_count = 0;   // the last of the commands draw faces towards the light only
     std::vector<std::uint32_t> slots; // by layer
 };
 
@@ -42,10 +43,14 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     description.push_constant_bytes = sizeof(shared::ShadowConstants);
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     description.depth_clamp = true; // what is nearer than shadow_near still blocks
-    description.depth_format = depth_format(16);
-    SUNFLECK_ASSIGN(maps->pipeline16_, pipelines.graphics(description));
-    description.depth_format = depth_format(32);
-    SUNFLECK_ASSIGN(maps->pipeline32_, pipelines.graphics(description));
+    for (const bool culled : {false, true}) {
+        // The hemisphere's projection mirrors: what faces the light is wound clockwise on the map.
+        description.cull = culled ? VK_CULL_MODE_FRONT_BIT : VK_CULL_MODE_NONE;
+        description.depth_format = depth_format(16);
+        SUNFLECK_ASSIGN(maps->pipelines16_[culled], pipelines.graphics(description));
+        description.depth_format = depth_format(32);
+        SUNFLECK_ASSIGN(maps->pipelines32_[culled], pipelines.graphics(description));
+    }
     return maps;
 }
 
@@ -135,33 +140,73 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
         lights.push_back(request.light);
     }
     std::vector<shared::ShadowJob> jobs;
-    std::vector<VkDrawIndexedIndirectCommand> commands;
+    std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands;
     std::vector<std::uint32_t> seen(requests.size());
-    (void)detail;
     for (const scene::DrawItem& item : scene.draws()) {
         if (occluders != Occluders::all && item.is_static != (occluders == Occluders::static_only))
             continue;
-        const std::uint32_t first = std::uint32_t(jobs.size());
+        // Jobs by level of detail: one command draws all maps that show the item at one level.
+        std::vector<std::vector<shared::ShadowJob>> by_level((detail ? item.details.size() : 1) * 2);
         for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
             const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
             seen[layer] |= faces;
+            const std::size_t level = (detail ? detail_level(requests[layer], item) : 0) * 2 +
+                                      (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
             for (std::uint32_t face = 0; faces >> face; ++face)
                 if ((faces >> face) & 1u)
-                    jobs.push_back({layer | (face << 16) | (requests[layer].light_class << 20), item.row});
+                    by_level[level].push_back({layer | (face << 16) | (requests[layer].light_class << 20), item.row});
         }
-        const std::uint32_t count = std::uint32_t(jobs.size()) - first;
-        if (count > 0)
-            commands.push_back({item.index_count, count, item.first_index, item.vertex_offset, first});
-        counters.vertices += std::uint64_t(count) * item.vertex_count;
+        for (std::size_t level = 0; level < by_level.size(); ++level) {
+            const std::uint32_t count = std::uint32_t(by_level[level].size());
+            if (count == 0)
+                continue;
+            const std::uint32_t first = std::uint32_t(jobs.size());
+            jobs.insert(jobs.end(), by_level[level].begin(), by_level[level].end());
+            auto& list = level % 2 ? culled_commands : commands;
+            if (detail) {
+                const scene::DetailRange& range = item.details[level / 2];
+                list.push_back({range.index_count, count, range.first_index, item.vertex_offset, first});
+                counters.vertices += std::uint64_t(count) * range.vertex_count;
+            } else {
+                list.push_back({item.index_count, count, item.first_index, item.vertex_offset, first});
+                counters.vertices += std::uint64_t(count) * item.vertex_count;
+            }
+        }
     }
     for (const std::uint32_t faces : seen)
         counters.faces += std::uint64_t(std::popcount(faces));
     counters.draws += commands.empty() ? 0 : 1;
-    chunk.command_count = std::uint32_t(commands.size());
+    chunk.command_count = std::uint32_t(commands.size() + culled_commands.size());
+    chunk.culled_count = std::uint32_t(culled_commands.size());
+    commands.insert(commands.end(), culled_commands.begin(), culled_commands.end());
     SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
     SUNFLECK_ASSIGN(chunk.lights, resources.upload(std::span<const shared::LightRow>(lights)));
     SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(commands)));
     return chunk;
+}
+
+// The coarsest level whose surface is off by less than a texel where the object is nearest to the light.
+std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::DrawItem& item) const {
+    float texel;
+    if (request.light_class == shared::light_class_directional) {
+        texel = 2.0f / (request.light.tangent_scale.w * float(resolution_));
+    } else {
+        const float radius = 0.5f * glm::length(item.bounds.extent());
+        const float distance = glm::length(item.bounds.centre() - vec3(request.light.position_bound)) - radius;
+        texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
+    }
+    std::size_t level = 0;
+    while (level + 1 < item.details.size() && item.details[level + 1].error * item.scale < 1.0f * texel)
+        ++level;
+    return level;
+}
+
+// A light outside a closed mesh sees its front faces, and they hide all others.
+bool ShadowMaps::shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item) {
+    const vec3 position(request.light.position_bound);
+    const bool inside = glm::all(glm::greaterThanEqual(position, item.bounds.minimum)) &&
+                        glm::all(glm::lessThanEqual(position, item.bounds.maximum));
+    return item.closed && !inside && request.light_class == shared::light_class_surface;
 }
 
 Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
@@ -226,18 +271,25 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
         const VkViewport viewport{0, 0, float(resolution_), float(resolution_), 0, 1};
         vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
         vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
-        const gpu::Pipeline& pipeline = bits_ == 16 ? *pipeline16_ : *pipeline32_;
-        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
-                                         gpu::Binding::slice(chunk.lights)};
-        status = context.resources.bind(context.commands, pipeline, bindings);
-        context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
         const VkBuffer vertices = scene.positions().handle();
         const VkDeviceSize offset = 0;
         vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);
         vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
-        if (status)
-            vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset,
-                                        chunk.command_count, sizeof(VkDrawIndexedIndirectCommand));
+        for (const bool culled : {false, true}) {
+            const std::uint32_t plain = chunk.command_count - chunk.culled_count;
+            const std::uint32_t count = culled ? chunk.culled_count : plain;
+            if (count == 0 || !status)
+                continue;
+            const gpu::Pipeline& pipeline = bits_ == 16 ? *pipelines16_[culled] : *pipelines32_[culled];
+            const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
+                                             gpu::Binding::slice(chunk.lights)};
+            status = context.resources.bind(context.commands, pipeline, bindings);
+            context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
+            const VkDeviceSize first = culled ? plain * sizeof(VkDrawIndexedIndirectCommand) : 0;
+            if (status)
+                vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset + first,
+                                            count, sizeof(VkDrawIndexedIndirectCommand));
+        }
     }
     vk.vkCmdEndRendering(context.commands);
     return status;

@@ -74,14 +74,16 @@ private:
     Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
                                 std::span<const ShadowRequest> requests, Occluders occluders, bool detail,
                                 ShadowCounters& counters) const;
+    std::size_t detail_level(const ShadowRequest& request, const scene::DrawItem& item) const;
+    static bool shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item);
     Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
                        const gpu::Buffer& target, bool over_static);
     Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk, bool load) const;
     Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;
-    const gpu::Pipeline* pipeline16_ = nullptr;
-    const gpu::Pipeline* pipeline32_ = nullptr;
+    const gpu::Pipeline* pipelines16_[2] = {}; // all faces; faces towards the light
+    const gpu::Pipeline* pipelines32_[2] = {};
     gpu::Buffer texels_, static_texels_;
     MapLayout layout_;
     gpu::Image staging_;

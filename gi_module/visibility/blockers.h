@@ -22,6 +22,8 @@ public:
     void place(const mat4& matrix);
 
     Blocking test(const OcclusionPyramid& pyramid) const;
+    // Only the box is known: it blocks partially or not at all.
+    bool complex() const { return polygons_.empty(); }
     const OrientedBox& box() const { return box_; }
     const Bounds& bounds() const { return bounds_; }
     // A convex closed body does not shadow itself: what it hides faces away from the light.

@@ -236,4 +236,38 @@ bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
     return true;
 }
 
+bool may_enter_patch(const LightSample& sample, std::span<const dvec3, 4> corners, dvec3 normal,
+                     const OrientedBox& box) {
+    // Greatest distance of the box inside a plane through `point`, in lengths of `direction`.
+    const auto reach = [&box](dvec3 direction, dvec3 point) {
+        return glm::dot(direction, box.centre - point) + std::abs(glm::dot(direction, box.half_axes[0])) +
+               std::abs(glm::dot(direction, box.half_axes[1])) + std::abs(glm::dot(direction, box.half_axes[2]));
+    };
+    if (reach(normal, corners[0]) <= touching)
+        return false;
+    const dvec3 position(sample.position), axis(sample.normal);
+    if (has_front(sample) && reach(axis, position) <= touching)
+        return false;
+    const bool parallel = sample.kind == SampleKind::directional;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const dvec3 to_light = parallel ? -axis : position - corners[i];
+        if (reach(glm::cross(to_light, corners[(i + 1) % 4] - corners[i]), corners[i]) <= 0.0)
+            return false;
+    }
+    if (parallel)
+        return true;
+    for (const dvec3& half_axis : box.half_axes) { // the box's faces as separating planes
+        const double square = glm::dot(half_axis, half_axis);
+        double low = glm::dot(position - box.centre, half_axis), high = low;
+        for (const dvec3& corner : corners) {
+            const double place = glm::dot(corner - box.centre, half_axis);
+            low = std::min(low, place);
+            high = std::max(high, place);
+        }
+        if (square > 1e-18 && (low >= square || high <= -square))
+            return false;
+    }
+    return true;
+}
+
 } // namespace sunfleck::gi

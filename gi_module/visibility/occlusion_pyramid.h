@@ -49,4 +49,9 @@ bool enters(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon);
 bool may_enter(const OcclusionPyramid& pyramid, const OrientedBox& box);
 bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds);
 
+// The same as may_enter(pyramid_of_patch(sample, corners, normal), box) for a patch that the sample reaches, without
+// making the pyramid.
+bool may_enter_patch(const LightSample& sample, std::span<const dvec3, 4> corners, dvec3 normal,
+                     const OrientedBox& box);
+
 } // namespace sunfleck::gi

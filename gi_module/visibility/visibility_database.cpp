@@ -30,6 +30,32 @@ bool may_meet_hull(const Bounds& a, const Bounds& b, const Bounds& sphere_of) {
     return glm::length(start + t * along - point) <= radius_of(sphere_of) + std::max(radius_of(a), radius_of(b)) + 1e-4;
 }
 
+// Whether anything in the sphere around `mover` may stand between the light and the patch: cheap, and errs on the side
+// of yes. A point q between the light p and a point of the sphere (c, R) around the patch is p + s (b - p) with s in
+// [0, 1] and b in that sphere: it is at most s R from the axis, and s (D - R) along it at least, with D = |c - p|.
+bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bounds& mover) {
+    const vec3 middle = mover.centre();
+    const float radius = 0.5f * glm::length(mover.extent()) * 1.0001f + 1e-5f;
+    if (patch.planar && glm::dot(vec3(patch.normal), middle - vec3(patch.corners[0])) < -radius)
+        return false;
+    if (light.kind == SampleKind::directional)
+        return true;
+    const vec3 to_middle = middle - light.position;
+    if (light.kind == SampleKind::surface && glm::dot(light.normal, to_middle) < -radius)
+        return false;
+    const vec3 axis = patch.bounds.centre() - light.position;
+    const float patch_radius = 0.5f * glm::length(patch.bounds.extent()) * 1.0001f + 1e-5f;
+    const float distance = glm::length(axis);
+    if (distance <= patch_radius)
+        return true;
+    const float along = glm::dot(to_middle, axis) / distance;
+    if (along < -radius || along > distance + patch_radius + radius)
+        return false;
+    const float share = std::min((along + radius) / (distance - patch_radius), 1.0f);
+    const float reach = share * patch_radius + radius;
+    return glm::dot(to_middle, to_middle) - along * along <= reach * reach * 1.001f;
+}
+
 } // namespace
 
 PairState VisibilityDatabase::static_state(std::uint32_t node, std::uint32_t sample) const {
@@ -94,18 +120,20 @@ void VisibilityDatabase::descend(std::uint32_t node, std::uint32_t sample, const
         return;
     const SurfacePatch& patch = patches_.nodes()[node];
     const LightSample& light = samples_[sample];
-    if (options_.clustered && light.kind != SampleKind::directional) {
-        Bounds hull = patch.bounds;
-        hull.add(light.position);
-        if (!overlap(hull, blocker.bounds()))
-            return;
-    }
-    const auto pyramid =
-        patch.planar ? pyramid_of_patch(light, patch.corners, patch.normal) : pyramid_of_box(light, patch.box);
-    if (!pyramid)
+    if (options_.clustered && !may_shadow(light, patch, blocker.bounds()))
         return;
     ++tests;
-    const Blocking blocking = blocker.test(*pyramid);
+    Blocking blocking = Blocking::none;
+    if (!patch.planar || may_enter_patch(light, patch.corners, patch.normal, blocker.box())) {
+        blocking = Blocking::partial;
+        if (!blocker.complex() || !patch.planar) {
+            const auto pyramid =
+                patch.planar ? pyramid_of_patch(light, patch.corners, patch.normal) : pyramid_of_box(light, patch.box);
+            if (!pyramid)
+                return;
+            blocking = blocker.test(*pyramid);
+        }
+    }
     if (blocking == Blocking::none)
         return;
     if (blocking == Blocking::full) {

@@ -1,0 +1,65 @@
+#include "engine/scene/mesh_detail.h"
+
+#include <algorithm>
+#include <meshoptimizer.h>
+
+namespace sunfleck::scene {
+namespace {
+
+constexpr std::size_t smallest_mesh = 64, least_triangles = 24; // below these, fewer triangles gain nothing
+
+std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices) {
+    std::vector<std::uint32_t> sorted = indices;
+    std::sort(sorted.begin(), sorted.end());
+    return std::uint32_t(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
+}
+
+} // namespace
+
+std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
+    std::vector<MeshDetail> details(1);
+    details.reserve(32); // `whole` stays where it is
+    MeshDetail& whole = details.front();
+    whole.indices.resize(mesh.indices.size());
+    if (mesh.indices.empty())
+        return details;
+    const float* positions = &mesh.positions[0].x;
+    meshopt_generateShadowIndexBuffer(whole.indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
+                                      mesh.positions.size(), sizeof(vec3), sizeof(vec3));
+    whole.vertex_count = count_vertices(whole.indices);
+    const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
+    std::size_t target = whole.indices.size() / 6 * 3;
+    while (details.size() < 32 && mesh.triangle_count() >= smallest_mesh && target / 3 >= least_triangles) {
+        MeshDetail detail;
+        detail.indices.resize(mesh.indices.size());
+        float error = 0.0f;
+        // Each level from the whole mesh, so that its error is against the original.
+        detail.indices.resize(meshopt_simplify(detail.indices.data(), details.front().indices.data(),
+                                               details.front().indices.size(), positions, mesh.positions.size(),
+                                               sizeof(vec3), target, 0.25f, 0, &error));
+        if (detail.indices.size() * 10 > details.back().indices.size() * 9 || detail.indices.empty())
+            break;
+        detail.error = error * scale;
+        detail.vertex_count = count_vertices(detail.indices);
+        details.push_back(std::move(detail));
+        target = target / 6 * 3;
+    }
+    return details;
+}
+
+bool is_closed(const std::vector<std::uint32_t>& joined_indices) {
+    std::vector<std::uint64_t> edges, reversed;
+    for (std::size_t i = 0; i + 2 < joined_indices.size(); i += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint64_t a = joined_indices[i + k], b = joined_indices[i + (k + 1) % 3];
+            if (a == b)
+                continue; // of a triangle without area
+            edges.push_back(a << 32 | b);
+            reversed.push_back(b << 32 | a);
+        }
+    std::sort(edges.begin(), edges.end());
+    std::sort(reversed.begin(), reversed.end());
+    return !edges.empty() && edges == reversed && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
+
+} // namespace sunfleck::scene
