@@ -38,6 +38,8 @@ struct FrameInput {
     // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; Settings::map_priority says which
     // go first.
     std::uint32_t map_budget = 0xffffffffu;
+    // False colours of the many-light system in place of the irradiance: shared::show_... (many_light_shared.h).
+    std::uint32_t show = 0;
 };
 
 // Of the last update and, for what the GPU counts, of the newest frame that is complete.

@@ -100,6 +100,7 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     options.scale = settings_.low_resolution;
     options.contrast = settings_.repair_contrast;
     options.normal_degrees = settings_.repair_angle;
+    options.show = input_.show;
     SUNFLECK_TRY(many_light_->update(database_, gpu_scene, samples_, rows_, options, input_.serial,
                                      input_.completed_serial, resources_));
     ShadowCounters shadow_counters;
@@ -110,7 +111,8 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
         scheduler_.done(to_draw_);
     }
     SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(0, std::uint32_t(samples_.size())));
-    SUNFLECK_TRY(many_light_->add_passes(graph, g_buffer, camera, *shadow_maps_, batches, options, resources_, output));
+    SUNFLECK_TRY(many_light_->add_passes(graph, g_buffer, camera, *shadow_maps_, batches, scheduler_.ages(), options,
+                                         resources_, output));
     counters_.shadow_map_updates = shadow_counters.maps;
     counters_.shadow_map_faces = shadow_counters.faces;
     counters_.shadow_map_vertices = shadow_counters.vertices;

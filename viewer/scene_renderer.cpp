@@ -79,6 +79,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.serial = submission_->serial();
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
+    input.show = request.show;
     SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
     return {};
 }

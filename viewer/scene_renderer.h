@@ -17,6 +17,7 @@ struct FrameRequest {
     std::uint32_t width = 640, height = 360;
     std::uint32_t view = shared::view_final;
     bool tone_map = true;      // false: scene-linear floats, for EXR
+    std::uint32_t show = 0;    // false colours of the lighting (gi::FrameInput::show); with view_false_colours
     bool show_samples = false; // debug lines at the light samples
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step that the movers show

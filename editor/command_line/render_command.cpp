@@ -19,11 +19,28 @@ struct RenderOptions {
     bool print_graph = false;
 };
 
-const std::map<std::string, std::uint32_t> views = {
-    {"final", shared::view_final},         {"irradiance", shared::view_irradiance}, {"direct", shared::view_irradiance},
-    {"indirect", shared::view_irradiance}, {"normals", shared::view_normals},       {"albedo", shared::view_albedo},
-    {"depth", shared::view_depth},         {"surfaces", shared::view_surfaces},     {"motion", shared::view_motion},
-    {"samples", shared::view_final}};
+// Views that the lighting itself draws, in false colours.
+const std::map<std::string, std::uint32_t> lighting_views = {{"tiles", shared::show_tiles},
+                                                             {"repaired", shared::show_repaired},
+                                                             {"visibility", shared::show_visibility},
+                                                             {"staleness", shared::show_staleness},
+                                                             {"light_maps", shared::show_light_maps}};
+
+const std::map<std::string, std::uint32_t> views = {{"final", shared::view_final},
+                                                    {"irradiance", shared::view_irradiance},
+                                                    {"direct", shared::view_irradiance},
+                                                    {"indirect", shared::view_irradiance},
+                                                    {"normals", shared::view_normals},
+                                                    {"albedo", shared::view_albedo},
+                                                    {"depth", shared::view_depth},
+                                                    {"surfaces", shared::view_surfaces},
+                                                    {"motion", shared::view_motion},
+                                                    {"samples", shared::view_final},
+                                                    {"tiles", shared::view_false_colours},
+                                                    {"repaired", shared::view_false_colours},
+                                                    {"visibility", shared::view_false_colours},
+                                                    {"staleness", shared::view_false_colours},
+                                                    {"light_maps", shared::view_irradiance}};
 
 Result<gi::Settings> make_settings(const RenderOptions& options) {
     gi::Settings settings;
@@ -63,6 +80,12 @@ Status run(const RenderOptions& options) {
     request.width = size.width;
     request.height = size.height;
     request.view = views.at(options.view);
+    if (const auto found = lighting_views.find(options.view); found != lighting_views.end()) {
+        if (options.direct == "brute_force" || options.indirect == "brute_force")
+            return Error{"--view " + options.view +
+                         " shows the technique light_samples; brute_force has no such thing"};
+        request.show = found->second;
+    }
     request.tone_map = kind == io::PictureKind::png;
     request.show_samples = options.view == "samples";
     request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer->registry());

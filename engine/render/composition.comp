@@ -64,6 +64,8 @@ void main() {
         radiance = constants.tone_map != 0u;
         if (radiance)
             value.rgb /= pi;
+    } else if (constants.view == view_false_colours) {
+        value.rgb = texelFetch(irradiance_image, pixel, 0).rgb;
     } else if (constants.view == view_normals && hit) {
         value.rgb = unpack_normal(texelFetch(normals_image, pixel, 0).r) * 0.5 + 0.5;
     } else if (constants.view == view_albedo && hit) {

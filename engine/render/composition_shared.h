@@ -11,6 +11,7 @@ SHARED_CONSTANT uint view_albedo = 3u;
 SHARED_CONSTANT uint view_depth = 4u;
 SHARED_CONSTANT uint view_surfaces = 5u;
 SHARED_CONSTANT uint view_motion = 6u;
+SHARED_CONSTANT uint view_false_colours = 7u; // the irradiance image as it is
 
 struct CompositionConstants {
     uint view;

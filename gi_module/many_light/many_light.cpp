@@ -116,7 +116,11 @@ Result<const gpu::Pipeline*> ManyLight::pipeline(const char* shader, std::vector
 
 Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                              const ShadowMaps& maps, std::span<const LightBatch> batches,
-                             const ManyLightOptions& options, gpu::FrameResources& resources, gpu::ResourceId output) {
+                             std::span<const std::uint32_t> map_ages, const ManyLightOptions& wanted,
+                             gpu::FrameResources& resources, gpu::ResourceId output) {
+    ManyLightOptions options = wanted;
+    if (options.show >= shared::show_visibility)
+        options.scale = 1; // these are shown for every pixel
     shared::ManyLightConstants constants{};
     constants.width = g_buffer.width;
     constants.height = g_buffer.height;
@@ -169,7 +173,11 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
             SUNFLECK_TRY(add_reconstruction(frame));
             SUNFLECK_TRY(add_compaction(frame));
         }
+        if (stage == Stage::repair && options.show != shared::show_nothing)
+            break; // the groups of the low-resolution picture are what is shown
         SUNFLECK_TRY(add_gather(frame, stage));
+        if (options.show == shared::show_light_maps)
+            break;
         for (std::size_t i = 0; i < batches.size(); ++i) {
             frame.constants.batch_first = batches[i].first;
             frame.constants.batch_count = batches[i].count;
@@ -177,6 +185,8 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
             SUNFLECK_TRY(add_light(frame, stage, batches[i], i + 1 == batches.size()));
         }
     }
+    if (options.show != shared::show_nothing)
+        SUNFLECK_TRY(add_show(frame, map_ages, resources));
     if (reconstructs)
         SUNFLECK_TRY(add_counters(frame));
     else
@@ -360,6 +370,37 @@ Status ManyLight::add_compaction(const Frame& frame) {
                 return {};
             });
     }
+    return {};
+}
+
+Status ManyLight::add_show(const Frame& frame, std::span<const std::uint32_t> map_ages,
+                           gpu::FrameResources& resources) {
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
+                    pipeline("show.comp",
+                             {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
+                              storage_buffer, storage_image},
+                             {frame.options.show}));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice ages, resources.upload(map_ages));
+    auto pass = frame.graph.add_pass("false colours");
+    for (const gpu::ResourceId id : {frame.nodes, frame.counts, frame.sums, frame.cell_masks})
+        pass.read(id, gpu::Usage::storage_read);
+    pass.read(frame.graph.import_buffer(tables_.rows()), gpu::Usage::storage_read)
+        .write(frame.output, gpu::Usage::storage_write)
+        .execute([this, kernel, ages, output = frame.output,
+                  constants = frame.constants](gpu::PassContext& context) -> Status {
+            const gpu::Binding bindings[] = {gpu::Binding::buffer(nodes_),
+                                             gpu::Binding::buffer(tables_.rows()),
+                                             gpu::Binding::buffer(counts_),
+                                             gpu::Binding::buffer(sums_),
+                                             gpu::Binding::buffer(cell_masks_),
+                                             gpu::Binding::slice(ages),
+                                             gpu::Binding::storage_image(context.graph.view(output))};
+            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
+            context.resources.push(context.commands, *kernel, constants);
+            context.device.vk.vkCmdDispatch(context.commands, divide_up(constants.width, 8),
+                                            divide_up(constants.height, 8), 1);
+            return {};
+        });
     return {};
 }
 

@@ -24,6 +24,7 @@ struct ManyLightOptions {
     std::uint32_t scale = 4; // of the low-resolution pass: 1 (off), 2, 4 or 8
     float contrast = 0.3f;
     float normal_degrees = 12.0f;
+    std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
     auto operator<=>(const ManyLightOptions&) const = default;
 };
 
@@ -45,9 +46,10 @@ public:
     Status update(VisibilityDatabase& database, const scene::GpuScene& scene, std::span<const LightSample> samples,
                   std::span<const shared::LightRow> rows, const ManyLightOptions& options, std::uint64_t serial,
                   std::uint64_t completed_serial, gpu::FrameResources& resources);
-    // Adds the frame's passes, which write all of `output`.
+    // Adds the frame's passes, which write all of `output`. `map_ages`: by sample, frames that its map is out of date.
     Status add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
-                      const ShadowMaps& maps, std::span<const LightBatch> batches, const ManyLightOptions& options,
+                      const ShadowMaps& maps, std::span<const LightBatch> batches,
+                      std::span<const std::uint32_t> map_ages, const ManyLightOptions& options,
                       gpu::FrameResources& resources, gpu::ResourceId output);
 
     const ManyLightCounters& counters() const { return counters_; }
@@ -71,6 +73,7 @@ private:
     Status add_reconstruction(const Frame& frame);
     Status add_compaction(const Frame& frame);
     Status add_counters(const Frame& frame);
+    Status add_show(const Frame& frame, std::span<const std::uint32_t> map_ages, gpu::FrameResources& resources);
     void dispatch(gpu::PassContext& context, Stage stage, std::uint32_t command, std::uint32_t groups) const;
     void collect(std::uint64_t completed_serial);
 

@@ -14,9 +14,9 @@ SHARED_CONSTANT uint group_side = 8u; // of a tile, in pixels of the low-resolut
 SHARED_CONSTANT uint no_pixel = 0xffffffffu;
 SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
 
-// Nodes of a group have slots 0 to 6. Slot 7 is for pixels of any further node, or of none: every sample is tested.
-SHARED_CONSTANT uint group_slots = 8u;
-SHARED_CONSTANT uint any_node_slot = 7u;
+// Nodes of a group have slots 0 to 10. Slot 11 is for pixels of any further node, or of none: every sample is tested.
+SHARED_CONSTANT uint group_slots = 12u;
+SHARED_CONSTANT uint any_node_slot = 11u;
 
 // A list entry: sample (of the batch) in bits 0 to 15; from bit 16 a bit for each slot. In the list with tests the bit
 // says that the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; in
@@ -63,6 +63,14 @@ struct ManyLightConstants {
     uint node_count;
     uint group_count; // of the low-resolution picture
 };
+
+// What show.comp shows in place of the irradiance.
+SHARED_CONSTANT uint show_nothing = 0u;
+SHARED_CONSTANT uint show_tiles = 1u;      // red: samples with a shadow test, green: without, as shares of all
+SHARED_CONSTANT uint show_repaired = 2u;   // pixels that are lit again at full resolution
+SHARED_CONSTANT uint show_visibility = 3u; // red: partial, green: none, blue: full
+SHARED_CONSTANT uint show_staleness = 4u;  // age of the shadow maps that a surface needs: blue fresh, red eight frames
+SHARED_CONSTANT uint show_light_maps = 5u; // W/m2
 
 // Places of the indirect commands that the compaction writes, in uints.
 SHARED_CONSTANT uint command_groups = 0u; // a work group for each group

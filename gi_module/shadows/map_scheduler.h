@@ -37,6 +37,7 @@ public:
     bool is_static_stale(std::uint32_t sample) const { return static_stale_[sample] != 0; }
     // 0: fresh.
     std::uint32_t frames_out_of_date(std::uint32_t sample) const { return age_[sample]; }
+    std::span<const std::uint32_t> ages() const { return age_; }
     std::size_t stale() const;
     std::size_t size() const { return age_.size(); }
 

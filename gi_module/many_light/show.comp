@@ -1,0 +1,75 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// False colours of what the many-light system knows and does, in place of the irradiance.
+#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/visibility/surface_lookup_shared.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint view = show_tiles;
+
+layout(set = 0, binding = 0) readonly buffer NodeOfEntry { uint entry_nodes[]; };
+layout(set = 0, binding = 1) readonly buffer Rows { uint rows[]; };
+layout(set = 0, binding = 2) readonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 3) readonly buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 4) readonly buffer CellMasks { uvec2 cell_masks[]; };
+layout(set = 0, binding = 5) readonly buffer Ages { uint ages[]; }; // by sample: frames that its shadow map is out of date
+layout(set = 0, binding = 6) writeonly uniform image2D output_image;
+layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+vec3 heat(float x) { return clamp(vec3(2.0 * x, 2.0 - 2.0 * x, 1.0 - 4.0 * x), 0.0, 1.0); }
+
+vec3 colour_of(uint number) {
+    const uint h = number * 2654435761u;
+    return vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
+}
+
+// Red: share of the samples that need a shadow test; green: that need none; blue: that are blocked.
+vec3 visibility(uint node) {
+    vec3 count = vec3(0.0);
+    for (uint i = 0; i < constants.list_stride; ++i) {
+        const uint state = (rows[node * constants.words_per_row + i / pairs_per_word] >> (i % pairs_per_word * 2u)) & 3u;
+        count += vec3(state == pair_partial, state == pair_none, state == pair_full);
+    }
+    const float all = max(count.r + count.g + count.b, 1.0);
+    return count / all * 0.85 + colour_of(node) * 0.15;
+}
+
+// How old the maps of the samples are that need one here.
+vec3 staleness(uint node) {
+    float age = 0.0, tested = 0.0;
+    for (uint i = 0; i < constants.list_stride; ++i) {
+        const uint state = (rows[node * constants.words_per_row + i / pairs_per_word] >> (i % pairs_per_word * 2u)) & 3u;
+        if (state == pair_partial) {
+            age += min(float(ages[i]), 8.0);
+            tested += 1.0;
+        }
+    }
+    return heat(tested > 0.0 ? age / (tested * 8.0) : 0.0);
+}
+
+void main() {
+    const uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= constants.width || pixel.y >= constants.height)
+        return;
+    const uvec2 low = min(pixel / constants.scale, uvec2(constants.low_width, constants.low_height) - 1u);
+    const uint group = low.y / group_side * constants.group_columns + low.x / group_side;
+    const uint entry = group * group_pixels + low.y % group_side * group_side + low.x % group_side;
+    const uint node = entry_nodes[entry];
+    vec3 colour = vec3(0.0);
+    if (view == show_tiles) {
+        const bool border = any(equal(pixel % (constants.scale * group_side), uvec2(0u)));
+        colour = border ? vec3(0.0) : vec3(counts[group].tested, counts[group].untested, 0.0) / float(constants.list_stride);
+    } else if (view == show_repaired) {
+        const ivec2 cell = (ivec2(pixel) + int(constants.scale / 2u)) / int(constants.scale);
+        const ivec2 inside = (ivec2(pixel) + int(constants.scale / 2u)) % int(constants.scale);
+        const uint bit = uint(inside.y) * constants.scale + uint(inside.x);
+        const uvec2 mask = cell_masks[uint(cell.y) * constants.cell_columns + uint(cell.x)];
+        const bool again = ((bit < 32u ? mask.x >> bit : mask.y >> (bit - 32u)) & 1u) != 0u;
+        colour = again ? vec3(1.0, 0.2, 0.6) : vec3(0.12);
+    } else if (view == show_light_maps) {
+        colour = sums[entry].rgb;
+    } else if (node != no_node) {
+        colour = view == show_visibility ? visibility(node) : staleness(node);
+    }
+    imageStore(output_image, ivec2(pixel), vec4(colour, 1.0));
+}
