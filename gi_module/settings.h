@@ -36,7 +36,7 @@ struct Settings {
 
     // The many-light system; each part can be switched off, to see what it is worth.
     bool visibility = true;
-    std::uint32_t patch_levels = 3;
+    std::uint32_t patch_levels = 4;
     bool light_maps = true;
     std::uint32_t low_resolution = 4;
     float repair_contrast = 0.3f;

@@ -136,7 +136,9 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     constants.block_columns = divide_up(constants.cell_columns, 8);
     constants.block_count = constants.block_columns * divide_up(constants.cell_rows, 8);
     constants.contrast = options.contrast;
-    constants.normal_cosine = std::cos(glm::radians(options.normal_degrees));
+    // A radian is 0.64 (about an axis) to 1.04 (between axes) octahedral units; the smaller, so that none is missed.
+    const float limit = 0.64f * glm::radians(options.normal_degrees);
+    constants.normal_limit = limit * limit;
     constants.fixed_point = light_maps_->fixed_point();
     constants.node_count = std::uint32_t(node_rows_.size());
     for (const LightBatch& batch : batches)

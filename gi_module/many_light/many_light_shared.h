@@ -57,9 +57,9 @@ struct ManyLightConstants {
     uint cell_rows;
     uint block_columns; // blocks of 8x8 cells
     uint block_count;
-    float contrast; // neighbours that differ by more, relative to the brighter, are not blended
-    float normal_cosine;
-    float fixed_point; // steps of a light map a W/m2
+    float contrast;     // neighbours that differ by more, relative to the brighter, are not blended
+    float normal_limit; // squared distance of octahedral normals within which neighbours are blended
+    float fixed_point;  // steps of a light map a W/m2
     uint node_count;
     uint group_count; // of the low-resolution picture
 };

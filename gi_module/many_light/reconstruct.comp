@@ -22,7 +22,7 @@ layout(push_constant) uniform Constants { ManyLightConstants constants; };
 // On a plane, depth (near / distance along the view) is linear in the picture: a neighbour's plane is three numbers.
 struct Neighbour {
     vec3 irradiance;
-    vec3 normal;
+    vec2 normal; // octahedral
     uint packed_normal;
     vec3 depth_plane; // depth at the cell's first pixel, and what a pixel to the right and one down add
     float height;     // of the camera over the plane, m
@@ -40,7 +40,7 @@ Neighbour neighbour_at(ivec2 low, vec2 first) {
     result.irradiance = max(sum.rgb, vec3(0.0));
     result.exists = sum.a > 0.0;
     result.packed_normal = normals.x;
-    result.normal = unpack_normal(normals.x);
+    result.normal = unpackSnorm2x16(normals.x);
     const vec3 geometric_normal = unpack_normal(normals.y);
     const vec3 to_point = camera_ray(camera, vec2(pixel) + 0.5) * (camera.position.w / max(depth, 1e-7));
     result.height = dot(geometric_normal, to_point);
@@ -65,11 +65,14 @@ void main() {
     // Tolerance for surfaces that are not quite planes: a part of a low-resolution pixel's size, in units of distance.
     const float pixel_size = length(camera.right.xyz) * 2.0 / camera.forward.w;
     const float tolerance = camera.position.w * (0.15 * float(scale) * pixel_size + 2e-4);
-    float darkest = 1e30, brightest = 0.0;
+    vec4 bright;
+    bvec4 exists;
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        darkest = min(darkest, brightness(neighbours[i].irradiance));
-        brightest = max(brightest, brightness(neighbours[i].irradiance));
+        bright[i] = brightness(neighbours[i].irradiance);
+        exists[i] = neighbours[i].exists;
     }
+    const float brightest = max(max(bright.x, bright.y), max(bright.z, bright.w));
+    const float darkest = min(min(bright.x, bright.y), min(bright.z, bright.w));
     const bool all_differ = brightest - darkest > constants.contrast * brightest;
     uvec2 mask = uvec2(0u);
     for (int y = 0; y < scale; ++y) {
@@ -92,37 +95,29 @@ void main() {
                 off_plane[i] = abs(neighbours[i].height * (dot(neighbours[i].depth_plane, vec3(1.0, x, y)) - depth));
                 same_normal[i] = neighbours[i].packed_normal == packed_normal;
             }
-            vec3 value;
-            bool again;
             // Most pixels lie on a flat surface with all four neighbours: equal normals are equal bits.
-            if (all(same_normal) && all(lessThan(off_plane, vec4(tolerance)))) {
-                value = neighbours[0].irradiance * weights[0] + neighbours[1].irradiance * weights[1] +
-                        neighbours[2].irradiance * weights[2] + neighbours[3].irradiance * weights[3];
-                again = all_differ;
-            } else {
-                value = vec3(0.0);
-                vec3 best = vec3(0.0);
-                float weight_sum = 0.0, low = 1e30, high = 0.0, nearest = 1e30;
-                const vec3 normal = unpack_normal(packed_normal);
-                [[unroll]] for (int i = 0; i < 4; ++i) {
-                    const bool valid = neighbours[i].exists && off_plane[i] < tolerance &&
-                                       dot(neighbours[i].normal, normal) > constants.normal_cosine;
-                    const float weight = valid ? weights[i] + 1e-3 : 0.0;
-                    value += neighbours[i].irradiance * weight;
-                    weight_sum += weight;
-                    if (valid) {
-                        low = min(low, brightness(neighbours[i].irradiance));
-                        high = max(high, brightness(neighbours[i].irradiance));
-                    }
-                    const float distance_to = neighbours[i].exists ? off_plane[i] - 1e-6 * weights[i] : 1e29;
-                    if (distance_to < nearest) {
-                        nearest = distance_to;
-                        best = neighbours[i].irradiance;
-                    }
-                }
-                again = weight_sum == 0.0 || high - low > constants.contrast * high;
-                value = weight_sum > 0.0 ? value / weight_sum : best; // `best`: in case it is not lit again after all
+            vec4 shares = weights;
+            bool again = all_differ;
+            if (!(all(same_normal) && all(lessThan(off_plane, vec4(tolerance))))) {
+                // Octahedral places stand for angles: 1 is 55 to 90 degrees. Across a fold they are too far apart, and the
+                // pixel is lit again.
+                const vec2 normal = unpackSnorm2x16(packed_normal);
+                vec4 apart;
+                [[unroll]] for (int i = 0; i < 4; ++i)
+                    apart[i] = dot(neighbours[i].normal - normal, neighbours[i].normal - normal);
+                const bvec4 on_plane = lessThan(off_plane, vec4(tolerance));
+                const bvec4 alike = lessThan(apart, vec4(constants.normal_limit));
+                const vec4 valid = vec4(on_plane) * vec4(alike) * vec4(exists);
+                shares = (weights + 1e-3) * valid;
+                const float sum = shares.x + shares.y + shares.z + shares.w;
+                const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
+                const float highest = max(max(high.x, high.y), max(high.z, high.w));
+                const float lowest = min(min(low.x, low.y), min(low.z, low.w));
+                again = sum == 0.0 || highest - lowest > constants.contrast * highest;
+                shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
             }
+            const vec3 value = neighbours[0].irradiance * shares[0] + neighbours[1].irradiance * shares[1] +
+                               neighbours[2].irradiance * shares[2] + neighbours[3].irradiance * shares[3];
             if (again) {
                 const uint bit = uint(y * scale + x);
                 if (bit < 32u)
