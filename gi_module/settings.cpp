@@ -49,7 +49,8 @@ const TypeDescription& Settings::description() {
                         "Movers are drawn into shadow maps with as much detail as a texel shows"),
          SUNFLECK_FIELD(Settings, map_budget, "maps", 0, 65536,
                         "Shadow maps redrawn in a frame at most; fewer is faster, and shadows of movers lag behind"),
-         SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "flux_and_age", "age"),
+         SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "contribution",
+                         "flux_and_age", "age"),
          SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,
                         "Visibility tests begin with clusters of samples and groups of patches")}};
     return type;

@@ -11,7 +11,10 @@ enum class DirectTechnique : std::uint32_t { light_samples, brute_force, none };
 enum class IndirectTechnique : std::uint32_t { light_samples, brute_force, none };
 enum class Sequence : std::uint32_t { pseudo_random, sobol };
 enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
-enum class MapPriority : std::uint32_t { flux_and_age, age };
+// contribution: brightest channel times age, and four times that for direct light: the samples of one lamp lie side by
+// side, so their shadows fall on each other, and so do the errors of their stale maps; reflected light comes from all
+// over, and its errors thin out. flux_and_age: thesis sec. 4.5.3. age: in turns.
+enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
 enum class MoverHandling : std::uint32_t { per_pixel, as_static };
 
 struct Settings {

@@ -6,12 +6,20 @@
 #include <cstring>
 
 namespace sunfleck::gi {
+namespace {
+
+// Texels by which movers' simplified surfaces may be off. Shadows of direct light lie on each other and show their
+// outline; those of reflected light are scattered.
+constexpr float direct_detail = 0.7f, indirect_detail = 2.0f;
+
+} // namespace
 
 std::vector<ShadowRequest> System::make_requests(std::span<const std::uint32_t> samples) const {
     std::vector<ShadowRequest> requests;
     for (const std::uint32_t sample : samples)
         requests.push_back({sample % shadow_maps_->slots(), light_class(samples_[sample].kind), rows_[sample],
-                            scheduler_.is_static_stale(sample)});
+                            scheduler_.is_static_stale(sample),
+                            samples_[sample].bounce == 0 ? direct_detail : indirect_detail});
     return requests;
 }
 

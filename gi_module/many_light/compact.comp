@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The marked pixels as groups of 64, each group from one block of 8x8 cells. Three steps: count by block, prefix sum,
-// fill. No atomics, so the order never varies.
+// The marked pixels as groups of 64: block after block of 8x8 cells, so that a group's pixels are neighbours. Three
+// steps: count by block, prefix sum, fill. No atomics, so the order never varies.
 #include "gi_module/many_light/many_light_shared.h"
 
 layout(local_size_x = 8) in;
@@ -9,12 +9,11 @@ layout(constant_id = 0) const uint action = 0; // 0: count, 1: prefix sum (one w
 layout(constant_id = 1) const int scale = 4;
 
 layout(set = 0, binding = 0) readonly buffer CellMasks { uvec2 cell_masks[]; };
-layout(set = 0, binding = 1) buffer BlockGroups { uint block_groups[]; }; // pixels of a block, then its first group
+layout(set = 0, binding = 1) buffer BlockPixels { uint block_pixels[]; }; // pixels of a block, then those of all before it
 layout(set = 0, binding = 2) buffer Commands { uint commands[]; };
 layout(set = 0, binding = 3) writeonly buffer Pixels { uint pixels[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
-shared uint chunk_groups[8];
 shared uint chunk_pixels[8];
 
 uint cell_of(uint block, uint i, out bool inside) {
@@ -34,35 +33,33 @@ void count_block(uint block) {
             total += uint(bitCount(mask.x) + bitCount(mask.y));
         }
     }
-    block_groups[block] = total;
+    block_pixels[block] = total;
 }
 
 void sum_blocks() {
     const uint lane = gl_LocalInvocationID.x;
     const uint length = (constants.block_count + 7u) / 8u;
     const uint begin = min(lane * length, constants.block_count), end = min(begin + length, constants.block_count);
-    uint groups = 0u, wanted = 0u;
-    for (uint block = begin; block < end; ++block) {
-        groups += (block_groups[block] + group_pixels - 1u) / group_pixels;
-        wanted += block_groups[block];
-    }
-    chunk_groups[lane] = groups;
+    uint wanted = 0u;
+    for (uint block = begin; block < end; ++block)
+        wanted += block_pixels[block];
     chunk_pixels[lane] = wanted;
     barrier();
-    uint first = 0u, total = 0u, total_pixels = 0u;
+    uint first = 0u, total_pixels = 0u;
     for (uint i = 0; i < 8u; ++i) {
-        first += i < lane ? chunk_groups[i] : 0u;
-        total += chunk_groups[i];
+        first += i < lane ? chunk_pixels[i] : 0u;
         total_pixels += chunk_pixels[i];
     }
     for (uint block = begin; block < end; ++block) {
-        const uint own = (block_groups[block] + group_pixels - 1u) / group_pixels;
-        block_groups[block] = first;
+        const uint own = block_pixels[block];
+        block_pixels[block] = first;
         first += own;
     }
     if (lane != 0u)
         return;
-    total = min(total, constants.group_capacity);
+    const uint total = min((total_pixels + group_pixels - 1u) / group_pixels, constants.group_capacity);
+    for (uint i = total_pixels; i < total * group_pixels; ++i)
+        pixels[i] = no_pixel;
     commands[command_groups] = total;
     commands[command_groups + 1u] = 1u;
     commands[command_groups + 2u] = 1u;
@@ -75,7 +72,7 @@ void sum_blocks() {
 }
 
 void fill_block(uint block) {
-    uint place = block_groups[block] * group_pixels;
+    uint place = block_pixels[block];
     const uint end = constants.group_capacity * group_pixels;
     for (uint i = 0; i < 64u; ++i) {
         bool inside;
@@ -94,8 +91,6 @@ void fill_block(uint block) {
             pixels[place++] = uint(pixel.x) | (uint(pixel.y) << 16);
         }
     }
-    while (place % group_pixels != 0u && place < end)
-        pixels[place++] = no_pixel;
 }
 
 void main() {

@@ -7,7 +7,7 @@ namespace sunfleck::gi {
 namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
-constexpr float texels_per_radius = 5.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
+constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
 constexpr std::uint32_t most_texels = 256;   // along a patch's side
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
 

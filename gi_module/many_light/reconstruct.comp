@@ -113,7 +113,7 @@ void main() {
                 const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
                 const float highest = max(max(high.x, high.y), max(high.z, high.w));
                 const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-                again = sum == 0.0 || highest - lowest > constants.contrast * highest;
+                again = sum < 0.2 || highest - lowest > constants.contrast * highest;
                 shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
             }
             const vec3 value = neighbours[0].irradiance * shares[0] + neighbours[1].irradiance * shares[1] +

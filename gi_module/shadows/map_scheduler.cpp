@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace sunfleck::gi {
+namespace {
+
+constexpr float direct_weight = 4.0f;
+
+}
 
 void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
@@ -38,7 +43,8 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
         const float brightest = std::max({flux.x, flux.y, flux.z});
         const float age = float(age_[i]);
         const bool late = age_[i] >= overdue;
-        return {late, late || priority == MapPriority::age ? age : age * brightest};
+        const float share = priority == MapPriority::contribution && samples[i].bounce == 0 ? direct_weight : 1.0f;
+        return {late, late || priority == MapPriority::age ? age : age * brightest * share};
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](std::uint32_t a, std::uint32_t b) {
         const Rank ra = rank(a), rb = rank(b);

@@ -185,7 +185,7 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     return chunk;
 }
 
-// The coarsest level whose surface is off by less than a texel where the object is nearest to the light.
+// The coarsest level whose surface is not off by more than the request allows where the object is nearest to the light.
 std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::DrawItem& item) const {
     float texel;
     if (request.light_class == shared::light_class_directional) {
@@ -196,7 +196,7 @@ std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::
         texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
     }
     std::size_t level = 0;
-    while (level + 1 < item.details.size() && item.details[level + 1].error * item.scale < 1.0f * texel)
+    while (level + 1 < item.details.size() && item.details[level + 1].error * item.scale < request.detail_texels * texel)
         ++level;
     return level;
 }

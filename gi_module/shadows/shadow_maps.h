@@ -22,6 +22,8 @@ struct ShadowRequest {
     std::uint32_t light_class = 0;
     shared::LightRow light;
     bool redraw_static = true; // the static part is stale, too
+    // How far the simplified surface of a mover may be off, in texels.
+    float detail_texels = 0.5f;
 };
 
 struct MapLayout {
