@@ -11,6 +11,10 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int scale = 4;
 
+// Where the valid neighbours' bilinear weights sum to less, the pixel lies beyond them, at a crease or a silhouette:
+// what they say would be extrapolated.
+const float least_share = 0.3;
+
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
@@ -113,7 +117,7 @@ void main() {
                 const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
                 const float highest = max(max(high.x, high.y), max(high.z, high.w));
                 const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-                again = sum < 0.2 || highest - lowest > constants.contrast * highest;
+                again = sum < least_share || highest - lowest > constants.contrast * highest;
                 shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
             }
             const vec3 value = neighbours[0].irradiance * shares[0] + neighbours[1].irradiance * shares[1] +

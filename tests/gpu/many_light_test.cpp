@@ -1,0 +1,332 @@
+// The many-light system against brute force: what each optimisation may change of the picture, and what it may not.
+#include "tests/support/gpu_world.h"
+
+#include <random>
+
+namespace sunfleck::tests {
+namespace {
+
+class ManyLightTest : public GpuTest {};
+
+// Two renderers of one scene, frame for frame.
+struct Pair {
+    explicit Pair(void (*make)(assets::SceneBuilder&), const std::string& camera)
+        : brute(make, camera), many(make, camera) {}
+    void set(const gi::Settings& settings) {
+        many.set(settings);
+        gi::Settings baseline = gi::Settings::brute_force();
+        baseline.lights = settings.lights;
+        baseline.seed = settings.seed;
+        baseline.shadow_filter = settings.shadow_filter;
+        baseline.shadow_map_resolution = settings.shadow_map_resolution;
+        baseline.bounces = settings.bounces;
+        brute.set(baseline);
+    }
+    void size(std::uint32_t width, std::uint32_t height) {
+        for (GpuWorld* world : {&brute, &many}) {
+            world->request.width = width;
+            world->request.height = height;
+        }
+    }
+    // The many-light system has a past: its maps and lists are from earlier frames. Brute force has none.
+    void run_to(std::uint64_t step, float degrees) {
+        const scene::CameraView start = many.request.camera;
+        for (std::uint64_t k = 0; k <= step; ++k) {
+            many.request.step = k;
+            many.request.camera = start.orbited(glm::radians(degrees) * float(k));
+            many.render();
+        }
+        brute.request.step = step;
+        brute.request.camera = many.request.camera;
+        brute.render();
+    }
+    GpuWorld brute, many;
+};
+
+struct Difference {
+    double mean = 0, beyond_8 = 0, largest = 0, mean_brightness = 0;
+};
+
+Difference compare(Pair& pair) {
+    const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
+    Difference result;
+    double pixels = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        if (a.pixels[i].a != b.pixels[i].a)
+            result.largest = 1e9;
+        double largest = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double d = std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c]));
+            largest = std::max(largest, d);
+            result.mean += d / 3.0;
+            result.mean_brightness += double(b.pixels[i][c]) / 3.0;
+        }
+        result.largest = std::max(result.largest, largest);
+        result.beyond_8 += largest > 8.0 / 255.0;
+        pixels += 1;
+    }
+    result.mean /= pixels;
+    result.beyond_8 /= pixels;
+    result.mean_brightness /= pixels;
+    return result;
+}
+
+// Without what approximates (light maps, low resolution, simplified movers, a budget), only the order of sums differs
+// from brute force: half a float's rounding of 16-bit output, and 200 float additions. With the database, pairs that it
+// has settled skip the map's errors as well (false shadows in corners, light that the bias lets through under walls): a
+// few pixels change, and no more than those errors are worth.
+TEST_F(ManyLightTest, ExactPartsChangeNothing) {
+    for (auto make :
+         {assets::make_four_pillars, assets::make_table_room, assets::make_two_rooms, assets::make_near_occluder}) {
+        Pair pair(make, "bench_1");
+        pair.size(160, 120);
+        gi::Settings settings;
+        settings.lights = 200;
+        settings.light_maps = false;
+        settings.low_resolution = 1;
+        settings.map_detail = false;
+        settings.map_budget = 65536;
+        for (const bool filter : {false, true})
+            for (const bool visibility : {false, true}) {
+                settings.shadow_filter = filter;
+                settings.visibility = visibility;
+                pair.set(settings);
+                pair.run_to(4, 0.25f);
+                const Difference difference = compare(pair);
+                const double rounding = 2e-3 * difference.mean_brightness + 2e-3;
+                if (!visibility) {
+                    EXPECT_LT(difference.largest, rounding) << "filter " << filter;
+                } else {
+                    EXPECT_LT(difference.mean, 0.003 * difference.mean_brightness) << "filter " << filter;
+                    EXPECT_GT(pair.many.renderer->lighting().counters().visibility.none, 10000u);
+                }
+                EXPECT_GT(difference.mean_brightness, 0.01);
+            }
+    }
+}
+
+// The whole system at 1024x768, tone-mapped, every map up to date: within 1/255 in the mean, half a per cent of pixels
+// off by more than 8/255.
+TEST_F(ManyLightTest, TheWholeSystemStaysCloseToBruteForce) {
+    struct Case {
+        void (*make)(assets::SceneBuilder&);
+        const char* camera;
+    };
+    for (const Case& c : {Case{assets::make_cornell, "bench_1"}, Case{assets::make_area_room, "bench_1"},
+                          Case{assets::make_area_room, "bench_2"}, Case{assets::make_table_room, "bench_1"},
+                          Case{assets::make_four_pillars, "bench_1"}, Case{assets::make_four_pillars, "bench_2"}}) {
+        Pair pair(c.make, c.camera);
+        pair.size(1024, 768);
+        for (GpuWorld* world : {&pair.brute, &pair.many}) {
+            world->request.view = shared::view_final;
+            world->request.tone_map = true;
+            world->request.ev100 = viewer::scene_exposure(world->renderer->registry());
+        }
+        gi::Settings settings;
+        settings.map_budget = 65536;
+        pair.set(settings);
+        pair.run_to(3, 0.25f);
+        const Difference difference = compare(pair);
+        std::printf("%s: mean %.3f/255, %.3f%% beyond 8/255\n", c.camera, difference.mean * 255.0,
+                    difference.beyond_8 * 100.0);
+        EXPECT_LT(difference.mean, 1.0 / 255.0);
+        EXPECT_LT(difference.beyond_8, 0.005);
+        pair.many.render(); // counters arrive a frame later
+        const gi::ManyLightCounters& pixels = pair.many.renderer->lighting().counters().pixels;
+        EXPECT_EQ(pixels.pixels_low_resolution, 256u * 192u);
+        EXPECT_GT(pixels.pixels_repaired, 100u);
+        EXPECT_LT(pixels.pixels_repaired, 1024u * 768u / 20u);
+        EXPECT_EQ(pixels.pixels_not_repaired, 0u);
+    }
+}
+
+// A patch in full shadow under a table is as dark as brute force says, though its light map is bright.
+TEST_F(ManyLightTest, UmbraStaysDark) {
+    const auto make = [](assets::SceneBuilder& s) {
+        s.quad("floor", vec3(-4, 0, -4), vec3(0, 0, 8), vec3(8, 0, 0), assets::diffuse(vec3(0.5f)));
+        s.ceiling_light("lamp", vec3(0, 3, 0), 0.3f, 0.3f, vec3(50.0f));
+        s.quad("table", vec3(-1, 1, -1), vec3(0, 0, 2), vec3(2, 0, 0), assets::diffuse(vec3(0.5f)));
+        s.camera("view", vec3(0.0f, 0.6f, 2.0f), vec3(0.0f, 0.0f, 0.2f), 30.0f);
+    };
+    Pair pair(make, "view");
+    pair.size(128, 96);
+    gi::Settings settings;
+    settings.lights = 64;
+    settings.bounces = 0;
+    pair.set(settings);
+    pair.run_to(2, 0.0f);
+    const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
+    int dark = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        if (b.pixels[i].a > 0 && b.pixels[i].r == 0.0f) {
+            ++dark;
+            EXPECT_LT(a.pixels[i].r, 0.01f); // of about 2 W/m2 beside the table
+        }
+    EXPECT_GT(dark, 2000);
+}
+
+std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps) {
+    gpu::BufferDescription description;
+    description.name = "light map read-back";
+    description.size = maps.counters().texels * 16;
+    description.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    description.memory = gpu::MemoryUse::readback;
+    const gpu::Buffer target = gpu::Buffer::create(device(), description).value();
+    EXPECT_TRUE(world.renderer->submission().immediate([&](VkCommandBuffer commands) -> Status {
+        gpu::FrameGraph graph(&device());
+        const auto from = graph.import_buffer(maps.texels()), to = graph.import_buffer(target);
+        graph.add_pass("copy")
+            .read(from, gpu::Usage::transfer_source)
+            .write(to, gpu::Usage::transfer_destination)
+            .execute([&](gpu::PassContext& context) -> Status {
+                const VkBufferCopy region{0, 0, description.size};
+                context.device.vk.vkCmdCopyBuffer(context.commands, maps.texels().handle(), target.handle(), 1,
+                                                  &region);
+                return {};
+            });
+        graph.add_pass("host").read(to, gpu::Usage::host_read).keep();
+        SUNFLECK_TRY(graph.compile());
+        gpu::FrameResources resources(device());
+        return graph.execute(commands, resources, nullptr);
+    }));
+    std::vector<std::int32_t> values(std::size_t(description.size) / 4);
+    std::memcpy(values.data(), target.mapped(), description.size);
+    return values;
+}
+
+// Boxes wander through a room for 5,000 changes of place, two million of light maps; large ones hide whole patches from
+// samples, so light maps change all the time. At the end they equal maps that know nothing of the past, to the last
+// bit.
+TEST_F(ManyLightTest, LightMapsNeverDrift) {
+    const auto make = [](assets::SceneBuilder& s) {
+        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+        s.room(vec3(-3, 0, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
+               {{"lamp", vec2(0), 1.0f, 1.0f, vec3(20.0f)}});
+        for (int i = 0; i < 10; ++i) {
+            scene::Transform transform;
+            transform.position = vec3(0.0f, 1.0f, 0.0f);
+            const ecs::Entity box =
+                s.add("box", scene::make_box(vec3(1.6f, 1.6f, 0.2f)), assets::diffuse(vec3(0.5f)), transform);
+            s.mover(box, {});
+        }
+        s.camera("view", vec3(2.5f, 1.5f, 2.5f), vec3(0.0f, 1.0f, 0.0f), 60.0f);
+    };
+    GpuWorld world(make, "view");
+    gi::Settings settings;
+    settings.lights = 100;
+    settings.shadow_map_resolution = 16;
+    world.set(settings);
+    world.request.width = 16;
+    world.request.height = 16;
+    std::vector<ecs::Entity> boxes;
+    world.renderer->registry().view<scene::Mover>().each(
+        [&](ecs::Entity entity, const scene::Mover&) { boxes.push_back(entity); });
+    ASSERT_EQ(boxes.size(), 10u);
+    std::mt19937 random(21);
+    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
+    std::uint64_t updates = 0;
+    world.render();
+    for (int frame = 0; frame < 500; ++frame) {
+        for (const ecs::Entity box : boxes)
+            world.renderer->registry().patch<scene::Transform>(box, [&](scene::Transform& transform) {
+                transform.position = vec3(uniform(-3, 3), uniform(0, 3), uniform(-3, 3));
+                transform.rotation = glm::angleAxis(uniform(0, 6), vec3(0, 1, 0));
+            });
+        world.render();
+        updates += world.renderer->lighting().counters().light_map_updates;
+    }
+    std::printf("%llu light map updates\n", static_cast<unsigned long long>(updates));
+    EXPECT_GT(updates, 10000u);
+    const auto kept = read_texels(world, world.renderer->lighting().many_light().light_maps());
+    // Another seed and back: samples, database and light maps are made anew.
+    settings.seed = 2;
+    world.set(settings);
+    world.render();
+    settings.seed = 1;
+    world.set(settings);
+    world.render();
+    const auto fresh = read_texels(world, world.renderer->lighting().many_light().light_maps());
+    ASSERT_EQ(kept.size(), fresh.size());
+    EXPECT_EQ(kept, fresh);
+    EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
+}
+
+TEST_F(ManyLightTest, AnyNumberOfSamplesAndAnyMovers) {
+    GpuWorld world(assets::make_two_rooms, "bench_1");
+    world.request.width = 48;
+    world.request.height = 36;
+    std::vector<ecs::Entity> movers;
+    world.renderer->registry().view<scene::Mover>().each(
+        [&](ecs::Entity entity, const scene::Mover&) { movers.push_back(entity); });
+    ASSERT_FALSE(movers.empty());
+    for (const std::uint32_t lights : {0u, 1u, 2049u, 65536u}) {
+        gi::Settings settings;
+        settings.lights = lights;
+        world.set(settings);
+        for (int frame = 0; frame < 3; ++frame) {
+            world.renderer->registry().patch<scene::Transform>(movers[0], [&](scene::Transform& transform) {
+                transform.position = frame == 0                 ? vec3(1e4f)
+                                     : frame == 1 && lights > 0 ? world.renderer->lighting().samples()[0].position
+                                                                : vec3(0.0f);
+                transform.scale = vec3(frame == 2 ? 0.0f : 1.0f);
+            });
+            world.request.step = std::uint64_t(frame);
+            const io::Picture picture = world.picture();
+            for (const vec4& pixel : picture.pixels)
+                ASSERT_TRUE(is_finite(vec3(pixel)) && pixel.r >= 0.0f);
+            const gi::Counters& counters = world.renderer->lighting().counters();
+            EXPECT_EQ(counters.light_samples, lights);
+            const gi::VisibilityCounters& pairs = counters.visibility;
+            EXPECT_EQ(pairs.full + pairs.partial + pairs.none + pairs.unlit,
+                      std::uint64_t(lights) * (counters.surface_patches + movers.size()));
+        }
+    }
+}
+
+TEST_F(ManyLightTest, ManyObjectsComeAndGo) {
+    GpuWorld world(assets::make_four_pillars, "bench_1");
+    world.request.width = 48;
+    world.request.height = 36;
+    gi::Settings settings;
+    settings.lights = 40;
+    settings.shadow_map_resolution = 32;
+    world.set(settings);
+    ecs::Registry& registry = world.renderer->registry();
+    const std::uint32_t mesh = world.renderer->meshes().add(scene::make_box(vec3(0.1f)));
+    ASSERT_TRUE(world.renderer->upload_meshes());
+    std::mt19937 random(4);
+    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
+    std::vector<ecs::Entity> objects;
+    for (int i = 0; i < 2000; ++i) {
+        const ecs::Entity entity = registry.create();
+        scene::Transform transform;
+        transform.position = vec3(uniform(-3.9f, 3.9f), uniform(0, 3.4f), uniform(-3.9f, 3.9f));
+        registry.emplace<scene::Transform>(entity, transform);
+        registry.emplace<scene::MeshInstance>(entity, {mesh});
+        registry.emplace<scene::Material>(entity);
+        if (i % 4 == 0) // a quarter moves
+            registry.emplace<scene::Mover>(entity);
+        objects.push_back(entity);
+    }
+    std::uint64_t memory = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+        for (int i = 0; i < 10; ++i) {
+            const ecs::Entity entity = objects[std::size_t(random() % objects.size()) / 4 * 4];
+            if (registry.alive(entity))
+                registry.patch<scene::Transform>(entity, [&](scene::Transform& t) { t.position.x = uniform(-5, 5); });
+        }
+        if (frame == 10)
+            for (std::size_t i = 0; i < objects.size(); i += 8)
+                registry.destroy(objects[i]);
+        world.render();
+        const std::uint64_t bytes = device().memory().total();
+        if (frame == 15)
+            memory = bytes;
+        if (frame > 15) {
+            EXPECT_LE(bytes, memory);
+        }
+    }
+}
+
+} // namespace
+} // namespace sunfleck::tests

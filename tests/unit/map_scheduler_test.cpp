@@ -1,0 +1,67 @@
+// The order in which shadow maps are redrawn.
+#include "gi_module/shadows/map_scheduler.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace sunfleck::gi {
+namespace {
+
+std::vector<LightSample> samples_of(std::size_t count, std::mt19937& random) {
+    std::vector<LightSample> samples(count);
+    for (LightSample& sample : samples) {
+        sample.flux = vec3(std::pow(10.0f, float(random() % 1000) / 100.0f - 5.0f)); // ten orders of magnitude
+        sample.bounce = random() % 4;
+    }
+    return samples;
+}
+
+// Every frame all maps become stale again; whatever its flux, none waits longer than 8 * ceil(stale / budget) frames.
+TEST(MapScheduler, NoMapStarves) {
+    std::mt19937 random(17);
+    for (const MapPriority priority : {MapPriority::contribution, MapPriority::flux_and_age, MapPriority::age})
+        for (const std::uint32_t budget : {1u, 7u, 100u, 300u, 1000u}) {
+            const auto samples = samples_of(300, random);
+            MapScheduler scheduler;
+            scheduler.reset(samples.size());
+            const std::uint32_t limit = 8 * ((300 + budget - 1) / budget);
+            std::vector<std::uint32_t> waited(samples.size(), 0);
+            const int frames = budget == 1 ? 6000 : 600;
+            for (int frame = 0; frame < frames; ++frame) {
+                scheduler.advance();
+                for (std::uint32_t i = 0; i < samples.size(); ++i)
+                    scheduler.mark(i);
+                for (std::uint32_t& frames_waited : waited)
+                    ASSERT_LE(++frames_waited, limit);
+                const auto chosen = scheduler.choose(samples, priority, budget);
+                ASSERT_EQ(chosen.size(), std::min<std::size_t>(budget, 300));
+                ASSERT_TRUE(std::is_sorted(chosen.begin(), chosen.end()));
+                scheduler.done(chosen);
+                for (const std::uint32_t i : chosen)
+                    waited[i] = 0;
+            }
+        }
+}
+
+TEST(MapScheduler, BrightMapsGoFirstAndFreshOnesNotAtAll) {
+    std::mt19937 random(3);
+    auto samples = samples_of(10, random);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        samples[i].flux = vec3(float(i), 0.0f, 0.0f);
+    MapScheduler scheduler;
+    scheduler.reset(samples.size());
+    EXPECT_EQ(scheduler.choose(samples, MapPriority::flux_and_age, 2), (std::vector<std::uint32_t>{8, 9}));
+    EXPECT_TRUE(scheduler.is_static_stale(3));
+    scheduler.done(std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+    EXPECT_EQ(scheduler.stale(), 0u);
+    EXPECT_FALSE(scheduler.is_static_stale(3));
+    scheduler.mark(4);
+    EXPECT_EQ(scheduler.choose(samples, MapPriority::flux_and_age, 5), (std::vector<std::uint32_t>{4}));
+    EXPECT_FALSE(scheduler.is_static_stale(4));
+    EXPECT_TRUE(scheduler.choose(samples, MapPriority::flux_and_age, 0).empty());
+}
+
+} // namespace
+} // namespace sunfleck::gi
