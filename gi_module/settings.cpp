@@ -52,7 +52,12 @@ const TypeDescription& Settings::description() {
          SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "contribution",
                          "flux_and_age", "age"),
          SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,
-                        "Visibility tests begin with clusters of samples and groups of patches")}};
+                        "Visibility tests begin with clusters of samples and groups of patches"),
+         SUNFLECK_FIELD(
+             Settings, count_passes, "", 0, 1,
+             "Counts the render passes that a renderer with a few lights a pass would need, before and after "
+             "merging them"),
+         SUNFLECK_FIELD(Settings, lights_per_pass, "", 1, 64, "Lights of such a pass")}};
     return type;
 }
 

@@ -49,6 +49,8 @@ struct Settings {
     std::uint32_t map_budget = 100; // shadow maps a frame
     MapPriority map_priority = MapPriority::flux_and_age;
     bool cluster_tests = true;
+    bool count_passes = false;
+    std::uint32_t lights_per_pass = 7;
 
     static const TypeDescription& description();
     // Defaults, with the baseline as the technique for all light.

@@ -19,6 +19,7 @@
 #include "gi_module/brute_force/brute_force.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/many_light/many_light.h"
+#include "gi_module/many_light/pass_optimisation.h"
 #include "gi_module/settings.h"
 #include "gi_module/shadows/map_scheduler.h"
 #include "gi_module/transport/g_buffer.h"
@@ -40,6 +41,8 @@ struct FrameInput {
     std::uint32_t map_budget = 0xffffffffu;
     // False colours of the many-light system in place of the irradiance: shared::show_... (many_light_shared.h).
     std::uint32_t show = 0;
+    // World to clip; only for Settings::count_passes.
+    mat4 view_projection{1.0f};
 };
 
 // Of the last update and, for what the GPU counts, of the newest frame that is complete.
@@ -56,6 +59,7 @@ struct Counters {
     std::uint64_t light_map_updates = 0;
     std::uint64_t light_map_texels = 0;
     ManyLightCounters pixels;
+    std::uint64_t render_passes = 0, render_passes_unoptimised = 0; // with Settings::count_passes
     double clamped_flux = 0;       // W over the visible surface, luminance; needs settings.count_clamped
     double clamped_irradiance = 0; // W/m2, mean over pixels
 };
@@ -104,6 +108,7 @@ private:
     void update_rows(const Bounds& bounds, const raytrace::RayScene& rays);
     void update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
                            bool static_changed);
+    void count_passes();
     void mark_by_visibility();
     void mark_by_bounds(const scene::GpuScene& gpu_scene);
     Result<std::vector<LightBatch>> make_batches(std::uint32_t first, std::uint32_t count);
@@ -127,6 +132,10 @@ private:
     std::vector<std::uint32_t> to_draw_;
     VisibilityDatabase database_;
     VisibilityOptions database_options_;
+    PassOptimiser passes_;
+    std::uint64_t passes_generation_ = 0; // of the database
+    std::uint32_t passes_lights_ = 0;
+    std::map<std::uint32_t, LightSet> seen_nodes_;
     std::uint64_t database_samples_ = 0; // the set of samples that the database knows
     std::uint64_t database_geometry_ = 0;
     bool samples_valid_ = false;

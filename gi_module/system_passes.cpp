@@ -1,6 +1,8 @@
 // The half of gi::System that declares GPU work.
 #include "gi_module/system.h"
 
+#include "gi_module/many_light/visible_nodes.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -129,9 +131,30 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     counters_.light_map_updates = many_light_->light_maps().counters().updates;
     counters_.light_map_texels = many_light_->light_maps().counters().texels;
     counters_.pixels = many_light_->counters();
+    count_passes();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     cpu_times_["light lists"] += elapsed.count();
     return {};
+}
+
+// Nodes that left the view are drawn no longer; the rest keeps its elements from frame to frame.
+void System::count_passes() {
+    if (!settings_.count_passes)
+        return;
+    if (passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass) {
+        passes_ = PassOptimiser(settings_.lights_per_pass);
+        passes_generation_ = database_.generation();
+        passes_lights_ = settings_.lights_per_pass;
+        seen_nodes_.clear();
+    }
+    std::map<std::uint32_t, LightSet> changed = tested_lights_of_visible_nodes(database_, input_.view_projection);
+    const std::map<std::uint32_t, LightSet> seen = changed;
+    for (const auto& [node, lights] : seen_nodes_)
+        changed.try_emplace(node, LightSet(lights.size(), 0));
+    passes_.update(changed);
+    seen_nodes_ = seen;
+    counters_.render_passes = passes_.passes();
+    counters_.render_passes_unoptimised = passes_.passes_unoptimised();
 }
 
 } // namespace sunfleck::gi

@@ -80,6 +80,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.show = request.show;
+    input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
     SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
     return {};
 }

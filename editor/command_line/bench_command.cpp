@@ -1,5 +1,5 @@
 // sunfleck bench: named experiments. Times are medians over repeats; speed is read as a ratio within one run.
-#include "editor/command_line/bench_table.h"
+#include "editor/command_line/bench_runner.h"
 
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
@@ -11,62 +11,6 @@
 
 namespace sunfleck::command_line {
 namespace {
-
-struct BenchOptions {
-    std::string suite, csv, plot, device, scene;
-    bool as_json = false;
-    std::uint32_t repeat = 5;
-};
-
-// A scene loaded and ready to render frame after frame.
-struct Bench {
-    static Result<std::unique_ptr<Bench>> create(const BenchOptions& options, const std::string& scene,
-                                                 const std::string& camera, Size size) {
-        auto bench = std::make_unique<Bench>();
-        SUNFLECK_ASSIGN(bench->device, gpu::Device::create({options.device, false, {}}));
-        SUNFLECK_ASSIGN(bench->renderer, viewer::SceneRenderer::create(*bench->device));
-        SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(scene));
-        SUNFLECK_ASSIGN(const io::ImportReport report, bench->renderer->load(path));
-        const Bounds bounds = viewer::scene_bounds(bench->renderer->registry(), bench->renderer->meshes());
-        SUNFLECK_ASSIGN(bench->request.camera, viewer::find_camera(bench->renderer->registry(), bounds, camera));
-        bench->start = bench->request.camera;
-        bench->request.width = size.width;
-        bench->request.height = size.height;
-        bench->request.ev100 = viewer::scene_exposure(bench->renderer->registry());
-        return bench;
-    }
-    // Renders `warmup` frames unmeasured, then `frames` measured ones; movers and camera move on.
-    Result<Measurement> measure(const gi::Settings& settings, std::uint32_t warmup, std::uint32_t frames, bool motion) {
-        SUNFLECK_TRY(renderer->lighting().set_settings(settings));
-        Measurement measurement;
-        for (std::uint32_t i = 0; i < warmup + frames; ++i) {
-            request.camera = start.orbited(glm::radians(0.25f) * float(i));
-            request.step = motion ? step++ : 0;
-            SUNFLECK_TRY(renderer->render_and_wait(request));
-            if (i < warmup)
-                continue;
-            const viewer::FrameStatistics& statistics = renderer->statistics();
-            measurement.frame_ms.push_back(statistics.frame_ms);
-            measurement.cpu_ms.push_back(statistics.cpu_ms);
-            measurement.gpu_ms.push_back(statistics.gpu_ms);
-            measurement.counters = statistics.counters;
-        }
-        return measurement;
-    }
-    static double gpu_median(const Measurement& measurement, const std::string& pass) {
-        std::vector<double> values;
-        for (const auto& frame : measurement.gpu_ms)
-            if (const auto found = frame.find(pass); found != frame.end())
-                values.push_back(found->second);
-        return median(values);
-    }
-
-    std::unique_ptr<gpu::Device> device;
-    std::unique_ptr<viewer::SceneRenderer> renderer;
-    viewer::FrameRequest request;
-    scene::CameraView start;
-    std::uint64_t step = 0;
-};
 
 // ns for each light and pixel of every shape that the kernel can take. Shapes take turns, so that a slow spell of the
 // machine touches all alike.
@@ -296,6 +240,8 @@ Status run(const BenchOptions& options) {
             return bench_shadow_maps(options);
         if (options.suite == "convergence")
             return bench_convergence(options, plot);
+        if (options.suite == "thesis")
+            return bench_thesis(options, plot);
         return bench_reference(options);
     };
     SUNFLECK_ASSIGN(const BenchTable table, start());
@@ -308,9 +254,12 @@ Status run(const BenchOptions& options) {
         SUNFLECK_TRY(write_file(options.csv, table.csv()));
     if (!options.plot.empty()) {
         if (plot.empty())
-            return Error{"--plot: the suite '" + options.suite + "' has no plot (convergence has)"};
-        SUNFLECK_TRY(write_file(options.plot, plot_svg("Error against the path tracer, brute force, five seeds",
-                                                       "light samples", "RMSE of irradiance, W/m2", plot)));
+            return Error{"--plot: the suite '" + options.suite + "' has no plot (convergence and thesis have)"};
+        const bool thesis = options.suite == "thesis";
+        SUNFLECK_TRY(write_file(
+            options.plot,
+            plot_svg(thesis ? "Frame time, 1024x768" : "Error against the path tracer, brute force, five seeds",
+                     "light samples", thesis ? "ms a frame" : "RMSE of irradiance, W/m2", plot)));
     }
     return {};
 }
@@ -325,10 +274,11 @@ Command make_bench_command(CLI::App& program) {
                 "brute_force  frame and pass times for 64, 300 and 1,024 samples at 640x360 and 1024x768\n"
                 "shadow_maps  microseconds per map and per thousand vertices\n"
                 "convergence  error against the path tracer over the number of samples (--plot)\n"
-                "reference    rays per second of the path tracer");
+                "reference    rays per second of the path tracer\n"
+                "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5");
     app->add_option("SUITE", options->suite, "Name of the experiment")
         ->required()
-        ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference"}));
+        ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"}));
     app->add_flag("--json", options->as_json, "Print one JSON object");
     app->add_option("--csv", options->csv, "Write the rows as CSV");
     app->add_option("--plot", options->plot, "Write a plot as SVG");

@@ -1,0 +1,16 @@
+// Which nodes of the visibility database a view may show, and with which lights they need shadow tests.
+#pragma once
+
+#include "gi_module/many_light/pass_optimisation.h"
+#include "gi_module/visibility/visibility_database.h"
+
+namespace sunfleck::gi {
+
+// Whether any of a box may lie in the view. `view_projection`: world to clip, reverse depth without a far plane.
+bool may_be_seen(const mat4& view_projection, const Bounds& bounds);
+
+// Of the leaves and movers that the view may show: the samples in state "partial", by node.
+std::map<std::uint32_t, LightSet> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
+                                                                 const mat4& view_projection);
+
+} // namespace sunfleck::gi
