@@ -57,7 +57,9 @@ const TypeDescription& Settings::description() {
              Settings, count_passes, "", 0, 1,
              "Counts the render passes that a renderer with a few lights a pass would need, before and after "
              "merging them"),
-         SUNFLECK_FIELD(Settings, lights_per_pass, "", 1, 64, "Lights of such a pass")}};
+         SUNFLECK_FIELD(Settings, lights_per_pass, "", 1, 64, "Lights of such a pass"),
+         SUNFLECK_FIELD(Settings, pass_extras, "", 0, 1,
+                        "Such passes may test lights that an object does not need, where that changes nothing")}};
     return type;
 }
 

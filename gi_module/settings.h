@@ -51,6 +51,7 @@ struct Settings {
     bool cluster_tests = true;
     bool count_passes = false;
     std::uint32_t lights_per_pass = 7;
+    bool pass_extras = true;
 
     static const TypeDescription& description();
     // Defaults, with the baseline as the technique for all light.

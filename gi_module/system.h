@@ -60,6 +60,7 @@ struct Counters {
     std::uint64_t light_map_texels = 0;
     ManyLightCounters pixels;
     std::uint64_t render_passes = 0, render_passes_unoptimised = 0; // with Settings::count_passes
+    double pass_fill = 1.0;        // pairs of node and light in the passes, over those needed
     double clamped_flux = 0;       // W over the visible surface, luminance; needs settings.count_clamped
     double clamped_irradiance = 0; // W/m2, mean over pixels
 };
@@ -135,7 +136,8 @@ private:
     PassOptimiser passes_;
     std::uint64_t passes_generation_ = 0; // of the database
     std::uint32_t passes_lights_ = 0;
-    std::map<std::uint32_t, LightSet> seen_nodes_;
+    bool passes_extras_ = false;
+    std::map<std::uint32_t, PassLights> seen_nodes_;
     std::uint64_t database_samples_ = 0; // the set of samples that the database knows
     std::uint64_t database_geometry_ = 0;
     bool samples_valid_ = false;

@@ -141,19 +141,24 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
 void System::count_passes() {
     if (!settings_.count_passes)
         return;
-    if (passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass) {
+    if (passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass ||
+        passes_extras_ != settings_.pass_extras) {
         passes_ = PassOptimiser(settings_.lights_per_pass);
         passes_generation_ = database_.generation();
         passes_lights_ = settings_.lights_per_pass;
+        passes_extras_ = settings_.pass_extras;
         seen_nodes_.clear();
     }
-    std::map<std::uint32_t, LightSet> changed = tested_lights_of_visible_nodes(database_, input_.view_projection);
-    const std::map<std::uint32_t, LightSet> seen = changed;
-    for (const auto& [node, lights] : seen_nodes_)
-        changed.try_emplace(node, LightSet(lights.size(), 0));
+    auto changed = tested_lights_of_visible_nodes(database_, input_.view_projection, settings_.pass_extras);
+    const auto seen = changed;
+    for (const auto& [node, lights] : seen_nodes_) {
+        const LightSet none(lights.needed.size(), 0);
+        changed.try_emplace(node, PassLights{none, none});
+    }
     passes_.update(changed);
     seen_nodes_ = seen;
     counters_.render_passes = passes_.passes();
+    counters_.pass_fill = passes_.fill();
     counters_.render_passes_unoptimised = passes_.passes_unoptimised();
 }
 

@@ -28,12 +28,13 @@ struct Bench {
         bench->request.ev100 = viewer::scene_exposure(bench->renderer->registry());
         return bench;
     }
-    // Renders `warmup` frames unmeasured, then `frames` measured ones; movers and camera move on.
+    // Renders `warmup` frames unmeasured, then `frames` measured ones; movers and camera move on. Measured frames begin
+    // at the camera's own place, however long the warm-up.
     Result<Measurement> measure(const gi::Settings& settings, std::uint32_t warmup, std::uint32_t frames, bool motion) {
         SUNFLECK_TRY(renderer->lighting().set_settings(settings));
         Measurement measurement;
         for (std::uint32_t i = 0; i < warmup + frames; ++i) {
-            request.camera = start.orbited(glm::radians(0.25f) * float(i));
+            request.camera = start.orbited(glm::radians(0.25f) * (float(i) - float(warmup)));
             request.step = motion ? step++ : 0;
             SUNFLECK_TRY(renderer->render_and_wait(request));
             if (i < warmup)

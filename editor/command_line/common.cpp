@@ -179,6 +179,7 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
                         {"shadow_maps_stale", counters.shadow_maps_stale},
                         {"light_batches", counters.light_batches},
                         {"render_passes", counters.render_passes},
+                        {"pass_fill", counters.pass_fill},
                         {"render_passes_unoptimised", counters.render_passes_unoptimised},
                         {"clamped_flux", counters.clamped_flux},
                         {"clamped_irradiance", counters.clamped_irradiance},

@@ -16,27 +16,32 @@ std::uint32_t count(const LightSet& set) {
 
 } // namespace
 
-std::uint32_t PassOptimiser::passes_of(const LightSet& lights) const {
-    return (count(lights) + lights_per_pass_ - 1) / lights_per_pass_;
+std::int64_t PassOptimiser::passes_for(std::uint32_t lights) const {
+    const std::uint32_t passes = (lights + lights_per_pass_ - 1) / lights_per_pass_;
+    return 2 * std::int64_t(passes + passes % 2);
 }
 
+std::int64_t PassOptimiser::passes_of(const LightSet& lights) const {
+    return passes_for(count(lights));
+}
+
+// Lights that move to the merged element: what one needs and the other needs or tolerates.
 std::int64_t PassOptimiser::passes_saved(const PassElement& a, const PassElement& b) const {
-    std::uint32_t in_a = 0, in_b = 0, in_both = 0;
+    std::uint32_t in_a = 0, in_b = 0, left_a = 0, left_b = 0, shared = 0;
     for (std::size_t i = 0; i < a.lights.size(); ++i) {
+        const std::uint64_t both = (a.lights[i] & b.harmless[i]) | (b.lights[i] & a.harmless[i]);
         in_a += std::uint32_t(std::popcount(a.lights[i]));
         in_b += std::uint32_t(std::popcount(b.lights[i]));
-        in_both += std::uint32_t(std::popcount(a.lights[i] & b.lights[i]));
+        left_a += std::uint32_t(std::popcount(a.lights[i] & ~both));
+        left_b += std::uint32_t(std::popcount(b.lights[i] & ~both));
+        shared += std::uint32_t(std::popcount(both));
     }
-    const auto passes_for = [&](std::uint32_t lights) {
-        return std::int64_t((lights + lights_per_pass_ - 1) / lights_per_pass_);
-    };
-    return passes_for(in_a) + passes_for(in_b) -
-           (passes_for(in_a - in_both) + passes_for(in_b - in_both) + passes_for(in_both));
+    return passes_for(in_a) + passes_for(in_b) - (passes_for(left_a) + passes_for(left_b) + passes_for(shared));
 }
 
-void PassOptimiser::add_element(std::uint32_t object, const LightSet& lights) {
-    if (count(lights) > 0)
-        elements_.push_back({{object}, lights});
+void PassOptimiser::add_element(std::uint32_t object, const PassLights& lights) {
+    if (count(lights.needed) > 0)
+        elements_.push_back({{object}, lights.needed, lights.harmless});
 }
 
 void PassOptimiser::consider(std::size_t a, std::size_t b) {
@@ -63,10 +68,16 @@ void PassOptimiser::merge(std::size_t a, std::size_t b) {
     std::set_union(elements_[a].objects.begin(), elements_[a].objects.end(), elements_[b].objects.begin(),
                    elements_[b].objects.end(), std::back_inserter(merged.objects));
     merged.lights.resize(elements_[a].lights.size());
+    merged.harmless = merged.lights;
     for (std::size_t i = 0; i < merged.lights.size(); ++i) {
-        merged.lights[i] = elements_[a].lights[i] & elements_[b].lights[i];
+        merged.lights[i] =
+            (elements_[a].lights[i] & elements_[b].harmless[i]) | (elements_[b].lights[i] & elements_[a].harmless[i]);
+        merged.harmless[i] = elements_[a].harmless[i] & elements_[b].harmless[i];
         elements_[a].lights[i] &= ~merged.lights[i];
         elements_[b].lights[i] &= ~merged.lights[i];
+        // Drawn once, such a light is not harmless any more.
+        elements_[a].harmless[i] &= ~merged.lights[i];
+        elements_[b].harmless[i] &= ~merged.lights[i];
     }
     elements_.push_back(std::move(merged));
     best_.push_back({});
@@ -107,14 +118,14 @@ void PassOptimiser::rebuild() {
     merge_all();
 }
 
-void PassOptimiser::update(const std::map<std::uint32_t, LightSet>& changed) {
-    std::map<std::uint32_t, LightSet> different;
+void PassOptimiser::update(const std::map<std::uint32_t, PassLights>& changed) {
+    std::map<std::uint32_t, PassLights> different;
     for (const auto& [object, lights] : changed) {
         const auto known = objects_.find(object);
-        if (known != objects_.end() ? known->second == lights : count(lights) == 0)
+        if (known != objects_.end() ? known->second == lights : count(lights.needed) == 0)
             continue;
         different[object] = lights;
-        if (count(lights) == 0)
+        if (count(lights.needed) == 0)
             objects_.erase(object);
         else
             objects_[object] = lights;
@@ -139,15 +150,24 @@ void PassOptimiser::update(const std::map<std::uint32_t, LightSet>& changed) {
 std::uint64_t PassOptimiser::passes_unoptimised() const {
     std::uint64_t sum = 0;
     for (const auto& [object, lights] : objects_)
-        sum += passes_of(lights);
+        sum += std::uint64_t(passes_of(lights.needed));
     return sum;
 }
 
 std::uint64_t PassOptimiser::passes() const {
     std::uint64_t sum = 0;
     for (const PassElement& element : elements_)
-        sum += passes_of(element.lights);
+        sum += std::uint64_t(passes_of(element.lights));
     return sum;
+}
+
+double PassOptimiser::fill() const {
+    double drawn = 0, needed = 0;
+    for (const PassElement& element : elements_)
+        drawn += double(element.objects.size()) * double(count(element.lights));
+    for (const auto& [object, lights] : objects_)
+        needed += double(count(lights.needed));
+    return needed > 0 ? drawn / needed : 1.0;
 }
 
 } // namespace sunfleck::gi

@@ -17,17 +17,24 @@ bool may_be_seen(const mat4& view_projection, const Bounds& bounds) {
     return !(outside[0] || outside[1] || outside[2] || outside[3] || outside[4]);
 }
 
-std::map<std::uint32_t, LightSet> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
-                                                                 const mat4& view_projection) {
-    std::map<std::uint32_t, LightSet> result;
+std::map<std::uint32_t, PassLights> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
+                                                                   const mat4& view_projection, bool extras) {
+    std::map<std::uint32_t, PassLights> result;
     const auto& patches = database.patches().nodes();
     for (std::uint32_t node = 0; node < database.node_count(); ++node) {
         if (node < patches.size() && (!patches[node].is_leaf() || !may_be_seen(view_projection, patches[node].bounds)))
             continue;
-        LightSet lights((database.sample_count() + 63) / 64, 0);
-        for (std::uint32_t sample = 0; sample < database.sample_count(); ++sample)
-            if (database.state(node, sample) == PairState::partial)
-                lights[sample / 64] |= std::uint64_t(1) << (sample % 64);
+        PassLights lights;
+        lights.needed.resize((database.sample_count() + 63) / 64, 0);
+        lights.harmless = lights.needed;
+        for (std::uint32_t sample = 0; sample < database.sample_count(); ++sample) {
+            const PairState state = database.state(node, sample);
+            const std::uint64_t bit = std::uint64_t(1) << (sample % 64);
+            if (state == PairState::partial)
+                lights.needed[sample / 64] |= bit;
+            if (state == PairState::partial || (extras && state != PairState::full))
+                lights.harmless[sample / 64] |= bit;
+        }
         result[node] = std::move(lights);
     }
     return result;

@@ -9,8 +9,9 @@ namespace sunfleck::gi {
 // Whether any of a box may lie in the view. `view_projection`: world to clip, reverse depth without a far plane.
 bool may_be_seen(const mat4& view_projection, const Bounds& bounds);
 
-// Of the leaves and movers that the view may show: the samples in state "partial", by node.
-std::map<std::uint32_t, LightSet> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
-                                                                 const mat4& view_projection);
+// Of the leaves and movers that the view may show: the samples in state "partial", and with `extras` those that are
+// harmless to test besides (all but the blocked ones), by node.
+std::map<std::uint32_t, PassLights> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
+                                                                   const mat4& view_projection, bool extras);
 
 } // namespace sunfleck::gi
