@@ -37,28 +37,31 @@ bool covers_gate(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon
     return true;
 }
 
+// Whether the segment from a corner to the light passes through a convex body that lies between them.
+bool crosses(const std::vector<Plane>& body, dvec3 corner, dvec3 direction, bool parallel) {
+    double enter = -1e300, leave = 1e300;
+    for (const Plane& plane : body) {
+        const double start = plane.distance(corner) - 1e-7, slope = glm::dot(plane.normal, direction);
+        if (std::abs(slope) < 1e-14) {
+            if (start < 0.0)
+                return false;
+            continue;
+        }
+        const double t = -start / slope;
+        if (slope > 0.0)
+            enter = std::max(enter, t);
+        else
+            leave = std::min(leave, t);
+    }
+    return enter < leave && enter >= earliest && (parallel || enter <= latest);
+}
+
 bool covers_gate(const OcclusionPyramid& pyramid, const std::vector<Plane>& body) {
     if (pyramid.gate_count == 0)
         return false;
-    for (const dvec3& corner : pyramid.gate_points()) {
-        const dvec3 direction = pyramid.to_light(corner);
-        double enter = -1e300, leave = 1e300;
-        for (const Plane& plane : body) {
-            const double start = plane.distance(corner) - 1e-7, slope = glm::dot(plane.normal, direction);
-            if (std::abs(slope) < 1e-14) {
-                if (start < 0.0)
-                    return false;
-                continue;
-            }
-            const double t = -start / slope;
-            if (slope > 0.0)
-                enter = std::max(enter, t);
-            else
-                leave = std::min(leave, t);
-        }
-        if (enter >= leave || enter < earliest || (!pyramid.parallel && enter > latest))
+    for (const dvec3& corner : pyramid.gate_points())
+        if (!crosses(body, corner, pyramid.to_light(corner), pyramid.parallel))
             return false;
-    }
     return true;
 }
 
@@ -89,6 +92,12 @@ MovingBlocker::MovingBlocker(const scene::Mesh& mesh) : local_bounds_(mesh.bound
                 local_polygons_.push_back(std::move(polygon));
     if (local_polygons_.size() > simple_polygons)
         local_polygons_.clear();
+    is_box_ = convex_ && local_polygons_.size() == 6;
+    for (const Polygon& polygon : local_polygons_)
+        for (const dvec3& point : polygon)
+            for (int axis = 0; axis < 3 && is_box_; ++axis)
+                is_box_ = std::abs(std::abs(point[axis] - double(local_bounds_.centre()[axis])) -
+                                   0.5 * double(local_bounds_.extent()[axis])) < 1e-6;
     polygons_ = local_polygons_;
     place(mat4(1.0f));
 }
@@ -101,6 +110,29 @@ void MovingBlocker::place(const mat4& matrix) {
     for (std::size_t i = 0; i < polygons_.size(); ++i)
         for (std::size_t k = 0; k < polygons_[i].size(); ++k)
             polygons_[i][k] = dvec3(vec3(matrix * vec4(vec3(local_polygons_[i][k]), 1.0f)));
+    planes_.clear();
+    for (std::size_t i = 0; is_box_ && i < polygons_.size(); ++i) {
+        const dvec3 area = area_vector(polygons_[i]), to_centre = box_.centre - polygons_[i][0];
+        const double length = glm::length(area);
+        if (!(length > 1e-12)) { // squeezed flat: nothing is inside
+            planes_.assign(1, {dvec3(0.0), -1.0});
+            break;
+        }
+        const dvec3 inward = (glm::dot(area, to_centre) < 0.0 ? -area : area) / length;
+        planes_.push_back({inward, -glm::dot(inward, polygons_[i][0])});
+    }
+}
+
+bool MovingBlocker::may_cover(const LightSample& sample, std::span<const dvec3, 4> corners) const {
+    const bool parallel = sample.kind == SampleKind::directional;
+    for (const dvec3& corner : corners) {
+        const dvec3 direction = parallel ? -dvec3(sample.normal) : dvec3(sample.position) - corner;
+        if (sample.kind == SampleKind::surface && glm::dot(dvec3(sample.normal), direction) >= 0.0)
+            continue; // behind the sample's surface: not of the lit part
+        if (!crosses(planes_, corner, direction, parallel))
+            return false;
+    }
+    return true;
 }
 
 Blocking MovingBlocker::test(const OcclusionPyramid& pyramid) const {
@@ -108,6 +140,8 @@ Blocking MovingBlocker::test(const OcclusionPyramid& pyramid) const {
         return Blocking::none;
     if (polygons_.empty())
         return Blocking::partial;
+    if (is_box_)
+        return covers_gate(pyramid, planes_) ? Blocking::full : Blocking::partial;
     bool any = false;
     for (const Polygon& polygon : polygons_) {
         if (!enters(pyramid, polygon))
@@ -204,6 +238,58 @@ Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
         }
     }
     return any ? Blocking::partial : Blocking::none;
+}
+
+bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
+    if (nodes_.empty())
+        return false;
+    std::array<std::uint32_t, 64> stack;
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    const auto meets = [&](const Bounds& bounds) {
+        double enter = 0.0, leave = 1.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double low = double(bounds.minimum[axis]) - 1e-6 - from[axis];
+            const double high = double(bounds.maximum[axis]) + 1e-6 - from[axis];
+            if (std::abs(along[axis]) < 1e-12) {
+                if (low > 0.0 || high < 0.0)
+                    return false;
+                continue;
+            }
+            const double a = low / along[axis], b = high / along[axis];
+            enter = std::max(enter, std::min(a, b));
+            leave = std::min(leave, std::max(a, b));
+        }
+        return enter <= leave;
+    };
+    while (depth > 0) {
+        const Node& node = nodes_[stack[--depth]];
+        if (!meets(node.bounds))
+            continue;
+        if (node.count == 0) {
+            stack[depth++] = node.first;
+            stack[depth++] = node.right;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            const Polygon& polygon = polygons_[order_[i]];
+            const dvec3 normal = area_vector(polygon);
+            const double slope = glm::dot(normal, along);
+            if (std::abs(slope) < 1e-14)
+                continue;
+            const double t = glm::dot(normal, polygon[0] - from) / slope;
+            if (t < 0.0 || t > 1.0)
+                continue;
+            const dvec3 point = from + t * along;
+            bool inside = true;
+            for (std::size_t k = 0; k < polygon.size() && inside; ++k)
+                inside = glm::dot(glm::cross(normal, polygon[(k + 1) % polygon.size()] - polygon[k]),
+                                  point - polygon[k]) >= 0.0;
+            if (inside)
+                return true;
+        }
+    }
+    return false;
 }
 
 } // namespace sunfleck::gi

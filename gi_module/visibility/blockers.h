@@ -24,6 +24,10 @@ public:
     Blocking test(const OcclusionPyramid& pyramid) const;
     // Only the box is known: it blocks partially or not at all.
     bool complex() const { return polygons_.empty(); }
+    // The object is its box.
+    bool is_box() const { return is_box_; }
+    // Of a box: whether it may take all light from the sample to a patch with these corners. Cheap, and false for most.
+    bool may_cover(const LightSample& sample, std::span<const dvec3, 4> corners) const;
     const OrientedBox& box() const { return box_; }
     const Bounds& bounds() const { return bounds_; }
     // A convex closed body does not shadow itself: what it hides faces away from the light.
@@ -33,7 +37,8 @@ private:
     Bounds local_bounds_, bounds_;
     OrientedBox box_;
     std::vector<Polygon> local_polygons_, polygons_; // empty: complex
-    bool convex_ = false;
+    std::vector<Plane> planes_;                      // of a box, inside is positive
+    bool convex_ = false, is_box_ = false;
 };
 
 // All static geometry: a tree of polygons.
@@ -45,6 +50,8 @@ public:
     void build();
 
     Blocking test(const OcclusionPyramid& pyramid) const;
+    // Whether anything crosses the segment from `from` to `from + along`.
+    bool crosses_segment(dvec3 from, dvec3 along) const;
     std::size_t polygons() const { return polygons_.size(); }
 
 private:

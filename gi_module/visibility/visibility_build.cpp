@@ -114,6 +114,20 @@ PairState VisibilityDatabase::decide_box(const OrientedBox& box, const LightSamp
     return pyramid ? state_of(static_blockers_.test(*pyramid)) : PairState::unlit;
 }
 
+// Movers shadow themselves, so all that static geometry can add is to hide them: if their middle is in sight, it does
+// not.
+PairState VisibilityDatabase::decide_mover(const MovingBlocker& mover, const LightSample& sample) const {
+    const auto pyramid = pyramid_of_box(sample, mover.box());
+    if (!pyramid)
+        return PairState::unlit;
+    const dvec3 middle = mover.box().centre;
+    const bool parallel = sample.kind == SampleKind::directional;
+    const dvec3 to_light = parallel ? -1e4 * dvec3(sample.normal) : dvec3(sample.position) - middle;
+    if (!static_blockers_.crosses_segment(middle, to_light))
+        return PairState::partial;
+    return static_blockers_.test(*pyramid) == Blocking::full ? PairState::full : PairState::partial;
+}
+
 void VisibilityDatabase::make_clusters() {
     clusters_.clear();
     Bounds bounds;

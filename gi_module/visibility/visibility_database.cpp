@@ -40,6 +40,10 @@ bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bound
         return false;
     if (light.kind == SampleKind::directional)
         return true;
+    Bounds hull = patch.bounds;
+    hull.add(light.position);
+    if (!overlap(hull, mover))
+        return false;
     const vec3 to_middle = middle - light.position;
     if (light.kind == SampleKind::surface && glm::dot(light.normal, to_middle) < -radius)
         return false;
@@ -120,13 +124,21 @@ void VisibilityDatabase::descend(std::uint32_t node, std::uint32_t sample, const
         return;
     const SurfacePatch& patch = patches_.nodes()[node];
     const LightSample& light = samples_[sample];
-    if (options_.clustered && !may_shadow(light, patch, blocker.bounds()))
-        return;
     ++tests;
+    if (!options_.clustered) { // the thesis's way: every pair by its pyramid
+        const auto pyramid =
+            patch.planar ? pyramid_of_patch(light, patch.corners, patch.normal) : pyramid_of_box(light, patch.box);
+        if (!pyramid || !may_enter(*pyramid, blocker.box()))
+            return;
+    }
+    if (!may_shadow(light, patch, blocker.bounds()))
+        return;
     Blocking blocking = Blocking::none;
     if (!patch.planar || may_enter_patch(light, patch.corners, patch.normal, blocker.box())) {
         blocking = Blocking::partial;
-        if (!blocker.complex() || !patch.planar) {
+        const bool settled =
+            patch.planar && (blocker.complex() || (blocker.is_box() && !blocker.may_cover(light, patch.corners)));
+        if (!settled) {
             const auto pyramid =
                 patch.planar ? pyramid_of_patch(light, patch.corners, patch.normal) : pyramid_of_box(light, patch.box);
             if (!pyramid)
@@ -280,15 +292,18 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
 void VisibilityDatabase::set_mover_row(std::uint32_t slot) {
     const std::uint32_t node = std::uint32_t(patches_.nodes().size()) + slot;
     const auto mover = movers_.find(mover_slots_[slot].bits());
+    std::vector<PairState> fixed(samples_.size(), PairState::unlit);
+    if (mover != movers_.end() && !mover_slots_[slot].is_null()) {
+        counters_.tests += samples_.size();
+        parallel_for_chunks(samples_.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t sample = begin; sample < end; ++sample)
+                fixed[sample] = decide_mover(mover->second.blocker, samples_[sample]);
+        });
+    }
     for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
-        const PairState before =
-            PairState((rows_[std::size_t(node) * words_per_row() + sample / 16] >> (sample % 16 * 2)) & 3u);
-        PairState fixed = PairState::unlit;
-        if (mover != movers_.end() && !mover_slots_[slot].is_null()) {
-            ++counters_.tests;
-            fixed = decide_box(mover->second.blocker.box(), samples_[sample]);
-        }
-        static_states_[at(node, sample)] = std::uint8_t(fixed);
+        const std::uint32_t word = rows_[std::size_t(node) * words_per_row() + sample / 16];
+        const PairState before = PairState((word >> (sample % 16 * 2)) & 3u);
+        static_states_[at(node, sample)] = std::uint8_t(fixed[sample]);
         record(node, sample, before, state(node, sample));
     }
 }

@@ -14,7 +14,7 @@
 // parent settles (none, full), its children inherit without tests.
 //
 // Movers are nodes, too. They shadow themselves and each other, so between "unlit", "full" (by static geometry) and
-// "partial" they have no state "none"; whether static geometry is clear is in `static_state`.
+// "partial" they have no state "none".
 #pragma once
 
 #include "gi_module/visibility/surface_patches.h"
@@ -118,6 +118,7 @@ private:
     void split_and_decide();
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
     PairState decide_box(const OrientedBox& box, const LightSample& sample) const;
+    PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();
     std::uint32_t make_group(std::vector<std::uint32_t> roots);
     // Roots that a mover may shadow from a cluster of samples.
