@@ -22,6 +22,11 @@ const TypeDescription& Settings::description() {
          SUNFLECK_CHOICE(Settings, termination,
                          "Walks end at the bounce limit only, or also at random with equally strong samples",
                          "bounce_limit", "russian_roulette"),
+         SUNFLECK_FIELD(
+             Settings, candidates, "", 1, 1024,
+             "Reflected samples are made from so many times as many, like ones joined; 1: as walks leave them"),
+         SUNFLECK_FIELD(Settings, spread, "", 0, 1,
+                        "Where like samples are kept apart: 0 where most flux is, 1 where most surface is"),
          SUNFLECK_FIELD(Settings, shadow_map_resolution, "texels", 8, 2048, "Side of a map; more is sharper"),
          SUNFLECK_FIELD(Settings, shadow_map_bits, "bits", 16, 32, "16 or 32 bits a texel"),
          SUNFLECK_FIELD(Settings, shadow_memory, "MiB", 1, 65536,

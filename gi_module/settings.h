@@ -29,6 +29,10 @@ struct Settings {
     Sequence sequence = Sequence::sobol;
     Termination termination = Termination::russian_roulette;
 
+    // Reflected samples are chosen from so many times as many (light_sampling/sample_clusters.h); 1: as they come.
+    std::uint32_t candidates = 32;
+    float spread = 0.5f;
+
     std::uint32_t shadow_map_resolution = 256;
     std::uint32_t shadow_map_bits = 16;
     float shadow_memory = 512.0f; // MiB

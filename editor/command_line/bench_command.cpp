@@ -161,6 +161,7 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
             std::vector<double> errors;
             for (std::uint32_t seed = 1; seed <= 5; ++seed) {
                 gi::Settings settings = gi::Settings::brute_force();
+                settings.candidates = 1; // as walks leave them
                 settings.lights = lights;
                 settings.direct_share = 0.5f;
                 settings.seed = seed;

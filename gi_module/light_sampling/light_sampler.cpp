@@ -1,5 +1,7 @@
 #include "gi_module/light_sampling/light_sampler.h"
 
+#include "gi_module/light_sampling/sample_clusters.h"
+
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
 
@@ -14,6 +16,7 @@ constexpr float lift_distance = 1e-3f; // m
 constexpr float ray_offset = 1e-4f;    // m, off the surface that a walk leaves
 constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
+constexpr std::uint64_t most_candidates = 1u << 18;
 
 SequenceKind sequence_kind(const Settings& settings) {
     return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
@@ -245,19 +248,24 @@ std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, s
         cumulative.push_back(total += double(luminance(emitter.flux)));
     std::vector<LightSample> samples;
     std::uint32_t walks = 0;
-    while (samples.size() < count && walks < walk_limit) {
+    // With clusters, several times as many are drawn, and like ones are then joined.
+    const std::uint64_t wanted = std::max<std::uint64_t>(
+        count, std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, most_candidates));
+    while (samples.size() < wanted && walks < walk_limit) {
         // Rounds run in parallel; walks are then taken in order until there are enough.
         std::vector<std::vector<LightSample>> round(walks_per_round);
         parallel_for_chunks(walks_per_round, 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 round[i] = walk(emitters, cumulative, walks + std::uint32_t(i), settings, rays);
         });
-        for (std::size_t i = 0; i < round.size() && samples.size() < count; ++i, ++walks)
+        for (std::size_t i = 0; i < round.size() && samples.size() < wanted; ++i, ++walks)
             samples.insert(samples.end(), round[i].begin(), round[i].end());
     }
     if (walks > 0)
         for (LightSample& sample : samples)
             sample.flux /= float(walks);
+    if (settings.candidates > 1)
+        return cluster_samples(samples, count, settings.spread, settings.seed);
     return thin_out(std::move(samples), count, settings.seed);
 }
 

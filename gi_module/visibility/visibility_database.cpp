@@ -22,17 +22,18 @@ double radius_of(const Bounds& bounds) {
     return 0.5 * double(glm::length(bounds.extent()));
 }
 
-// Whether a sphere may meet the hull of two boxes: the hull lies in a capsule around both.
+// Whether a sphere may meet the hull of two boxes: the hull lies in a capsule around both. Its slack is wider than
+// may_shadow's, so that groups never leave out a pair that would be accepted by itself.
 bool may_meet_hull(const Bounds& a, const Bounds& b, const Bounds& sphere_of) {
     const dvec3 start(a.centre()), along = dvec3(b.centre()) - start, point(sphere_of.centre());
     const double square = glm::dot(along, along);
     const double t = square > 0.0 ? std::clamp(glm::dot(point - start, along) / square, 0.0, 1.0) : 0.0;
-    return glm::length(start + t * along - point) <= radius_of(sphere_of) + std::max(radius_of(a), radius_of(b)) + 1e-4;
+    const double reach = radius_of(sphere_of) + std::max(radius_of(a), radius_of(b));
+    return glm::length(start + t * along - point) <= reach * 1.002 + 1e-3;
 }
 
 // Whether anything in the sphere around `mover` may stand between the light and the patch: cheap, and errs on the side
-// of yes. A point q between the light p and a point of the sphere (c, R) around the patch is p + s (b - p) with s in
-// [0, 1] and b in that sphere: it is at most s R from the axis, and s (D - R) along it at least, with D = |c - p|.
+// of yes. All light travels in the hull of the light's point and a sphere around the patch: a cone that ends in a ball.
 bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bounds& mover) {
     const vec3 middle = mover.centre();
     const float radius = 0.5f * glm::length(mover.extent()) * 1.0001f + 1e-5f;
@@ -52,12 +53,19 @@ bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bound
     const float distance = glm::length(axis);
     if (distance <= patch_radius)
         return true;
+    // In the plane of the axis and the mover's middle: distance from the cone's side, from its tip or from the ball.
     const float along = glm::dot(to_middle, axis) / distance;
-    if (along < -radius || along > distance + patch_radius + radius)
-        return false;
-    const float share = std::min((along + radius) / (distance - patch_radius), 1.0f);
-    const float reach = share * patch_radius + radius;
-    return glm::dot(to_middle, to_middle) - along * along <= reach * reach * 1.001f;
+    const float across = std::sqrt(std::max(glm::dot(to_middle, to_middle) - along * along, 0.0f));
+    const float sine = patch_radius / distance, cosine = std::sqrt(1.0f - sine * sine);
+    const float along_side = along * cosine + across * sine;
+    float gap;
+    if (along_side < 0.0f)
+        gap = glm::length(to_middle);
+    else if (along_side > distance * cosine)
+        gap = glm::length(to_middle - axis) - patch_radius;
+    else
+        gap = across * cosine - along * sine;
+    return gap <= radius + 1e-4f;
 }
 
 } // namespace
@@ -125,12 +133,6 @@ void VisibilityDatabase::descend(std::uint32_t node, std::uint32_t sample, const
     const SurfacePatch& patch = patches_.nodes()[node];
     const LightSample& light = samples_[sample];
     ++tests;
-    if (!options_.clustered) { // the thesis's way: every pair by its pyramid
-        const auto pyramid =
-            patch.planar ? pyramid_of_patch(light, patch.corners, patch.normal) : pyramid_of_box(light, patch.box);
-        if (!pyramid || !may_enter(*pyramid, blocker.box()))
-            return;
-    }
     if (!may_shadow(light, patch, blocker.bounds()))
         return;
     Blocking blocking = Blocking::none;

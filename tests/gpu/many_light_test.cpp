@@ -20,6 +20,7 @@ struct Pair {
         baseline.shadow_filter = settings.shadow_filter;
         baseline.shadow_map_resolution = settings.shadow_map_resolution;
         baseline.bounces = settings.bounces;
+        baseline.candidates = settings.candidates;
         brute.set(baseline);
     }
     void size(std::uint32_t width, std::uint32_t height) {

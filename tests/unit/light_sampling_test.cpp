@@ -1,5 +1,6 @@
 #include "assets/test_rooms.h"
 #include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/light_sampling/sample_clusters.h"
 #include "gi_module/reference/path_tracer.h"
 
 #include "engine/core/jobs.h"
@@ -266,6 +267,48 @@ TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
         }
     }
     EXPECT_GT(occluded, 1000);
+}
+
+// Clusters keep the flux of all candidates, in expectation by channel and exactly in luminance, and every sample is one
+// that a walk has left.
+TEST(LightSampling, ClustersKeepTheFlux) {
+    const World world(assets::make_gap_room);
+    Settings plain;
+    plain.candidates = 1;
+    const auto many = sample_indirect(world.emitters, 20000, plain, *world.rays);
+    for (const float spread : {0.0f, 0.5f, 1.0f})
+        for (const std::uint32_t count : {1u, 7u, 225u}) {
+            const auto few = cluster_samples(many, count, spread, 1);
+            ASSERT_EQ(few.size(), count);
+            EXPECT_NEAR(total_luminance(few) / total_luminance(many), 1.0, 1e-4);
+            for (const LightSample& sample : few) {
+                EXPECT_TRUE(std::any_of(many.begin(), many.end(),
+                                        [&](const LightSample& s) { return s.position == sample.position; }));
+            }
+        }
+}
+
+// Thesis sec. 6.1, fig. 6-1: few walks pass the gap, so what plain walks say of the light behind it is mostly noise.
+// With clusters of 32 times as many walks, its variance over seeds falls by that order.
+TEST(LightSampling, ClustersKnowTheDarkSideOfTheGap) {
+    const World world(assets::make_gap_room);
+    const auto variance = [&](std::uint32_t candidates) {
+        double sum = 0, squares = 0;
+        constexpr int seeds = 24;
+        for (int seed = 1; seed <= seeds; ++seed) {
+            Settings settings;
+            settings.candidates = candidates;
+            settings.seed = std::uint32_t(seed);
+            double flux = 0;
+            for (const LightSample& sample : sample_indirect(world.emitters, 225, settings, *world.rays))
+                flux += sample.position.x > 0.15f ? double(luminance(sample.flux)) : 0.0;
+            sum += flux / seeds;
+            squares += flux * flux / seeds;
+        }
+        EXPECT_GT(sum, 0.0);
+        return (squares - sum * sum) / (sum * sum);
+    };
+    EXPECT_LT(4.0 * variance(32), variance(1));
 }
 
 } // namespace

@@ -86,6 +86,12 @@ Agreement compare_with_rays(World& world, const VisibilityDatabase& database, in
             const PairState state = database.state(n, s);
             if (state == PairState::unlit)
                 continue;
+            // Where the sample is less than a centimetre over the patch's plane, 10^-4 of its height is less than the
+            // micrometre that single precision resolves here: a ray's end may lie inside the patch itself.
+            const LightSample& lamp = world.samples[s];
+            if (lamp.kind != SampleKind::directional &&
+                glm::dot(patch.normal, dvec3(lamp.position) - patch.corners[0]) < 0.01)
+                continue;
             // Many rays for one pair in eight, which decide usefulness; few for the others.
             const int count = random() % 8 == 0 ? rays_per_pair : 4;
             int facing = 0, blocked = 0;

@@ -1,0 +1,18 @@
+// Fewer, better placed samples from many: the samples of several times as many walks are divided into clusters of like
+// place and orientation, and each cluster is stood for by one of its own samples with the flux of all. The thesis
+// suggests it in sec. 6.1 (samples spread evenly in space, weighted by the walks that reach their region); the division
+// follows the global cuts of B. Walter et al., "Lightcuts", 2005.
+#pragma once
+
+#include "gi_module/transport/light_sample.h"
+
+#include <vector>
+
+namespace sunfleck::gi {
+
+// At most `count` samples. Expectation is kept: a cluster's sample is drawn in proportion to flux. `spread` 0 divides
+// where most flux is, 1 where most surface is.
+std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples, std::uint32_t count, float spread,
+                                         std::uint32_t seed);
+
+} // namespace sunfleck::gi
