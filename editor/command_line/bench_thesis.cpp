@@ -306,6 +306,7 @@ Status quality(Experiment& experiment) {
             gi::Settings settings = many_light(lights);
             settings.shadow_map_resolution = resolution;
             settings.clamp_scale = 2000.0f / float(lights); // the same bound for all
+            settings.low_resolution = 1;                    // so small a picture would show little else
             SUNFLECK_ASSIGN(const io::Picture image, picture(settings));
             experiment.value("5-8", "area_room", "relative MSE, maps of " + std::to_string(resolution), lights,
                              compare_pictures(image, reference, true).relative_mean_square_error,
