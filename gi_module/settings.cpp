@@ -52,8 +52,9 @@ const TypeDescription& Settings::description() {
                         "Static geometry's part of shadow maps is kept; only movers are redrawn"),
          SUNFLECK_FIELD(Settings, map_detail, "", 0, 1,
                         "Movers are drawn into shadow maps with as much detail as a texel shows"),
-         SUNFLECK_FIELD(Settings, map_budget, "maps", 0, 65536,
-                        "Shadow maps redrawn in a frame at most; fewer is faster, and shadows of movers lag behind"),
+         SUNFLECK_FIELD(
+             Settings, map_budget, "maps", 0, 65536,
+             "Shadow maps that movers changed, redrawn in a frame at most; fewer is faster, and shadows lag behind"),
          SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "contribution",
                          "flux_and_age", "age"),
          SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,

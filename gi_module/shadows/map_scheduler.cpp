@@ -25,14 +25,23 @@ std::size_t MapScheduler::stale() const {
 
 std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,
                                                 std::uint32_t budget) const {
-    std::vector<std::uint32_t> chosen;
+    std::vector<std::uint32_t> chosen, unusable;
     for (std::uint32_t i = 0; i < age_.size(); ++i)
-        if (age_[i] > 0)
+        if (static_stale_[i] != 0)
+            unusable.push_back(i);
+        else if (age_[i] > 0)
             chosen.push_back(i);
-    if (chosen.size() <= budget)
+    // Maps without a valid static part show nothing that is true: they are drawn whatever the budget.
+    budget -= std::min(budget, std::uint32_t(unusable.size()));
+    const auto joined = [&] {
+        chosen.insert(chosen.end(), unusable.begin(), unusable.end());
+        std::sort(chosen.begin(), chosen.end());
         return chosen;
+    };
+    if (chosen.size() <= budget)
+        return joined();
     if (budget == 0)
-        return {};
+        return unusable;
     const std::uint32_t overdue = 4 * std::uint32_t((chosen.size() + budget - 1) / budget);
     struct Rank {
         bool overdue;
@@ -51,8 +60,7 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
         return ra.overdue != rb.overdue ? ra.overdue : ra.weight > rb.weight;
     });
     chosen.resize(budget);
-    std::sort(chosen.begin(), chosen.end());
-    return chosen;
+    return joined();
 }
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {

@@ -28,7 +28,8 @@ public:
     // Stale maps are a frame older. Once a frame, before marking.
     void advance();
 
-    // Samples whose maps are to be redrawn, in rising order.
+    // Samples whose maps are to be redrawn, in rising order: all whose static part is stale, and others up to the
+    // budget.
     std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority,
                                       std::uint32_t budget) const;
     // The maps show the present.
