@@ -257,8 +257,9 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         mark_by_visibility();
     else
         mark_by_bounds(gpu_scene);
-    const std::uint32_t budget =
-        uses_many_light() ? std::min(input.map_budget, settings_.map_budget) : input.map_budget;
+    // The host's budget is a limit; the setting's is exceeded for maps that could not be used otherwise.
+    const std::uint32_t wanted = std::max(settings_.map_budget, std::uint32_t(scheduler_.unusable()));
+    const std::uint32_t budget = uses_many_light() ? std::min(input.map_budget, wanted) : input.map_budget;
     to_draw_ =
         settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
     counters_.light_samples = samples_.size();

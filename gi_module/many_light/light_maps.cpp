@@ -18,7 +18,7 @@ bool reaches(PairState state) {
 } // namespace
 
 Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
-    std::unique_ptr<LightMaps> maps(new LightMaps(device, pipelines));
+    std::unique_ptr<LightMaps> maps(new LightMaps(device));
     gpu::ComputeDescription description;
     description.shader = "gi_module/many_light/light_maps.comp";
     description.bindings.assign(4, gpu::BindingKind::storage_buffer);

@@ -43,12 +43,11 @@ public:
     const LightMapCounters& counters() const { return counters_; }
 
 private:
-    LightMaps(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    explicit LightMaps(gpu::Device& device) : device_(device) {}
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
     void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
 
     gpu::Device& device_;
-    gpu::PipelineStore& pipelines_;
     std::vector<shared::NodeRow> node_rows_;
     gpu::Buffer texels_;
     float fixed_point_ = 1.0f;

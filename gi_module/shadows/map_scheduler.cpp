@@ -23,27 +23,23 @@ std::size_t MapScheduler::stale() const {
     return std::size_t(std::count_if(age_.begin(), age_.end(), [](std::uint32_t age) { return age > 0; }));
 }
 
+std::size_t MapScheduler::unusable() const {
+    return std::size_t(std::count(static_stale_.begin(), static_stale_.end(), std::uint8_t(1)));
+}
+
 std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,
                                                 std::uint32_t budget) const {
-    std::vector<std::uint32_t> chosen, unusable;
+    std::vector<std::uint32_t> chosen;
     for (std::uint32_t i = 0; i < age_.size(); ++i)
-        if (static_stale_[i] != 0)
-            unusable.push_back(i);
-        else if (age_[i] > 0)
+        if (age_[i] > 0)
             chosen.push_back(i);
-    // Maps without a valid static part show nothing that is true: they are drawn whatever the budget.
-    budget -= std::min(budget, std::uint32_t(unusable.size()));
-    const auto joined = [&] {
-        chosen.insert(chosen.end(), unusable.begin(), unusable.end());
-        std::sort(chosen.begin(), chosen.end());
-        return chosen;
-    };
     if (chosen.size() <= budget)
-        return joined();
+        return chosen;
     if (budget == 0)
-        return unusable;
+        return {};
     const std::uint32_t overdue = 4 * std::uint32_t((chosen.size() + budget - 1) / budget);
     struct Rank {
+        bool unusable; // nothing that the map shows is true
         bool overdue;
         float weight;
     };
@@ -53,14 +49,17 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
         const float age = float(age_[i]);
         const bool late = age_[i] >= overdue;
         const float share = priority == MapPriority::contribution && samples[i].bounce == 0 ? direct_weight : 1.0f;
-        return {late, late || priority == MapPriority::age ? age : age * brightest * share};
+        return {is_static_stale(i), late, late || priority == MapPriority::age ? age : age * brightest * share};
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](std::uint32_t a, std::uint32_t b) {
         const Rank ra = rank(a), rb = rank(b);
+        if (ra.unusable != rb.unusable)
+            return ra.unusable;
         return ra.overdue != rb.overdue ? ra.overdue : ra.weight > rb.weight;
     });
     chosen.resize(budget);
-    return joined();
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
 }
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {

@@ -40,6 +40,8 @@ public:
     std::uint32_t frames_out_of_date(std::uint32_t sample) const { return age_[sample]; }
     std::span<const std::uint32_t> ages() const { return age_; }
     std::size_t stale() const;
+    // Maps whose static part is stale: they show nothing that is true.
+    std::size_t unusable() const;
     std::size_t size() const { return age_.size(); }
 
 private:

@@ -102,10 +102,8 @@ std::vector<VisibilityDatabase::Blocker> VisibilityDatabase::blockers(std::uint3
 }
 
 std::uint32_t VisibilityDatabase::mover_node(ecs::Entity entity) const {
-    const auto found = std::find(mover_slots_.begin(), mover_slots_.end(), entity);
-    return found == mover_slots_.end()
-               ? shared::no_node
-               : std::uint32_t(patches_.nodes().size()) + std::uint32_t(found - mover_slots_.begin());
+    const auto found = movers_.find(entity.bits());
+    return found == movers_.end() ? shared::no_node : std::uint32_t(patches_.nodes().size()) + found->second.slot;
 }
 
 void VisibilityDatabase::candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group,
@@ -255,11 +253,11 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             ++it;
             continue;
         }
-        const std::uint32_t node = mover_node(it->second.entity);
-        mark_affected(node);
+        const std::uint32_t slot = it->second.slot;
+        mark_affected(mover_node(it->second.entity));
         replace_footprints(it->second, false);
-        mover_slots_[node - patches_.nodes().size()] = ecs::null_entity;
-        set_mover_row(node - std::uint32_t(patches_.nodes().size()));
+        mover_slots_[slot] = ecs::null_entity;
+        set_mover_row(slot);
         it = movers_.erase(it);
     }
     for (const auto& [bits, place] : present) {
@@ -277,6 +275,7 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             if (free == mover_slots_.end())
                 free = mover_slots_.insert(free, ecs::null_entity);
             *free = place->entity;
+            mover.slot = std::uint32_t(free - mover_slots_.begin());
             grow_rows();
         } else {
             mark_affected(mover_node(mover.entity));
@@ -284,7 +283,7 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         mover.matrix = place->matrix;
         mover.blocker.place(place->matrix);
         const std::uint32_t node = mover_node(mover.entity);
-        set_mover_row(node - std::uint32_t(patches_.nodes().size()));
+        set_mover_row(mover.slot);
         mark_affected(node);
         replace_footprints(mover, true);
     }

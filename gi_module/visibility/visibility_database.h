@@ -98,6 +98,7 @@ private:
     struct Mover {
         ecs::Entity entity;
         std::uint32_t mesh = 0;
+        std::uint32_t slot = 0;
         mat4 matrix{1.0f};
         MovingBlocker blocker;
         // By sample: node * 2 + (full ? 1 : 0), sorted.

@@ -167,31 +167,10 @@ TEST_F(ManyLightTest, UmbraStaysDark) {
 }
 
 std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps) {
-    gpu::BufferDescription description;
-    description.name = "light map read-back";
-    description.size = maps.counters().texels * 16;
-    description.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    description.memory = gpu::MemoryUse::readback;
-    const gpu::Buffer target = gpu::Buffer::create(device(), description).value();
-    EXPECT_TRUE(world.renderer->submission().immediate([&](VkCommandBuffer commands) -> Status {
-        gpu::FrameGraph graph(&device());
-        const auto from = graph.import_buffer(maps.texels()), to = graph.import_buffer(target);
-        graph.add_pass("copy")
-            .read(from, gpu::Usage::transfer_source)
-            .write(to, gpu::Usage::transfer_destination)
-            .execute([&](gpu::PassContext& context) -> Status {
-                const VkBufferCopy region{0, 0, description.size};
-                context.device.vk.vkCmdCopyBuffer(context.commands, maps.texels().handle(), target.handle(), 1,
-                                                  &region);
-                return {};
-            });
-        graph.add_pass("host").read(to, gpu::Usage::host_read).keep();
-        SUNFLECK_TRY(graph.compile());
-        gpu::FrameResources resources(device());
-        return graph.execute(commands, resources, nullptr);
-    }));
-    std::vector<std::int32_t> values(std::size_t(description.size) / 4);
-    std::memcpy(values.data(), target.mapped(), description.size);
+    const std::uint64_t bytes = maps.counters().texels * 16;
+    const gpu::Buffer target = read_back(world, maps.texels(), bytes);
+    std::vector<std::int32_t> values(std::size_t(bytes) / 4);
+    std::memcpy(values.data(), target.mapped(), bytes);
     return values;
 }
 

@@ -21,29 +21,7 @@ struct Maps {
         const gi::ShadowMaps& maps = lighting.shadow_maps();
         resolution = maps.resolution();
         const std::size_t count = std::size_t(resolution) * resolution * maps.slots();
-        gpu::BufferDescription description;
-        description.name = "map read-back";
-        description.size = count * bits / 8;
-        description.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-        description.memory = gpu::MemoryUse::readback;
-        const gpu::Buffer target = gpu::Buffer::create(device(), description).value();
-        EXPECT_TRUE(world.renderer->submission().immediate([&](VkCommandBuffer commands) -> Status {
-            gpu::FrameGraph graph(&device());
-            const auto from = graph.import_buffer(maps.texels()), to = graph.import_buffer(target);
-            graph.add_pass("copy")
-                .read(from, gpu::Usage::transfer_source)
-                .write(to, gpu::Usage::transfer_destination)
-                .execute([&](gpu::PassContext& context) -> Status {
-                    const VkBufferCopy region{0, 0, description.size};
-                    context.device.vk.vkCmdCopyBuffer(context.commands, maps.texels().handle(), target.handle(), 1,
-                                                      &region);
-                    return {};
-                });
-            graph.add_pass("host").read(to, gpu::Usage::host_read).keep();
-            SUNFLECK_TRY(graph.compile());
-            gpu::FrameResources resources(device());
-            return graph.execute(commands, resources, nullptr);
-        }));
+        const gpu::Buffer target = read_back(world, maps.texels(), count * bits / 8);
         values.resize(count);
         for (std::size_t i = 0; i < count; ++i)
             values[i] = bits == 16 ? float(reinterpret_cast<const std::uint16_t*>(target.mapped())[i]) / 65535.0f

@@ -86,4 +86,31 @@ struct GpuWorld {
     viewer::FrameRequest request;
 };
 
+// The first `bytes` of a device buffer, in memory that the CPU reads.
+inline gpu::Buffer read_back(GpuWorld& world, const gpu::Buffer& source, std::uint64_t bytes) {
+    gpu::BufferDescription description;
+    description.name = "test read-back";
+    description.size = bytes;
+    description.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    description.memory = gpu::MemoryUse::readback;
+    gpu::Buffer target = gpu::Buffer::create(device(), description).value();
+    EXPECT_TRUE(world.renderer->submission().immediate([&](VkCommandBuffer commands) -> Status {
+        gpu::FrameGraph graph(&device());
+        const auto from = graph.import_buffer(source), to = graph.import_buffer(target);
+        graph.add_pass("copy")
+            .read(from, gpu::Usage::transfer_source)
+            .write(to, gpu::Usage::transfer_destination)
+            .execute([&](gpu::PassContext& context) -> Status {
+                const VkBufferCopy region{0, 0, bytes};
+                context.device.vk.vkCmdCopyBuffer(context.commands, source.handle(), target.handle(), 1, &region);
+                return {};
+            });
+        graph.add_pass("host").read(to, gpu::Usage::host_read).keep();
+        SUNFLECK_TRY(graph.compile());
+        gpu::FrameResources resources(device());
+        return graph.execute(commands, resources, nullptr);
+    }));
+    return target;
+}
+
 } // namespace sunfleck::tests
