@@ -15,6 +15,8 @@ const TypeDescription& Settings::description() {
                          "per_pixel", "static"),
          SUNFLECK_FIELD(Settings, lights, "", 0, 65536, "Number of light samples; more is smoother and slower"),
          SUNFLECK_FIELD(Settings, direct_share, "", 0, 1, "Share of the samples that lie on emitters"),
+         SUNFLECK_FIELD(Settings, dynamic_share, "", 0, 1,
+                        "Share of the samples for emitters that move or vary, where there are any"),
          SUNFLECK_FIELD(Settings, bounces, "", 0, 64, "How often light is reflected at most; 0 is direct light only"),
          SUNFLECK_FIELD(Settings, seed, "", 0, 4294967295.0, "Another seed is another set of samples"),
          SUNFLECK_CHOICE(Settings, sequence, "Random numbers of the samples; sobol is smoother at equal count",

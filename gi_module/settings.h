@@ -24,7 +24,9 @@ struct Settings {
 
     std::uint32_t lights = 300; // light samples, exactly
     float direct_share = 0.25f; // of the samples, for light from area emitters
-    std::uint32_t bounces = 5;  // reflections before the surface that is shown
+    // Of the samples, for emitters that move or vary, if there are any; they divide it by flux.
+    float dynamic_share = 0.15f;
+    std::uint32_t bounces = 5; // reflections before the surface that is shown
     std::uint32_t seed = 1;
     Sequence sequence = Sequence::sobol;
     Termination termination = Termination::russian_roulette;

@@ -52,8 +52,10 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
 bool same_sampling(const Settings& a, const Settings& b) {
     const auto without = [](auto technique) { return technique == std::remove_cvref_t<decltype(technique)>::none; };
     return without(a.direct) == without(b.direct) && without(a.indirect) == without(b.indirect) &&
-           a.movers == b.movers && a.lights == b.lights && a.direct_share == b.direct_share && a.bounces == b.bounces &&
-           a.seed == b.seed && a.sequence == b.sequence && a.termination == b.termination;
+           a.movers == b.movers && a.lights == b.lights && a.direct_share == b.direct_share &&
+           a.dynamic_share == b.dynamic_share && a.bounces == b.bounces && a.seed == b.seed &&
+           a.sequence == b.sequence && a.termination == b.termination && a.candidates == b.candidates &&
+           a.spread == b.spread;
 }
 
 } // namespace
@@ -100,7 +102,9 @@ bool System::uses_many_light() const {
 }
 
 bool System::needs_new_samples(const raytrace::RayScene& rays) {
-    const std::uint64_t hash = hash_emitters(emitters_);
+    std::uint64_t hash = hash_emitters(emitters_);
+    for (const Emitter& emitter : dynamic_emitters_) // only which they are
+        hash = hash * 0x100000001b3ull ^ (emitter.entity.bits() * 16 + std::uint64_t(emitter.kind));
     // Where movers count as static geometry, their every move makes new walks.
     const std::uint64_t geometry =
         settings_.movers == MoverHandling::as_static ? rays.generation() : rays.static_generation();
@@ -114,18 +118,95 @@ bool System::needs_new_samples(const raytrace::RayScene& rays) {
 }
 
 void System::make_samples(ecs::Registry& registry, const raytrace::RayScene& rays) {
-    const SampleBudget budget = divide_samples(settings_, emitters_);
-    samples_ = sample_direct(emitters_, budget.direct, settings_, rays);
-    const std::vector<LightSample> indirect = sample_indirect(emitters_, budget.indirect, settings_, rays);
+    Settings fixed = settings_; // what is left for emitters that stay
+    std::uint32_t share = 0;
+    if (!dynamic_emitters_.empty() && settings_.lights > 0)
+        share = emitters_.empty() ? settings_.lights
+                                  : std::min(settings_.lights,
+                                             std::max(std::uint32_t(float(settings_.lights) * settings_.dynamic_share),
+                                                      2 * std::uint32_t(dynamic_emitters_.size())));
+    dynamic_lights_.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, settings_, rays);
+    fixed.lights = settings_.lights - std::min(settings_.lights, std::uint32_t(dynamic_lights_.samples().size()));
+    const SampleBudget budget = divide_samples(fixed, emitters_);
+    samples_ = sample_direct(emitters_, budget.direct, fixed, rays);
+    const std::vector<LightSample> indirect = sample_indirect(emitters_, budget.indirect, fixed, rays);
     samples_.insert(samples_.end(), indirect.begin(), indirect.end());
+    const auto& moving = dynamic_lights_.samples();
+    samples_.insert(samples_.end(), moving.begin(), moving.end());
     std::stable_sort(samples_.begin(), samples_.end(), [](const LightSample& a, const LightSample& b) {
-        return light_class(a.kind) < light_class(b.kind);
+        return std::pair(light_class(a.kind), a.dynamic) < std::pair(light_class(b.kind), b.dynamic);
     });
+    // The order within their kind is the one that they came in.
+    std::vector<std::uint32_t> place(moving.size());
+    for (std::uint32_t i = 0; i < place.size(); ++i)
+        place[i] = i;
+    std::stable_sort(place.begin(), place.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return light_class(moving[a].kind) < light_class(moving[b].kind);
+    });
+    dynamic_samples_.assign(moving.size(), 0);
+    for (std::uint32_t i = 0, next = 0; i < samples_.size(); ++i)
+        if (samples_[i].dynamic)
+            dynamic_samples_[place[next++]] = i;
     for (std::uint32_t i = 0; i < samples_.size(); ++i)
         samples_[i].index = i;
     scheduler_.reset(samples_.size());
     ++sample_generation_;
     mirror_samples(registry);
+}
+
+// Those that move have samples of their own, and so have those that once changed their strength: the first change makes
+// new samples for all, later ones only scale.
+void System::find_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& bounds) {
+    emitters_ = collect_emitters(registry, meshes, bounds, varying_);
+    if (find_varying(registry))
+        emitters_ = collect_emitters(registry, meshes, bounds, varying_);
+    dynamic_emitters_.clear();
+    if (settings_.movers == MoverHandling::as_static)
+        return;
+    const auto moves = [&](const Emitter& emitter) {
+        return DynamicLights::can_follow(emitter.kind) && (emitter.moves || varying_.count(emitter.entity));
+    };
+    for (const Emitter& emitter : emitters_)
+        if (moves(emitter))
+            dynamic_emitters_.push_back(emitter);
+    std::erase_if(emitters_, moves);
+}
+
+// True if there are new ones. One that went out is noticed by its absence.
+bool System::find_varying(ecs::Registry& registry) {
+    std::map<ecs::Entity, vec3> flux;
+    for (const Emitter& emitter : emitters_)
+        if (DynamicLights::can_follow(emitter.kind) && !emitter.moves)
+            flux[emitter.entity] = emitter.flux;
+    const std::size_t had = varying_.size();
+    for (const auto& [entity, before] : last_flux_) {
+        const auto now = flux.find(entity);
+        const bool out = now == flux.end() && registry.alive(entity);
+        if (out || (now != flux.end() && now->second != before))
+            varying_.insert(entity);
+    }
+    last_flux_ = std::move(flux);
+    return varying_.size() != had;
+}
+
+void System::follow_dynamic_lights(ecs::Registry& registry, const raytrace::RayScene& rays) {
+    if (dynamic_samples_.empty())
+        return;
+    dynamic_lights_.update(dynamic_emitters_, rays);
+    for (std::size_t k = 0; k < dynamic_samples_.size(); ++k) {
+        const std::uint32_t i = dynamic_samples_[k];
+        const LightSample& now = dynamic_lights_.samples()[k];
+        if (!dynamic_lights_.moved()[k] && now.flux == samples_[i].flux)
+            continue;
+        samples_[i] = now;
+        samples_[i].index = i;
+        if (registry.alive(entities_[i]))
+            registry.emplace_or_replace<LightSample>(entities_[i], samples_[i]);
+        if (!dynamic_lights_.moved()[k])
+            continue;
+        changed_samples_.push_back(i);
+        scheduler_.mark_static(i);
+    }
 }
 
 void System::mirror_samples(ecs::Registry& registry) {
@@ -191,7 +272,10 @@ void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& 
         database_.build(registry, meshes, samples_, options);
         database_options_ = options;
         database_samples_ = sample_generation_;
+        changed_samples_.clear();
     }
+    database_.begin_frame();
+    database_.change_samples(samples_, changed_samples_);
     std::vector<MoverPlace> movers;
     for (const scene::DrawItem& item : gpu_scene.draws())
         if (!item.is_static)
@@ -236,10 +320,12 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     database_geometry_ = rays.static_generation();
     {
         const StageTimer timer(cpu_times_, "light samples");
-        emitters_ =
-            collect_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
+        find_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
+        changed_samples_.clear();
         if (needs_new_samples(rays))
             make_samples(registry, rays);
+        else
+            follow_dynamic_lights(registry, rays);
         if (static_changed)
             scheduler_.reset(samples_.size());
         SUNFLECK_TRY(configure_maps());
@@ -263,6 +349,8 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     to_draw_ =
         settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
     counters_.light_samples = samples_.size();
+    counters_.light_samples_dynamic = dynamic_samples_.size();
+    counters_.light_samples_moved = changed_samples_.size();
     counters_.light_samples_direct = std::uint64_t(
         std::count_if(samples_.begin(), samples_.end(), [](const LightSample& s) { return s.bounce == 0; }));
     return {};

@@ -17,6 +17,7 @@
 
 #include "engine/raytrace/ray_scene.h"
 #include "gi_module/brute_force/brute_force.h"
+#include "gi_module/light_sampling/dynamic_lights.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/many_light/many_light.h"
 #include "gi_module/many_light/pass_optimisation.h"
@@ -49,6 +50,8 @@ struct FrameInput {
 struct Counters {
     std::uint64_t light_samples = 0;
     std::uint64_t light_samples_direct = 0;
+    std::uint64_t light_samples_dynamic = 0; // of emitters that move or vary
+    std::uint64_t light_samples_moved = 0;   // in this frame
     std::uint64_t shadow_map_updates = 0;
     std::uint64_t shadow_map_faces = 0;
     std::uint64_t shadow_map_vertices = 0;
@@ -102,7 +105,10 @@ public:
 private:
     System(gpu::Device& device) : device_(device), resources_(device) {}
     bool uses_many_light() const;
+    void find_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& bounds);
+    bool find_varying(ecs::Registry& registry);
     bool needs_new_samples(const raytrace::RayScene& rays);
+    void follow_dynamic_lights(ecs::Registry& registry, const raytrace::RayScene& rays);
     void make_samples(ecs::Registry& registry, const raytrace::RayScene& rays);
     void mirror_samples(ecs::Registry& registry);
     Status configure_maps();
@@ -125,10 +131,16 @@ private:
     std::unique_ptr<BruteForce> brute_force_;
     std::unique_ptr<ManyLight> many_light_;
     Settings settings_, sampled_settings_;
-    std::vector<Emitter> emitters_;
-    std::vector<LightSample> samples_;   // grouped by class, direct before indirect
-    std::vector<shared::LightRow> rows_; // of the samples
-    std::vector<ecs::Entity> entities_;  // of the samples
+    std::vector<Emitter> emitters_;         // whose samples stay
+    std::vector<Emitter> dynamic_emitters_; // that move or vary
+    std::set<ecs::Entity> varying_;         // do not move, but have changed their strength
+    std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
+    DynamicLights dynamic_lights_;
+    std::vector<std::uint32_t> dynamic_samples_; // where each of theirs is among all
+    std::vector<std::uint32_t> changed_samples_; // in this frame
+    std::vector<LightSample> samples_;           // grouped by class, direct before indirect
+    std::vector<shared::LightRow> rows_;         // of the samples
+    std::vector<ecs::Entity> entities_;          // of the samples
     MapScheduler scheduler_;
     std::vector<std::uint32_t> to_draw_;
     VisibilityDatabase database_;

@@ -32,9 +32,10 @@ Result<std::vector<LightBatch>> System::make_batches(std::uint32_t first, std::u
         LightBatch batch;
         batch.first = place;
         batch.light_class = place < samples_.size() ? light_class(samples_[place].kind) : 0;
+        batch.dynamic = place < samples_.size() && samples_[place].dynamic;
         SUNFLECK_ASSIGN(batch.rows, resources_.allocate(sizeof(shared::LightRow) * shared::lights_per_batch));
         while (place < first + count && batch.count < shared::lights_per_batch &&
-               light_class(samples_[place].kind) == batch.light_class) {
+               light_class(samples_[place].kind) == batch.light_class && samples_[place].dynamic == batch.dynamic) {
             const shared::LightRow& row = rows_[place++];
             std::memcpy(batch.rows.data + sizeof row * batch.count++, &row, sizeof row);
         }
@@ -62,7 +63,8 @@ Status System::add_brute_force(gpu::FrameGraph& graph, const scene::GpuScene& gp
     const std::uint32_t slots = settings_.shadows ? std::max(shadow_maps_->slots(), 1u) : std::max(total, 1u);
     const bool slots_shared = total > slots;
     const bool one_batch = !slots_shared && total <= shared::lights_per_batch &&
-                           (total == 0 || light_class(samples_.front().kind) == light_class(samples_.back().kind));
+                           (total == 0 || (light_class(samples_.front().kind) == light_class(samples_.back().kind) &&
+                                           samples_.front().dynamic == samples_.back().dynamic));
     SUNFLECK_TRY(brute_force_->begin_frame(g_buffer.width, g_buffer.height, !one_batch, input_.serial,
                                            input_.completed_serial, resources_));
     counters_.clamped_flux = brute_force_->clamped().flux;

@@ -2,6 +2,7 @@
 
 #include "engine/core/description.h"
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 
@@ -12,7 +13,7 @@ struct Entity {
     std::uint32_t index = 0xffffffffu;
     std::uint32_t generation = 0;
 
-    bool operator==(const Entity&) const = default;
+    auto operator<=>(const Entity&) const = default;
     bool is_null() const { return index == 0xffffffffu; }
     EntityBits bits() const { return (EntityBits(generation) << 32) | index; }
     static Entity from_bits(EntityBits bits) { return {std::uint32_t(bits), std::uint32_t(bits >> 32)}; }

@@ -1,6 +1,7 @@
 #include "engine/io/scene_file.h"
 
 #include "engine/core/file.h"
+#include "engine/scene/simulation_components.h"
 
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -34,8 +35,11 @@ ComponentAccess access() {
 }
 
 const std::vector<ComponentAccess>& saved_components() {
-    static const std::vector<ComponentAccess> list = {access<scene::AreaLight>(), access<scene::Mover>(),
-                                                      access<scene::Exposure>(), access<scene::Environment>()};
+    static const std::vector<ComponentAccess> list = {access<scene::AreaLight>(),      access<scene::Mover>(),
+                                                      access<scene::Exposure>(),       access<scene::Environment>(),
+                                                      access<scene::SurfacePattern>(), access<scene::SplinePath>(),
+                                                      access<scene::RigidBody>(),      access<scene::LightSwitch>(),
+                                                      access<scene::PlayerStart>(),    access<scene::Lantern>()};
     return list;
 }
 

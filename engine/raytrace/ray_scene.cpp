@@ -28,10 +28,11 @@ bool same_geometry(const Instance& a, const Instance& b) {
     return a.entity == b.entity && a.mesh == b.mesh && a.matrix == b.matrix;
 }
 
-bool same_material(const scene::Material& a, const scene::Material& b) {
+// Whether walks from other emitters would go the same way.
+bool reflects_alike(const scene::Material& a, const scene::Material& b) {
     return a.base_colour == b.base_colour && a.metallic == b.metallic && a.roughness == b.roughness &&
-           a.emission == b.emission && a.transmission == b.transmission &&
-           a.index_of_refraction == b.index_of_refraction && a.specular == b.specular;
+           a.transmission == b.transmission && a.index_of_refraction == b.index_of_refraction &&
+           a.specular == b.specular;
 }
 
 void set_ray(RTCRay& target, const Ray& ray) {
@@ -174,10 +175,11 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
     fresh.insert(fresh.end(), movers.begin(), movers.end());
 
     bool same_static = self.static_count == static_count && self.meshes == &meshes && self.static_builds > 0;
-    bool same_static_materials = same_static;
+    bool same_static_materials = same_static, same_emission = same_static;
     for (std::uint32_t i = 0; same_static && i < static_count; ++i) {
         same_static = same_geometry(self.instances[i], fresh[i]);
-        same_static_materials = same_static_materials && same_material(self.instances[i].material, fresh[i].material);
+        same_static_materials = same_static_materials && reflects_alike(self.instances[i].material, fresh[i].material);
+        same_emission = same_emission && self.instances[i].material.emission == fresh[i].material.emission;
     }
     bool same_movers = same_static && self.instances.size() == fresh.size();
     bool moved = false;
@@ -192,7 +194,7 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
         self.build_static();
     if (!same_static || !same_static_materials)
         ++self.static_generation;
-    if (!same_static_materials || !same_movers || moved)
+    if (!same_static_materials || !same_emission || !same_movers || moved)
         ++self.generation;
     if (!same_movers || moved)
         self.build_top(same_movers);

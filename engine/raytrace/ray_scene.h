@@ -64,7 +64,7 @@ public:
 
     // How often static geometry was built, for tests of "built once".
     std::uint32_t static_builds() const;
-    // Raised when static geometry or a static entity's material changed.
+    // Raised when static geometry changed, or how it reflects (what it emits does not count).
     std::uint64_t static_generation() const;
     // Raised when anything changed, movers included.
     std::uint64_t generation() const;

@@ -1,5 +1,6 @@
 // The one description of each component's fields.
 #include "engine/scene/components.h"
+#include "engine/scene/simulation_components.h"
 
 namespace sunfleck::scene {
 
@@ -115,7 +116,8 @@ const TypeDescription& Environment::description() {
         "Environment",
         1,
         "Light from all directions where nothing is hit.",
-        {SUNFLECK_FIELD(Environment, radiance, "W/(sr m2)", 0, 1e9, "Uniform radiance of the surroundings")}};
+        {SUNFLECK_FIELD(Environment, radiance, "W/(sr m2)", 0, 1e9, "Uniform radiance of the surroundings"),
+         SUNFLECK_FIELD(Environment, lights, "", 0, 1, "Off: is only seen; lamps stand for its light")}};
     return type;
 }
 
@@ -124,13 +126,29 @@ const TypeDescription& Mover::description() {
         "Mover",
         1,
         "Moves along a path, as a function of the simulation step.",
-        {SUNFLECK_CHOICE(Mover, path, "Kind of motion", "none", "line", "circle", "spin"),
-         SUNFLECK_FIELD(Mover, travel, "m", -1e4, 1e4, "Line: half of the way, from the start"),
-         SUNFLECK_FIELD(Mover, centre, "m", -1e4, 1e4, "Circle: its centre"),
-         SUNFLECK_FIELD(Mover, axis, "", -1, 1, "Circle and spin: axis of rotation"),
+        {SUNFLECK_CHOICE(Mover, path, "Kind of motion", "none", "line", "circle", "spin", "hinge", "spline"),
+         SUNFLECK_FIELD(Mover, travel, "m", -1e4, 1e4, "Line: half of the way, from the start; activated: all of it"),
+         SUNFLECK_FIELD(Mover, centre, "m", -1e4, 1e4, "Circle: its centre; hinge: a point on it"),
+         SUNFLECK_FIELD(Mover, axis, "", -1, 1, "Circle, spin and hinge: axis of rotation"),
+         SUNFLECK_FIELD(Mover, angle, "rad", -6.3, 6.3, "Hinge: how far it turns"),
          SUNFLECK_FIELD(Mover, period, "s", 0.01, 1e4, "Time of one round"),
          SUNFLECK_FIELD(Mover, phase, "", -1, 1, "Start, as a share of the period"),
-         SUNFLECK_FIELD(Mover, spin_period, "s", 0, 1e4, "Time of one turn about its vertical axis; 0: none")}};
+         SUNFLECK_FIELD(Mover, spin_period, "s", 0, 1e4, "Time of one turn about its vertical axis; 0: none"),
+         SUNFLECK_CHOICE(Mover, easing, "Line and hinge: how speed changes", "sine", "linear", "dwell"),
+         SUNFLECK_CHOICE(Mover, activation, "Moves always, while somebody is near, or when used", "clock", "near",
+                         "use"),
+         SUNFLECK_FIELD(Mover, reach, "m", 0, 100, "How near somebody must be")}};
+    return type;
+}
+
+const TypeDescription& SurfacePattern::description() {
+    static const TypeDescription type{
+        "SurfacePattern",
+        1,
+        "A pattern on a surface.",
+        {SUNFLECK_CHOICE(SurfacePattern, kind, "What it looks like", "none", "checker", "planks", "bricks", "marble"),
+         SUNFLECK_FIELD(SurfacePattern, colour, "", 0, 1, "Second colour; the first is the material's"),
+         SUNFLECK_FIELD(SurfacePattern, scale, "m", 0.001, 1000, "Size of a square, plank, brick or vein")}};
     return type;
 }
 
@@ -148,6 +166,8 @@ void register_components(ecs::Registry& registry) {
     registry.register_component<DirectionalLight>();
     registry.register_component<Environment>();
     registry.register_component<Mover>();
+    registry.register_component<SurfacePattern>();
+    register_simulation_components(registry);
 }
 
 } // namespace sunfleck::scene

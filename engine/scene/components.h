@@ -96,26 +96,47 @@ struct DirectionalLight {
 // Light from all directions where nothing is hit.
 struct Environment {
     vec3 radiance{0.0f}; // W/(sr m2)
+    bool lights = true;  // false: is only seen, and lamps in the windows stand for its light
     static const TypeDescription& description();
 };
 
-enum class MoverPath : std::uint32_t { none, line, circle, spin };
+enum class MoverPath : std::uint32_t { none, line, circle, spin, hinge, spline };
+// How far along a line or hinge a mover is: as a pendulum, at even speed, or waiting a quarter of the time at both
+// ends.
+enum class MoverEasing : std::uint32_t { sine, linear, dwell };
+// clock: always. near: goes to its far end while a person is within `reach`, and back. use: when a person uses it.
+enum class MoverActivation : std::uint32_t { clock, near, use };
 
-// The entity moves. Its pose is a function of the simulation step alone, around the transform that it was given.
+// The entity moves. On the clock, its pose is a function of the simulation step alone, around the transform that it was
+// given; activated, it goes from there to the end of its line or hinge in half a period, and back.
 struct Mover {
     MoverPath path = MoverPath::none;
-    vec3 travel{1.0f, 0.0f, 0.0f}; // line: half of the way, there and back, m
-    vec3 centre{0.0f};             // circle: about this point, in the plane across `axis`
-    vec3 axis{0.0f, 1.0f, 0.0f};   // circle and spin
+    vec3 travel{1.0f, 0.0f, 0.0f}; // line: half of the way, there and back, m; activated: all of the way
+    vec3 centre{0.0f};             // circle: about this point, in the plane across `axis`; hinge: a point on it
+    vec3 axis{0.0f, 1.0f, 0.0f};   // circle, spin and hinge
+    float angle = 1.5f;            // hinge: rad, to both sides; activated: to one
     float period = 8.0f;           // s for one round or one way there and back
     float phase = 0.0f;            // share of a period
     float spin_period = 0.0f;      // s for a turn about its own vertical axis; 0 does not turn
+    MoverEasing easing = MoverEasing::sine;
+    MoverActivation activation = MoverActivation::clock;
+    float reach = 1.8f; // m, of `near`
     static const TypeDescription& description();
 };
 
 // Where the mover stood when the simulation began; made by the simulation.
 struct MoverOrigin {
     Transform transform;
+};
+
+// A pattern on a surface, in the mesh's own space: what a texture would be to a surface without coordinates.
+enum class PatternKind : std::uint32_t { none, checker, planks, bricks, marble };
+
+struct SurfacePattern {
+    PatternKind kind = PatternKind::checker;
+    vec3 colour{0.5f};   // the second one; the first is the material's
+    float scale = 0.25f; // m, of a square, plank, brick or vein
+    static const TypeDescription& description();
 };
 
 // True if neither the entity nor an ancestor has a Mover.

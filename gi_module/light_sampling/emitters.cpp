@@ -78,7 +78,8 @@ vec3 forward_of(const mat4& matrix) {
 
 } // namespace
 
-std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene) {
+std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
+                                      const std::set<ecs::Entity>& keep_dark) {
     std::vector<Emitter> emitters;
     const float radius = std::max(0.5f * glm::length(scene.extent()), 1e-3f);
     const vec3 centre = scene.empty() ? vec3(0.0f) : scene.centre();
@@ -97,7 +98,8 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
         }
         if (area_kind && emitter.radiance != vec3(0.0f) && !(emitter.area > 0.0f))
             warn_once(entity, "its emitter has no area");
-        if (luminance(emitter.flux) > 0.0f)
+        emitter.moves = !scene::is_static(registry, entity);
+        if (luminance(emitter.flux) > 0.0f || (keep_dark.count(entity) && (!area_kind || emitter.area > 0.0f)))
             emitters.push_back(std::move(emitter));
     };
     registry.view<scene::AreaLight, scene::WorldTransform>().each(
@@ -115,8 +117,8 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
     registry.view<scene::Material, scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::Material& material, const scene::MeshInstance& instance,
             const scene::WorldTransform& world) {
-            if (registry.has<scene::AreaLight>(entity) || material.emission == vec3(0.0f) ||
-                instance.mesh >= meshes.size())
+            if (registry.has<scene::AreaLight>(entity) ||
+                (material.emission == vec3(0.0f) && !keep_dark.count(entity)) || instance.mesh >= meshes.size())
                 return;
             add(entity, mesh_light(meshes[instance.mesh], material, world.matrix), world.matrix);
         });
@@ -147,6 +149,8 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
             add(entity, emitter, world.matrix);
         });
     registry.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
+        if (!environment.lights)
+            return;
         Emitter emitter;
         emitter.kind = EmitterKind::environment;
         emitter.radiance = environment.radiance;

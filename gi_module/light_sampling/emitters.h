@@ -5,6 +5,7 @@
 #include "engine/scene/mesh_store.h"
 #include "gi_module/transport/light_sample.h"
 
+#include <set>
 #include <vector>
 
 namespace sunfleck::gi {
@@ -20,6 +21,7 @@ struct Emitter {
     float width = 0.0f, height = 0.0f, radius = 0.0f; // world sizes of the analytic shapes
     float area = 0.0f;                                // m2, of the area kinds
     vec3 flux{0.0f};      // W; of directional light and environment: what crosses the scene's bounding sphere
+    bool moves = false;   // it, or something above it in the hierarchy, has a Mover
     bool is_lamp = false; // the surface of an AreaLight: views of irradiance leave it out
     float inner_cosine = 1.0f, outer_cosine = 0.0f;
     float scene_radius = 0.0f; // bounding sphere of the scene, for light from outside
@@ -41,8 +43,10 @@ struct EmittedPoint {
 };
 
 // Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or
-// negative, and those of zero area, are left out; each of the latter two kinds is logged once as a warning.
-std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene);
+// negative, and those of zero area, are left out; each of the latter two kinds is logged once as a warning. Those of
+// zero flux stay if they are in `keep_dark`.
+std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
+                                      const std::set<ecs::Entity>& keep_dark = {});
 
 // Uniformly distributed over the emitter's surface (area kinds), or its position. u, v in [0, 1).
 EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v);

@@ -65,29 +65,6 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
     return sample;
 }
 
-// Whole numbers proportional to `weights` that add up to `count`: largest remainders, first of equals.
-std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count) {
-    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    std::vector<std::uint32_t> result(weights.size());
-    std::vector<std::pair<double, std::size_t>> remainders;
-    std::uint32_t given = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        // Each takes part, so that no light goes missing.
-        const double exact = std::max(1.0, weights[i] / total * count);
-        result[i] = std::uint32_t(exact);
-        remainders.emplace_back(exact - std::floor(exact), i);
-        given += result[i];
-    }
-    std::stable_sort(remainders.begin(), remainders.end(), [](auto& a, auto& b) { return a.first > b.first; });
-    for (std::size_t i = 0; given < count; i = (i + 1) % remainders.size(), ++given)
-        ++result[remainders[i].second];
-    while (given > count) {
-        --*std::max_element(result.begin(), result.end());
-        --given;
-    }
-    return result;
-}
-
 // Fewer samples than emitters: systematic sampling of emitters by flux.
 std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitters, std::uint32_t count,
                                               const Settings& settings, const raytrace::RayScene& rays) {
@@ -179,6 +156,37 @@ std::vector<LightSample> thin_out(std::vector<LightSample> samples, std::uint32_
 }
 
 } // namespace
+
+// By largest remainders, first of equals.
+std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    std::vector<std::uint32_t> result(weights.size());
+    std::vector<std::pair<double, std::size_t>> remainders;
+    std::uint32_t given = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        // Each takes part, so that no light goes missing.
+        const double exact = std::max(1.0, weights[i] / total * count);
+        result[i] = std::uint32_t(exact);
+        remainders.emplace_back(exact - std::floor(exact), i);
+        given += result[i];
+    }
+    std::stable_sort(remainders.begin(), remainders.end(), [](auto& a, auto& b) { return a.first > b.first; });
+    for (std::size_t i = 0; given < count; i = (i + 1) % remainders.size(), ++given)
+        ++result[remainders[i].second];
+    while (given > count) {
+        --*std::max_element(result.begin(), result.end());
+        --given;
+    }
+    return result;
+}
+
+LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std::uint32_t count,
+                               const Settings& settings, const raytrace::RayScene& rays) {
+    if (emitter.is_delta())
+        return delta_sample(emitter);
+    return shared_sample(emitter, float(count),
+                         {sequence_kind(settings), hash_combine(settings.seed, emitter.entity.index), index}, rays);
+}
 
 vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope) {
     const raytrace::Ray ray{position + 1e-5f * normal, normal, 0.0f, 2.0f * lift_distance};

@@ -27,6 +27,13 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
                                          const Settings& settings, const raytrace::RayScene& rays);
 
+// Number `index` of `count` samples on one emitter: the same place on it wherever it is.
+LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std::uint32_t count,
+                               const Settings& settings, const raytrace::RayScene& rays);
+
+// Whole numbers proportional to `weights`, none of them zero, that add up to `count` (at least one for each weight).
+std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count);
+
 // Moves a sample off its surface: 1 mm, but at most half of the way to the next surface.
 vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope);
 

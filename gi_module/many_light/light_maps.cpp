@@ -80,14 +80,15 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
                          std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
     jobs_.clear();
     changes_.clear();
-    const bool same_rows = rows.size() == summed_rows_.size() &&
-                           (rows.empty() || std::memcmp(rows.data(), summed_rows_.data(), rows.size_bytes()) == 0);
+    bool same_rows = rows.size() == summed_rows_.size();
+    for (std::size_t i = 0; i < rows.size() && same_rows; ++i)
+        same_rows = !holds(samples[i]) || std::memcmp(&rows[i], &summed_rows_[i], sizeof rows[i]) == 0;
     const bool anew = generation_ != database.generation() || !same_rows;
     if (!anew) {
         std::vector<PairChange> wanted;
         for (const PairChange& change : database.changes())
             if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
-                holds(samples[change.sample].kind) && reaches(change.before) != reaches(change.after))
+                holds(samples[change.sample]) && reaches(change.before) != reaches(change.after))
                 wanted.push_back(change);
         std::stable_sort(wanted.begin(), wanted.end(),
                          [](const PairChange& a, const PairChange& b) { return a.node < b.node; });
@@ -105,7 +106,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     double most = 0.0;
     float bound = 0.0f;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        if (holds(samples[i].kind)) {
+        if (holds(samples[i])) {
             const vec4& intensity = rows[i].intensity_slot;
             most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(rows[i].position_bound.w);
             bound = std::max(bound, rows[i].position_bound.w);
@@ -118,7 +119,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
             continue;
         add_job(database, node, true);
         for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
-            if (holds(samples[sample].kind) && reaches(database.state(node, sample))) {
+            if (holds(samples[sample]) && reaches(database.state(node, sample))) {
                 changes_.push_back(sample);
                 ++jobs_.back().change_count;
             }

@@ -6,7 +6,8 @@
 // the same samples, they have the same values there, and no seam shows.
 //
 // Point and spot lights are left out: their irradiance has no bound, and a fixed point needs one. So are samples whose
-// class is directional, which need no map: their irradiance is constant on a plane.
+// class is directional, which need no map: their irradiance is constant on a plane; and those of emitters that move or
+// vary, whose every change would touch all maps that they reach.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
@@ -39,7 +40,7 @@ public:
     const gpu::Buffer& texels() const { return texels_; }
     // Steps a W/m2.
     float fixed_point() const { return fixed_point_; }
-    static bool holds(SampleKind kind) { return kind == SampleKind::surface; }
+    static bool holds(const LightSample& sample) { return sample.kind == SampleKind::surface && !sample.dynamic; }
     const LightMapCounters& counters() const { return counters_; }
 
 private:

@@ -246,8 +246,8 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
 }
 
 Status ManyLight::add_classify(const Frame& frame, Stage stage, const LightBatch& batch) {
-    const bool maps =
-        frame.options.light_maps && frame.options.visibility && batch.light_class == shared::light_class_surface;
+    const bool maps = frame.options.light_maps && frame.options.visibility &&
+                      batch.light_class == shared::light_class_surface && !batch.dynamic;
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("classify.comp", std::vector(9, storage_buffer),
                                                           {stage == Stage::repair, maps, frame.options.visibility}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");

@@ -24,6 +24,8 @@ struct LightSample {
     float cone_offset = 0.0f;
     std::uint32_t index = 0; // stable: map slot, GPU row and random sequence follow it
     ecs::Entity emitter;
+    // Of an emitter that moves or varies: never in light maps, and its visibility is decided for whole charts only.
+    bool dynamic = false;
 
     static const TypeDescription& description();
 };

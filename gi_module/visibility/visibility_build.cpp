@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace sunfleck::gi {
 namespace {
@@ -83,6 +84,8 @@ void VisibilityDatabase::split_and_decide() {
                 continue;
             std::size_t partial = 0, reached = 0;
             for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
+                if (samples_[sample].dynamic) // the tree does not follow what moves
+                    continue;
                 const PairState state = static_state(node, sample);
                 partial += state == PairState::partial;
                 reached += state == PairState::partial || state == PairState::none;
@@ -101,12 +104,46 @@ PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sa
         parent = PairState(static_states_[at(patch.parent, sample)]);
     if (parent == PairState::full || parent == PairState::unlit)
         return parent;
+    if (samples_[sample].dynamic && patch.parent != shared::no_node)
+        return inherit(patch, parent, samples_[sample]);
     if (!patch.planar)
         return decide_box(patch.box, samples_[sample]);
     const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal);
     if (!pyramid)
         return PairState::unlit;
     return parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
+}
+
+// Of a part of a chart: only whether the sample's tangent plane hides it is looked at.
+PairState VisibilityDatabase::inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const {
+    if (sample.kind != SampleKind::surface)
+        return parent;
+    for (const dvec3& corner : patch.corners)
+        if (glm::dot(dvec3(sample.normal), corner - dvec3(sample.position)) > 0.0)
+            return parent;
+    return PairState::unlit;
+}
+
+// Parts come after their parents.
+std::vector<PairState> VisibilityDatabase::decide_all_static(std::uint32_t sample) const {
+    std::vector<PairState> result(patches_.nodes().size());
+    for (std::uint32_t node = 0; node < result.size(); ++node) {
+        const SurfacePatch& patch = patches_.nodes()[node];
+        if (patch.parent == shared::no_node) {
+            result[node] = decide_static(node, sample);
+            continue;
+        }
+        const PairState parent = result[patch.parent];
+        if (parent == PairState::full || parent == PairState::unlit)
+            result[node] = parent;
+        else if (samples_[sample].dynamic)
+            result[node] = inherit(patch, parent, samples_[sample]);
+        else if (const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal); !pyramid)
+            result[node] = PairState::unlit;
+        else
+            result[node] = parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
+    }
+    return result;
 }
 
 PairState VisibilityDatabase::decide_box(const OrientedBox& box, const LightSample& sample) const {
@@ -128,8 +165,10 @@ PairState VisibilityDatabase::decide_mover(const MovingBlocker& mover, const Lig
     return static_blockers_.test(*pyramid) == Blocking::full ? PairState::full : PairState::partial;
 }
 
+// Samples that move stand alone: clusters keep their shape.
 void VisibilityDatabase::make_clusters() {
     clusters_.clear();
+    cluster_of_.assign(samples_.size(), 0);
     Bounds bounds;
     for (const LightSample& sample : samples_)
         bounds.add(sample.position);
@@ -137,19 +176,20 @@ void VisibilityDatabase::make_clusters() {
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](std::uint32_t i) {
         const bool unbounded = samples_[i].kind == SampleKind::directional;
-        return std::pair(unbounded ? 0xffffffffu : morton(samples_[i].position, bounds), i);
+        return std::tuple(samples_[i].dynamic, unbounded ? 0xffffffffu : morton(samples_[i].position, bounds), i);
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     for (std::size_t i = 0; i < order.size(); ++i) {
         const LightSample& sample = samples_[order[i]];
         const bool unbounded = sample.kind == SampleKind::directional;
-        if (clusters_.empty() || clusters_.back().samples.size() >= samples_per_cluster ||
+        if (clusters_.empty() || sample.dynamic || clusters_.back().samples.size() >= samples_per_cluster ||
             clusters_.back().unbounded != unbounded)
             clusters_.emplace_back();
         Cluster& cluster = clusters_.back();
         cluster.unbounded = unbounded;
         cluster.bounds.add(sample.position);
         cluster.samples.push_back(order[i]);
+        cluster_of_[order[i]] = std::uint32_t(clusters_.size() - 1);
     }
 }
 
@@ -180,31 +220,54 @@ std::uint32_t VisibilityDatabase::make_group(std::vector<std::uint32_t> roots) {
 }
 
 void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {
-    for (const std::uint32_t sample : changed)
-        samples_[sample] = samples[sample];
-    const std::uint32_t nodes = std::uint32_t(patches_.nodes().size());
-    parallel_for_chunks(changed.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (std::uint32_t node = 0; node < nodes; ++node)
-                static_states_[at(node, changed[i])] = std::uint8_t(decide_static(node, changed[i]));
-    });
+    if (changed.empty())
+        return;
+    // What movers did to these pairs is taken back before the pairs change.
+    std::vector<PairChange> changes;
+    bool all_dynamic = true;
     for (const std::uint32_t sample : changed) {
         affected_[sample] = 1;
+        all_dynamic = all_dynamic && samples[sample].dynamic;
         for (auto& [bits, mover] : movers_) {
-            apply(sample, mover.footprint[sample], {}, changes_);
+            apply(sample, mover.footprint[sample], {}, changes);
             mover.footprint[sample].clear();
         }
     }
-    make_clusters();
+    for (const PairChange& change : changes)
+        record(change.node, change.sample, change.before, change.after);
+    for (const std::uint32_t sample : changed)
+        samples_[sample] = samples[sample];
+    if (all_dynamic) {
+        for (const std::uint32_t sample : changed) {
+            clusters_[cluster_of_[sample]].bounds = {};
+            clusters_[cluster_of_[sample]].bounds.add(samples_[sample].position);
+        }
+    } else {
+        make_clusters();
+    }
+    std::vector<std::vector<PairState>> states(changed.size());
+    parallel_for_chunks(changed.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            states[i] = decide_all_static(changed[i]);
+    });
+    for (std::size_t i = 0; i < changed.size(); ++i)
+        for (std::uint32_t node = 0; node < states[i].size(); ++node) {
+            const PairState before = state(node, changed[i]);
+            static_states_[at(node, changed[i])] = std::uint8_t(states[i][node]);
+            record(node, changed[i], before, state(node, changed[i]));
+        }
+    Footprint fresh;
     for (auto& [bits, mover] : movers_)
-        replace_footprints(mover, true);
-    for (std::uint32_t slot = 0; slot < mover_slots_.size(); ++slot)
-        set_mover_row(slot);
-    rows_.clear();
-    grow_rows();
-    recount();
-    changes_.clear();
-    ++generation_;
+        for (const std::uint32_t sample : changed) {
+            set_mover_pair(mover.slot, sample, decide_mover(mover.blocker, samples_[sample]));
+            const Footprint roots = roots_for(clusters_[cluster_of_[sample]], mover, counters_.tests);
+            find_footprint(mover, sample, roots, fresh, counters_.tests);
+            changes.clear();
+            apply(sample, {}, fresh, changes);
+            mover.footprint[sample] = fresh;
+            for (const PairChange& change : changes)
+                record(change.node, change.sample, change.before, change.after);
+        }
 }
 
 void VisibilityDatabase::recount() {

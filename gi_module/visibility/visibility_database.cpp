@@ -169,25 +169,36 @@ void VisibilityDatabase::add_all(std::uint32_t node, std::uint32_t sample, Footp
             add_all(patch.first_child + child, sample, out);
 }
 
+VisibilityDatabase::Footprint VisibilityDatabase::roots_for(const Cluster& cluster, const Mover& mover,
+                                                            std::uint64_t& tests) const {
+    Footprint roots;
+    if (options_.clustered && !groups_.empty())
+        candidate_roots(cluster, mover.blocker.bounds(), 0, roots, tests);
+    else
+        for (std::uint32_t root = 0; root < patches_.roots(); ++root)
+            roots.push_back(root);
+    return roots;
+}
+
+void VisibilityDatabase::find_footprint(const Mover& mover, std::uint32_t sample, const Footprint& roots,
+                                        Footprint& out, std::uint64_t& tests) const {
+    out.clear();
+    for (const std::uint32_t root : roots)
+        descend(root, sample, mover.blocker, out, tests);
+    std::sort(out.begin(), out.end());
+}
+
 void VisibilityDatabase::replace_footprints(Mover& mover, bool present) {
     std::vector<std::vector<PairChange>> changes(clusters_.size());
     std::atomic<std::uint64_t> all_tests{0};
     const auto work = [&](std::size_t begin, std::size_t end) {
         std::uint64_t tests = 0;
-        Footprint roots, fresh;
+        Footprint fresh;
         for (std::size_t c = begin; c < end; ++c) {
             const Cluster& cluster = clusters_[c];
-            roots.clear();
-            if (present && options_.clustered && !groups_.empty())
-                candidate_roots(cluster, mover.blocker.bounds(), 0, roots, tests);
-            else if (present)
-                for (std::uint32_t root = 0; root < patches_.roots(); ++root)
-                    roots.push_back(root);
+            const Footprint roots = present ? roots_for(cluster, mover, tests) : Footprint();
             for (const std::uint32_t sample : cluster.samples) {
-                fresh.clear();
-                for (const std::uint32_t root : roots)
-                    descend(root, sample, mover.blocker, fresh, tests);
-                std::sort(fresh.begin(), fresh.end());
+                find_footprint(mover, sample, roots, fresh, tests);
                 if (fresh == mover.footprint[sample])
                     continue;
                 apply(sample, mover.footprint[sample], fresh, changes[c]);
@@ -233,10 +244,13 @@ void VisibilityDatabase::apply(std::uint32_t sample, const Footprint& before, co
     }
 }
 
-void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes) {
+void VisibilityDatabase::begin_frame() {
     changes_.clear();
     std::fill(affected_.begin(), affected_.end(), std::uint8_t(0));
     counters_.tests = 0;
+}
+
+void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes) {
     const auto mark_affected = [&](std::uint32_t node) {
         for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
             const PairState fixed = static_state(node, sample);
@@ -291,7 +305,6 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
 
 // Of the mover in a slot against static geometry; of a free slot, everything is unlit.
 void VisibilityDatabase::set_mover_row(std::uint32_t slot) {
-    const std::uint32_t node = std::uint32_t(patches_.nodes().size()) + slot;
     const auto mover = movers_.find(mover_slots_[slot].bits());
     std::vector<PairState> fixed(samples_.size(), PairState::unlit);
     if (mover != movers_.end() && !mover_slots_[slot].is_null()) {
@@ -301,12 +314,16 @@ void VisibilityDatabase::set_mover_row(std::uint32_t slot) {
                 fixed[sample] = decide_mover(mover->second.blocker, samples_[sample]);
         });
     }
-    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
-        const std::uint32_t word = rows_[std::size_t(node) * words_per_row() + sample / 16];
-        const PairState before = PairState((word >> (sample % 16 * 2)) & 3u);
-        static_states_[at(node, sample)] = std::uint8_t(fixed[sample]);
-        record(node, sample, before, state(node, sample));
-    }
+    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+        set_mover_pair(slot, sample, fixed[sample]);
+}
+
+void VisibilityDatabase::set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed) {
+    const std::uint32_t node = std::uint32_t(patches_.nodes().size()) + slot;
+    const std::uint32_t word = rows_[std::size_t(node) * words_per_row() + sample / 16];
+    const PairState before = PairState((word >> (sample % 16 * 2)) & 3u);
+    static_states_[at(node, sample)] = std::uint8_t(fixed);
+    record(node, sample, before, state(node, sample));
 }
 
 bool VisibilityDatabase::counts(std::uint32_t node) const {

@@ -13,6 +13,9 @@
 // without a search, and counts at the pair are enough to infer its state.) Nodes within are found top-down: what a
 // parent settles (none, full), its children inherit without tests.
 //
+// Samples of emitters that move (LightSample::dynamic) are decided anew every frame, so more coarsely: whole charts by
+// the same tests, and what is partial there is partial in all its parts.
+//
 // Movers are nodes, too. They shadow themselves and each other, so between "unlit", "full" (by static geometry) and
 // "partial" they have no state "none".
 #pragma once
@@ -58,10 +61,12 @@ public:
     // Starts anew: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
     void build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
                const VisibilityOptions& options);
-    // Samples with these indices have changed; their number has not. The patches stay.
+    // Forgets the changes of the last frame. Once a frame, before the two below.
+    void begin_frame();
+    // Samples with these indices have changed; their number and which are dynamic have not. The patches stay.
     void change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
     // Follows the movers: new ones are added, missing ones removed, moved ones tested. In any order; the state depends
-    // on the set alone. Clears the list of changes first.
+    // on the set alone.
     void update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes);
 
     std::uint32_t node_count() const { return std::uint32_t(patches_.nodes().size() + mover_slots_.size()); }
@@ -80,9 +85,10 @@ public:
     // Static geometry first, then movers by entity.
     std::vector<Blocker> blockers(std::uint32_t node, std::uint32_t sample) const;
 
-    // Since the last update_movers.
+    // Since the last begin_frame. A pair may change more than once; changes are in order.
     const std::vector<PairChange>& changes() const { return changes_; }
-    // Samples whose shadow map shows a mover that moved (and is, or was, in sight of them), was added or removed.
+    // Samples that changed, and those whose shadow map shows a mover that moved (and is, or was, in sight of them), was
+    // added or removed.
     const std::vector<std::uint8_t>& affected_samples() const { return affected_; }
     const VisibilityCounters& counters() const { return counters_; }
 
@@ -118,6 +124,8 @@ private:
 
     void split_and_decide();
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
+    PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;
+    std::vector<PairState> decide_all_static(std::uint32_t sample) const;
     PairState decide_box(const OrientedBox& box, const LightSample& sample) const;
     PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();
@@ -128,9 +136,13 @@ private:
     void descend(std::uint32_t node, std::uint32_t sample, const MovingBlocker& blocker, Footprint& out,
                  std::uint64_t& tests) const;
     void add_all(std::uint32_t node, std::uint32_t sample, Footprint& out) const;
+    void find_footprint(const Mover& mover, std::uint32_t sample, const Footprint& roots, Footprint& out,
+                        std::uint64_t& tests) const;
+    Footprint roots_for(const Cluster& cluster, const Mover& mover, std::uint64_t& tests) const;
     void replace_footprints(Mover& mover, bool present);
     void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
     void set_mover_row(std::uint32_t slot);
+    void set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed);
     void record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after);
     bool counts(std::uint32_t node) const;
     std::uint64_t& count_of(PairState state);
@@ -146,6 +158,7 @@ private:
     SurfacePatches patches_;
     StaticBlockers static_blockers_;
     std::vector<Cluster> clusters_;
+    std::vector<std::uint32_t> cluster_of_; // by sample
     std::vector<Group> groups_;
     std::map<EntityBits, Mover> movers_;   // ordered: results never depend on insertion
     std::vector<ecs::Entity> mover_slots_; // node = static nodes + slot; null entity: free

@@ -106,6 +106,56 @@ TEST_F(ManyLightTest, ExactPartsChangeNothing) {
     }
 }
 
+// A lantern is carried about and a lamp changes its strength: samples, database, maps and lists follow, and the picture
+// is brute force's of the same samples (which have the same past: both worlds see every step).
+TEST_F(ManyLightTest, FollowsLightsThatMoveAndVary) {
+    Pair pair(assets::make_four_pillars, "bench_1");
+    pair.size(320, 240);
+    ecs::Entity lanterns[2], lamps[2];
+    int w = 0;
+    for (GpuWorld* world : {&pair.brute, &pair.many}) {
+        ecs::Registry& registry = world->renderer->registry();
+        lanterns[w] = registry.create();
+        registry.emplace<scene::Transform>(lanterns[w], {vec3(0.3f, 1.2f, 0.4f)});
+        registry.emplace<scene::Mover>(lanterns[w], {scene::MoverPath::circle, vec3(1.0f), vec3(0.0f, 1.2f, 0.0f)});
+        registry.emplace<scene::PointLight>(lanterns[w], {vec3(12.0f, 8.0f, 4.0f)});
+        lamps[w++] = scene::find_by_name(registry, "lamp");
+    }
+    gi::Settings settings;
+    settings.light_maps = true;
+    settings.low_resolution = 1;
+    settings.map_detail = false;
+    settings.map_budget = 65536;
+    pair.set(settings);
+    std::uint64_t moved = 0;
+    for (std::uint64_t step = 0; step < 24; ++step) {
+        w = 0;
+        for (GpuWorld* world : {&pair.brute, &pair.many}) {
+            const ecs::Entity lamp = lamps[w++];
+            const vec3 radiance(step < 8 ? 17.0f : step < 16 ? 6.0f : 0.0f);
+            world->renderer->registry().patch<scene::AreaLight>(lamp,
+                                                                [&](scene::AreaLight& l) { l.radiance = radiance; });
+            world->renderer->registry().patch<scene::Material>(lamp,
+                                                               [&](scene::Material& m) { m.emission = radiance; });
+            world->request.step = step;
+            world->render();
+        }
+        const gi::Counters& counters = pair.many.renderer->lighting().counters();
+        EXPECT_EQ(counters.light_samples, 300u);
+        if (step > 8)
+            moved = std::max(moved, counters.light_samples_moved);
+        EXPECT_EQ(counters.light_samples_dynamic > 0, true);
+        if (step % 8 != 7)
+            continue;
+        const Difference difference = compare(pair);
+        std::printf("step %d: mean %.5f of %.3f\n", int(step), difference.mean, difference.mean_brightness);
+        EXPECT_LT(difference.mean, 0.006 * difference.mean_brightness);
+        EXPECT_GT(difference.mean_brightness, 0.01);
+    }
+    EXPECT_GE(moved, 1u);
+    EXPECT_LT(moved, 30u) << "only the moved light's own samples change";
+}
+
 // The whole system at 1024x768, tone-mapped, every map up to date: within 1/255 in the mean, half a per cent of pixels
 // off by more than 8/255.
 TEST_F(ManyLightTest, TheWholeSystemStaysCloseToBruteForce) {

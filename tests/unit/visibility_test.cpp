@@ -237,6 +237,7 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
             movers[which].matrix =
                 glm::translate(mat4(1.0f), vec3(uniform(random, -0.1f, 0.1f))) * movers[which].matrix;
         std::shuffle(movers.begin(), movers.end(), random);
+        database.begin_frame();
         database.update_movers(movers, world.meshes);
         changes += database.changes().size();
         if (step % 100 != 99)
@@ -269,6 +270,51 @@ TEST(VisibilityDatabase, ChangedSamplesAreDecidedAnew) {
     fresh.build(world.registry, world.meshes, world.samples, options);
     fresh.update_movers(world.places, world.meshes);
     expect_equal(database, fresh, world.places);
+}
+
+// Samples of a light that is carried about, while objects move, too: as if built for them.
+TEST(VisibilityDatabase, FollowsSamplesThatMove) {
+    World world(assets::make_four_pillars, 90);
+    for (std::uint32_t s = 0; s < world.samples.size(); s += 5) {
+        world.samples[s].dynamic = true;
+        if (s % 2 == 0)
+            world.samples[s].kind = SampleKind::point;
+    }
+    VisibilityDatabase database;
+    database.build(world.registry, world.meshes, world.samples, {});
+    std::mt19937 random(17);
+    std::size_t changes = 0;
+    for (int frame = 0; frame < 60; ++frame) {
+        std::vector<std::uint32_t> changed;
+        for (std::uint32_t s = 0; s < world.samples.size(); s += 5)
+            if (random() % 3 == 0) {
+                world.samples[s].position =
+                    vec3(uniform(random, -1.2f, 1.2f), uniform(random, 0.1f, 3.4f), uniform(random, -1.2f, 1.2f));
+                changed.push_back(s);
+            }
+        for (MoverPlace& place : world.places)
+            if (random() % 2 == 0)
+                place.matrix = random_place(random);
+        database.begin_frame();
+        database.change_samples(world.samples, changed);
+        database.update_movers(world.places, world.meshes);
+        changes += database.changes().size();
+        for (const PairChange& change : database.changes())
+            EXPECT_NE(change.before, change.after);
+        if (frame % 20 != 19)
+            continue;
+        VisibilityDatabase fresh;
+        fresh.build(world.registry, world.meshes, world.samples, {});
+        fresh.update_movers(world.places, world.meshes);
+        expect_equal(database, fresh, world.places);
+        for (const MoverPlace& place : world.places)
+            world.registry.patch<scene::WorldTransform>(place.entity, [&](auto& t) { t.matrix = place.matrix; });
+        ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+        const Agreement result = compare_with_rays(world, database, 16, 5);
+        EXPECT_EQ(result.wrong_none, 0u);
+        EXPECT_EQ(result.wrong_full, 0u);
+    }
+    EXPECT_GT(changes, 10000u);
 }
 
 TEST(VisibilityDatabase, ClustersSaveTestsAndChangeNothing) {

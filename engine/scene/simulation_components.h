@@ -1,0 +1,58 @@
+// What the simulation needs to know of entities beyond their Mover.
+#pragma once
+
+#include "engine/scene/components.h"
+
+namespace sunfleck::scene {
+
+// Control points of a Mover with path `spline`: a closed Catmull-Rom curve through the first `count` of them, in the
+// space of the entity's parent.
+struct SplinePath {
+    static constexpr std::uint32_t most_points = 6;
+    std::uint32_t count = 3;
+    vec3 point_1{0.0f}, point_2{0.0f}, point_3{0.0f}, point_4{0.0f}, point_5{0.0f}, point_6{0.0f};
+    bool face_travel = false; // the entity's -Z axis looks along the curve
+    static const TypeDescription& description();
+};
+
+enum class BodyShape : std::uint32_t { box, sphere, hull, none };
+
+// A body that physics moves (its entity also has a Mover with path `none`). Static meshes are obstacles without any
+// component, and movers on paths are obstacles that push; shape `none` takes an entity out of physics.
+struct RigidBody {
+    BodyShape shape = BodyShape::box; // of the mesh's bounds, or their hull
+    float mass = 1.0f;                // kg; 0: an obstacle that physics does not move
+    float friction = 0.6f;
+    float restitution = 0.2f;
+    float rolling_friction = 0.01f;
+    static const TypeDescription& description();
+};
+
+// Used by a person, it switches the emitters of other entities on and off.
+struct LightSwitch {
+    std::string lamps; // names of entities, separated by commas
+    bool on = true;
+    static const TypeDescription& description();
+};
+
+// Where the player starts, facing the entity's -Z.
+struct PlayerStart {
+    float height = 1.72f; // m, standing
+    static const TypeDescription& description();
+};
+
+// A lamp that a person can pick up, carry and put down.
+struct Lantern {
+    bool carried = false;
+    static const TypeDescription& description();
+};
+
+// Where an activated mover is on its way; made by the simulation.
+struct MoverState {
+    float progress = 0.0f; // 0 at rest, 1 at the far end
+    bool open = false;     // where it is going
+};
+
+void register_simulation_components(ecs::Registry& registry);
+
+} // namespace sunfleck::scene

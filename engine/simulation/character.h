@@ -1,0 +1,56 @@
+// A person who walks: slides along walls, climbs steps, rides lifts, pushes what is loose, crouches; never jumps.
+#pragma once
+
+#include "engine/simulation/physics_world.h"
+
+namespace sunfleck::simulation {
+
+struct CharacterInput {
+    float forward = 0.0f, right = 0.0f; // -1 to 1
+    float turn = 0.0f, look_up = 0.0f;  // rad, of this step
+    bool run = false, crouch = false;
+};
+
+class Character {
+public:
+    Character() = default;
+    // `yaw` 0 looks along -Z, and grows to the left.
+    Character(vec3 foot, float yaw, float standing_height);
+
+    // One fixed step, after the physics world's.
+    void step(PhysicsWorld& world, const CharacterInput& input, ecs::Entity ignored = ecs::null_entity);
+
+    const Capsule& capsule() const { return capsule_; }
+    vec3 eye() const;
+    vec3 forward() const; // where the eye looks
+    float yaw() const { return yaw_; }
+    float pitch() const { return pitch_; }
+    vec3 velocity() const { return velocity_; }
+    bool grounded() const { return grounded_; }
+    bool crouching() const { return capsule_.height < standing_height_ - 0.05f; }
+    ecs::Entity stands_on() const { return ground_; }
+    // Times that the level failed to hold the person, who was put back where they last stood.
+    std::uint64_t rescued() const { return rescued_; }
+
+private:
+    void change_height(const PhysicsWorld& world, bool crouch);
+    void ride(const PhysicsWorld& world);
+    void leave_overlaps(const PhysicsWorld& world);
+    void slide(PhysicsWorld& world, vec3 motion, ecs::Entity ignored);
+    void walk(PhysicsWorld& world, vec3 motion, ecs::Entity ignored);
+    void fall(PhysicsWorld& world, ecs::Entity ignored);
+    void rescue(const PhysicsWorld& world);
+
+    Capsule capsule_;
+    float standing_height_ = 1.7f;
+    float yaw_ = 0.0f, pitch_ = 0.0f;
+    vec3 velocity_{0.0f};
+    float falling_ = 0.0f; // m/s, downwards
+    bool grounded_ = false;
+    ecs::Entity ground_;
+    vec3 safe_{0.0f};
+    float eye_lag_ = 0.0f; // m that the eye is below its place, after a step up
+    std::uint64_t rescued_ = 0;
+};
+
+} // namespace sunfleck::simulation

@@ -1,0 +1,295 @@
+#include "engine/simulation/simulation.h"
+
+#include "engine/simulation/path_movers.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace sunfleck::simulation {
+namespace {
+
+constexpr float arm = 2.2f;                 // m, how far a person reaches
+constexpr float aim = 0.85f;                // cosine: what lies further from the middle of sight is not meant
+constexpr float squeezed = 0.04f;           // m: a door that presses a person so deep goes back
+constexpr vec3 hand(0.30f, -0.36f, -0.62f); // of the carried lantern, from the eye: right, up, back
+
+// The strength that a lamp has when it is on.
+struct LampMemory {
+    vec3 area{0.0f}, emission{0.0f}, point{0.0f}, spot{0.0f};
+};
+
+std::vector<std::string> split_names(const std::string& list) {
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin < list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        if (end > begin)
+            names.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return names;
+}
+
+// The entity itself or the nearest ancestor that has the component.
+template <typename T>
+ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
+    for (int depth = 0; depth < 16 && registry.alive(entity); ++depth) {
+        if (registry.has<T>(entity))
+            return entity;
+        const scene::Parent* parent = registry.try_get<scene::Parent>(entity);
+        if (parent == nullptr)
+            break;
+        entity = parent->parent;
+    }
+    return ecs::null_entity;
+}
+
+ecs::Registry& prepared(ecs::Registry& registry) {
+    // Switches first: what is off at the start casts no light. Then movers, so that obstacles stand where they begin.
+    registry.view<scene::LightSwitch>().each(
+        [&](ecs::Entity, const scene::LightSwitch& state) { apply_switch(registry, state); });
+    std::vector<ecs::Entity> activated;
+    registry.view<scene::Mover>().each([&](ecs::Entity entity, const scene::Mover& mover) {
+        if (mover.activation != scene::MoverActivation::clock && !registry.has<scene::MoverState>(entity))
+            activated.push_back(entity);
+    });
+    for (const ecs::Entity entity : activated)
+        registry.emplace<scene::MoverState>(entity, {});
+    set_movers_to_step(registry, 0);
+    return registry;
+}
+
+} // namespace
+
+void apply_switch(ecs::Registry& registry, const scene::LightSwitch& state) {
+    for (const std::string& name : split_names(state.lamps)) {
+        const ecs::Entity lamp = scene::find_by_name(registry, name);
+        if (lamp.is_null())
+            continue;
+        LampMemory memory;
+        if (const LampMemory* known = registry.try_get<LampMemory>(lamp)) {
+            memory = *known;
+        } else {
+            if (const auto* light = registry.try_get<scene::AreaLight>(lamp))
+                memory.area = light->radiance;
+            if (const auto* material = registry.try_get<scene::Material>(lamp))
+                memory.emission = material->emission;
+            if (const auto* light = registry.try_get<scene::PointLight>(lamp))
+                memory.point = light->intensity;
+            if (const auto* light = registry.try_get<scene::SpotLight>(lamp))
+                memory.spot = light->intensity;
+            registry.emplace<LampMemory>(lamp, memory);
+        }
+        const float share = state.on ? 1.0f : 0.0f;
+        if (registry.has<scene::AreaLight>(lamp))
+            registry.patch<scene::AreaLight>(lamp, [&](auto& light) { light.radiance = share * memory.area; });
+        if (registry.has<scene::Material>(lamp))
+            registry.patch<scene::Material>(lamp, [&](auto& material) { material.emission = share * memory.emission; });
+        if (registry.has<scene::PointLight>(lamp))
+            registry.patch<scene::PointLight>(lamp, [&](auto& light) { light.intensity = share * memory.point; });
+        if (registry.has<scene::SpotLight>(lamp))
+            registry.patch<scene::SpotLight>(lamp, [&](auto& light) { light.intensity = share * memory.spot; });
+    }
+}
+
+Simulation::Simulation(ecs::Registry& registry, const scene::MeshStore& meshes)
+    : physics_(prepared(registry), meshes), player_(find_start(registry, physics_.bounds())) {
+    registry.view<scene::Lantern>().each([&](ecs::Entity entity, const scene::Lantern& lantern) {
+        if (lantern.carried && carried_.is_null())
+            carried_ = entity;
+    });
+    carry(registry);
+    scene::update_world_transforms(registry);
+}
+
+Character Simulation::find_start(ecs::Registry& registry, const Bounds& bounds) {
+    ecs::Entity start;
+    float height = scene::PlayerStart{}.height;
+    registry.view<scene::PlayerStart>().each([&](ecs::Entity entity, const scene::PlayerStart& described) {
+        start = entity;
+        height = described.height;
+    });
+    vec3 foot = bounds.empty() ? vec3(0.0f) : bounds.centre();
+    vec3 ahead(0.0f, 0.0f, -1.0f);
+    const bool marked = !start.is_null();
+    if (!marked)
+        start = scene::find_by_name(registry, "view");
+    if (!start.is_null()) {
+        const mat4 world = scene::world_matrix(registry, start);
+        foot = vec3(world[3]) - vec3(0.0f, marked ? 0.0f : height - 0.12f, 0.0f);
+        ahead = -vec3(world[2]);
+    }
+    return {foot, std::atan2(-ahead.x, -ahead.z), height};
+}
+
+void Simulation::step(ecs::Registry& registry, const StepInput& input) {
+    ++steps_;
+    const std::uint32_t pressed = input.buttons & ~held_buttons_;
+    held_buttons_ = input.buttons;
+    advance_movers(registry, false);
+    set_movers_to_step(registry, steps_);
+    physics_.step(registry);
+    CharacterInput person;
+    person.forward = float(input.forward) / 100.0f;
+    person.right = float(input.right) / 100.0f;
+    person.turn = float(input.turn) * look_unit;
+    person.look_up = float(input.look_up) * look_unit;
+    person.run = (input.buttons & button_run) != 0;
+    person.crouch = (input.buttons & button_crouch) != 0;
+    player_.step(physics_, person, carried_);
+    if (glm::length(physics_.way_out(player_.capsule())) > squeezed)
+        advance_movers(registry, true);
+    if (pressed & button_use)
+        use(registry);
+    if (pressed & button_put_down)
+        put_down(registry);
+    carry(registry);
+    scene::update_world_transforms(registry);
+}
+
+// Activated movers go towards their ends. `back`: they press somebody, and retreat.
+void Simulation::advance_movers(ecs::Registry& registry, bool back) {
+    const vec3 person = player_.capsule().foot + vec3(0.0f, 0.5f * player_.capsule().height, 0.0f);
+    std::vector<std::pair<ecs::Entity, scene::MoverState>> changed;
+    registry.view<scene::Mover, scene::MoverState, scene::Transform>().each(
+        [&](ecs::Entity entity, const scene::Mover& mover, const scene::MoverState& state, const scene::Transform&) {
+            scene::MoverState next = state;
+            const scene::MoverOrigin* origin = registry.try_get<scene::MoverOrigin>(entity);
+            if (mover.activation == scene::MoverActivation::near && origin != nullptr)
+                next.open = glm::length(origin->transform.position - person) < mover.reach;
+            float by = float(step_seconds) / (0.5f * mover.period) * (next.open ? 1.0f : -1.0f);
+            if (back)
+                by = -2.0f * by;
+            next.progress = std::clamp(next.progress + by, 0.0f, 1.0f);
+            if (next.progress != state.progress || next.open != state.open)
+                changed.emplace_back(entity, next);
+        });
+    for (const auto& [entity, state] : changed)
+        registry.emplace_or_replace<scene::MoverState>(entity, state);
+}
+
+Simulation::Target Simulation::find_target(ecs::Registry& registry) const {
+    const vec3 eye = player_.eye(), ahead = player_.forward();
+    const auto hit = physics_.ray(eye, arm * ahead, carried_);
+    const float free = hit ? hit->fraction * arm : arm;
+    Target target;
+    if (carried_.is_null()) {
+        float best = aim;
+        registry.view<scene::Lantern, scene::WorldTransform>().each(
+            [&](ecs::Entity entity, const scene::Lantern&, const scene::WorldTransform& world) {
+                const vec3 to = vec3(world.matrix[3]) - eye;
+                const float distance = glm::length(to), cosine = glm::dot(to, ahead) / std::max(distance, 1e-6f);
+                if (distance < std::min(arm, free + 0.4f) && cosine > best) {
+                    best = cosine;
+                    target = {Interaction::take, entity};
+                }
+            });
+        if (target.interaction != Interaction::none)
+            return target;
+    }
+    if (!hit)
+        return target;
+    if (const ecs::Entity plate = owner_of<scene::LightSwitch>(registry, hit->entity); !plate.is_null())
+        return {Interaction::switch_lamps, plate};
+    const ecs::Entity mover = owner_of<scene::MoverState>(registry, hit->entity);
+    if (mover.is_null() || registry.get<scene::Mover>(mover).activation != scene::MoverActivation::use)
+        return target;
+    return {registry.get<scene::MoverState>(mover).open ? Interaction::close : Interaction::open, mover};
+}
+
+Interaction Simulation::possible_interaction(ecs::Registry& registry) const {
+    return find_target(registry).interaction;
+}
+
+void Simulation::use(ecs::Registry& registry) {
+    const Target target = find_target(registry);
+    switch (target.interaction) {
+    case Interaction::none:
+        break;
+    case Interaction::open:
+    case Interaction::close:
+        registry.patch<scene::MoverState>(target.entity, [](scene::MoverState& state) { state.open = !state.open; });
+        break;
+    case Interaction::switch_lamps:
+        registry.patch<scene::LightSwitch>(target.entity, [](scene::LightSwitch& state) { state.on = !state.on; });
+        apply_switch(registry, scene::LightSwitch(registry.get<scene::LightSwitch>(target.entity)));
+        break;
+    case Interaction::take:
+        carried_ = target.entity;
+        registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = true; });
+        break;
+    }
+}
+
+// On what lies a step ahead, or at the feet where nothing does.
+void Simulation::put_down(ecs::Registry& registry) {
+    if (carried_.is_null())
+        return;
+    const vec3 middle = player_.capsule().foot + vec3(0.0f, 0.6f * player_.capsule().height, 0.0f);
+    const vec3 ahead(-std::sin(player_.yaw()), 0.0f, -std::cos(player_.yaw()));
+    float reach = 0.7f;
+    if (const auto wall = physics_.ray(middle, (reach + 0.15f) * ahead, carried_))
+        reach = std::max(0.0f, wall->fraction * (reach + 0.15f) - 0.15f);
+    const vec3 above = middle + reach * ahead;
+    const auto ground = physics_.ray(above, vec3(0.0f, -2.5f, 0.0f), carried_);
+    if (!ground)
+        return;
+    const vec3 place = ground->point;
+    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = false; });
+    scene::Transform transform = registry.get<scene::Transform>(carried_);
+    transform.position = place;
+    transform.rotation = glm::angleAxis(player_.yaw(), vec3(0.0f, 1.0f, 0.0f));
+    physics_.place(registry, carried_, transform);
+    carried_ = ecs::null_entity;
+}
+
+// In the hand it hangs upright, a little behind the look, and not inside walls.
+void Simulation::carry(ecs::Registry& registry) {
+    if (carried_.is_null())
+        return;
+    const quat turned = glm::angleAxis(player_.yaw(), vec3(0.0f, 1.0f, 0.0f));
+    const vec3 eye = player_.eye();
+    vec3 way = turned * hand;
+    way.y += 0.25f * player_.forward().y;
+    if (const auto hit = physics_.ray(eye, 1.3f * way, carried_))
+        way *= std::min(1.0f, std::max(0.0f, hit->fraction * 1.3f - 0.3f));
+    registry.patch<scene::Transform>(carried_, [&](scene::Transform& t) {
+        t.position = eye + way - vec3(0.0f, 0.12f, 0.0f);
+        t.rotation = turned;
+    });
+}
+
+std::uint64_t Simulation::world_hash(ecs::Registry& registry) const {
+    std::uint64_t hash = 0xcbf29ce484222325ull;
+    const auto add = [&](std::uint32_t word) { hash = (hash ^ word) * 0x100000001b3ull; };
+    const auto add_vector = [&](vec3 v) {
+        for (int i = 0; i < 3; ++i)
+            add(std::bit_cast<std::uint32_t>(v[i]));
+    };
+    std::vector<ecs::Entity> entities;
+    registry.view<scene::Mover, scene::Transform>().each(
+        [&](ecs::Entity entity, const scene::Mover&, const scene::Transform&) { entities.push_back(entity); });
+    registry.view<scene::LightSwitch>().each(
+        [&](ecs::Entity entity, const scene::LightSwitch&) { entities.push_back(entity); });
+    std::sort(entities.begin(), entities.end());
+    for (const ecs::Entity entity : entities) {
+        add(entity.index);
+        if (const auto* transform = registry.try_get<scene::Transform>(entity)) {
+            add_vector(transform->position);
+            add_vector({transform->rotation.x, transform->rotation.y, transform->rotation.z});
+            add(std::bit_cast<std::uint32_t>(transform->rotation.w));
+        }
+        if (const auto* state = registry.try_get<scene::MoverState>(entity)) {
+            add(std::bit_cast<std::uint32_t>(state->progress));
+            add(state->open);
+        }
+        if (const auto* lamps = registry.try_get<scene::LightSwitch>(entity))
+            add(lamps->on);
+    }
+    add_vector(player_.capsule().foot);
+    add_vector(player_.velocity());
+    add_vector({player_.yaw(), player_.pitch(), player_.capsule().height});
+    add(carried_.index);
+    return hash;
+}
+
+} // namespace sunfleck::simulation
