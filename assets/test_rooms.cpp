@@ -186,7 +186,8 @@ const std::vector<BuiltInScene>& built_in_scenes() {
                                                    {"four_pillars", make_four_pillars},
                                                    {"gap_room", make_gap_room},
                                                    {"near_occluder", make_near_occluder},
-                                                   {"two_rooms", make_two_rooms}};
+                                                   {"two_rooms", make_two_rooms},
+                                                   {"lantern_house", make_lantern_house}};
     return list;
 }
 

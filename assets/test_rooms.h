@@ -17,6 +17,8 @@ void make_gap_room(SceneBuilder& scene);      // light through a narrow gap: sam
 void make_near_occluder(SceneBuilder& scene); // an occluder brushing light samples (fig. 6-2)
 void make_two_rooms(SceneBuilder& scene);     // a door, walls from 0 to 20 cm: leaks
 
+void make_lantern_house(SceneBuilder& scene); // the demo's level
+
 // A furnace of another albedo and emission.
 void make_furnace_of(SceneBuilder& scene, float albedo, float emission);
 

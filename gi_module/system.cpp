@@ -238,8 +238,11 @@ void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
     scene_bounds_ = bounds;
     const std::uint32_t slots = std::max(shadow_maps_->slots(), 1u);
     rows_.resize(samples_.size());
-    for (std::uint32_t i = 0; i < samples_.size(); ++i)
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) {
         rows_[i] = make_light_row(samples_[i], i % slots, bound_, scene_bounds_);
+        if (samples_[i].bounce > 0)
+            rows_[i].intensity_slot *= vec4(vec3(input_.indirect_scale), 1.0f);
+    }
 }
 
 // The many-light system keeps a map for every sample: with more samples than memory_bytes holds at full size, maps are
@@ -275,12 +278,15 @@ void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& 
         changed_samples_.clear();
     }
     database_.begin_frame();
-    database_.change_samples(samples_, changed_samples_);
+    {
+        const StageTimer timer(cpu_times_, "visibility of samples");
+        database_.change_samples(samples_, changed_samples_);
+    }
     std::vector<MoverPlace> movers;
     for (const scene::DrawItem& item : gpu_scene.draws())
         if (!item.is_static)
             movers.push_back({item.entity, registry.get<scene::MeshInstance>(item.entity).mesh,
-                              registry.get<scene::WorldTransform>(item.entity).matrix});
+                              registry.get<scene::WorldTransform>(item.entity).matrix, item.casts_shadow});
     database_.update_movers(movers, meshes);
 }
 
@@ -294,7 +300,7 @@ void System::mark_by_visibility() {
 void System::mark_by_bounds(const scene::GpuScene& gpu_scene) {
     std::vector<Bounds> touched = gpu_scene.removed_bounds();
     for (const scene::DrawItem& item : gpu_scene.draws())
-        if (item.moved) {
+        if (item.moved && item.casts_shadow) {
             touched.push_back(item.bounds);
             if (!item.previous_bounds.empty())
                 touched.push_back(item.previous_bounds);

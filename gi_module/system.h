@@ -40,6 +40,8 @@ struct FrameInput {
     // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; Settings::map_priority says which
     // go first.
     std::uint32_t map_budget = 0xffffffffu;
+    // Reflected light is multiplied by this: 0 shows direct light alone, from the same samples.
+    float indirect_scale = 1.0f;
     // False colours of the many-light system in place of the irradiance: shared::show_... (many_light_shared.h).
     std::uint32_t show = 0;
     // World to clip; only for Settings::count_passes.

@@ -21,6 +21,11 @@ double milliseconds_since(Clock::time_point start) {
 constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 
+bool is_enlarged(const FrameRequest& request) {
+    return request.tone_map && request.screen_width > 0 && request.screen_height > 0 &&
+           (request.screen_width != request.width || request.screen_height != request.height);
+}
+
 } // namespace
 
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device, std::uint32_t frames_in_flight) {
@@ -39,6 +44,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->lighting_, gi::System::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->g_buffer_pass_, render::GBufferPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->composition_, render::CompositionPass::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));
     renderer->debug_lines_ = std::make_unique<render::DebugLines>(std::move(lines));
     return renderer;
@@ -64,7 +70,8 @@ Status SceneRenderer::upload_meshes() {
 Status SceneRenderer::update(const FrameRequest& request) {
     statistics_.cpu_ms.clear();
     auto start = Clock::now();
-    simulation::set_movers_to_step(registry_, request.step);
+    if (request.simulate)
+        simulation::set_movers_to_step(registry_, request.step);
     statistics_.cpu_ms["simulation"] = milliseconds_since(start);
     SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
     resources_->begin_frame(submission_->serial(), completed);
@@ -80,6 +87,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.show = request.show;
+    input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
     SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
     return {};
@@ -88,15 +96,18 @@ Status SceneRenderer::update(const FrameRequest& request) {
 Status SceneRenderer::make_output(const FrameRequest& request) {
     const VkFormat format = request.tone_map ? display_format : linear_format;
     const gpu::ImageDescription& has = output_.description();
-    if (output_ && has.width == request.width && has.height == request.height && has.format == format)
+    const bool enlarged = is_enlarged(request);
+    const std::uint32_t width = enlarged ? request.screen_width : request.width;
+    const std::uint32_t height = enlarged ? request.screen_height : request.height;
+    if (output_ && has.width == width && has.height == height && has.format == format)
         return {};
     if (output_)
         resources_->retire(std::move(output_));
     gpu::ImageDescription description;
     description.name = "picture";
     description.format = format;
-    description.width = request.width;
-    description.height = request.height;
+    description.width = width;
+    description.height = height;
     description.usage =
         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     SUNFLECK_ASSIGN(output_, gpu::Image::create(device_, description));
@@ -112,7 +123,7 @@ void SceneRenderer::draw_samples() {
     }
 }
 
-Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request) {
+Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const auto start = Clock::now();
     SUNFLECK_TRY(make_output(request));
     shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
@@ -138,11 +149,18 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     registry_.view<scene::Environment>().each(
         [&](ecs::Entity, const scene::Environment& environment) { composition.sky += environment.radiance; });
     const gpu::ResourceId output = graph_->import_image(output_);
-    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, output);
+    const bool enlarged = is_enlarged(request);
+    const gpu::ResourceId picture =
+        enlarged ? graph_->create_image("small picture", display_format, request.width, request.height) : output;
+    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, picture);
     if (request.show_samples && request.tone_map) {
         draw_samples();
-        debug_lines_->add(*graph_, g_buffer, camera_slice, output);
+        debug_lines_->add(*graph_, g_buffer, camera_slice, picture);
     }
+    if (enlarged)
+        upscale_.add(*graph_, picture, output);
+    if (overlay)
+        SUNFLECK_TRY(overlay(*graph_, output, *resources_));
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
     SUNFLECK_TRY(graph_->compile());
     SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
@@ -159,12 +177,13 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
     SUNFLECK_TRY(submission_->submit());
     SUNFLECK_TRY(submission_->wait(serial));
     statistics_.frame_ms = milliseconds_since(start);
-    timers_->collect(serial);
     collect_statistics();
     return {};
 }
 
 void SceneRenderer::collect_statistics() {
+    if (const auto completed = submission_->completed())
+        timers_->collect(*completed);
     for (const auto& [stage, time] : lighting_->cpu_times())
         statistics_.cpu_ms[stage] = time;
     statistics_.gpu_ms = timers_->latest().milliseconds;

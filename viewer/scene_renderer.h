@@ -6,15 +6,20 @@
 #include "engine/io/scene_file.h"
 #include "engine/render/composition.h"
 #include "engine/render/debug_lines.h"
+#include "engine/render/upscale.h"
 #include "gi_module/system.h"
 
 #include <filesystem>
+#include <functional>
 
 namespace sunfleck::viewer {
 
 struct FrameRequest {
     scene::CameraView camera;
     std::uint32_t width = 640, height = 360;
+    // Of output(), if they differ from the size that is rendered: the picture is enlarged (tone-mapped pictures only).
+    std::uint32_t screen_width = 0, screen_height = 0;
+    bool simulate = true; // false: the caller has moved everything
     std::uint32_t view = shared::view_final;
     bool tone_map = true;      // false: scene-linear floats, for EXR
     std::uint32_t show = 0;    // false colours of the lighting (gi::FrameInput::show); with view_false_colours
@@ -22,6 +27,7 @@ struct FrameRequest {
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step that the movers show
     std::uint32_t map_budget = 0xffffffffu;
+    float indirect_scale = 1.0f; // of reflected light
 };
 
 struct FrameStatistics {
@@ -54,8 +60,9 @@ public:
     // Brings movers, transforms, rays and lighting to `request.step` (CPU work of a frame).
     Status update(const FrameRequest& request);
     // Records the frame into `commands`, after update. The picture is output() afterwards, in the state that a copy
-    // reads from.
-    Status record(VkCommandBuffer commands, const FrameRequest& request);
+    // reads from. `overlay` may add passes that draw over it.
+    using Overlay = std::function<Status(gpu::FrameGraph&, gpu::ResourceId target, gpu::FrameResources&)>;
+    Status record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay = {});
     const gpu::Image& output() const { return output_; }
 
     // update, record, submit and wait; fills statistics.
@@ -64,6 +71,8 @@ public:
     const FrameStatistics& statistics() const { return statistics_; }
     // The frame graph of the last frame, as text.
     std::string print_graph() const { return graph_->print(); }
+    // After a submission that was not waited for: the statistics of the newest frame that is complete.
+    void collect_statistics();
 
     // Takes newer SPIR-V for one shader. On failure everything stays as it was.
     Status replace_shader(const std::string& path, std::vector<std::uint32_t> words);
@@ -71,7 +80,6 @@ public:
 private:
     explicit SceneRenderer(gpu::Device& device) : device_(device) {}
     Status make_output(const FrameRequest& request);
-    void collect_statistics();
     void draw_samples();
 
     gpu::Device& device_;
@@ -88,6 +96,7 @@ private:
     std::unique_ptr<gi::System> lighting_;
     render::GBufferPass g_buffer_pass_;
     render::CompositionPass composition_;
+    render::UpscalePass upscale_;
     std::unique_ptr<render::DebugLines> debug_lines_;
     gpu::Image output_;
     shared::CameraRow previous_camera_{};

@@ -12,14 +12,7 @@ namespace sunfleck::app {
 Result<std::unique_ptr<Swapchain>> Swapchain::create(gpu::Device& device, Window& window,
                                                      std::uint32_t frames_in_flight) {
     std::unique_ptr<Swapchain> chain(new Swapchain(device, window));
-    SUNFLECK_VK(glfwCreateWindowSurface(device.instance(), window.handle(), nullptr, &chain->surface_),
-                "making the window's surface");
-    VkBool32 supported = VK_FALSE;
-    vkGetPhysicalDeviceSurfaceSupportKHR(device.physical_device(), device.queue_family(), chain->surface_, &supported);
-    if (!supported)
-        return Error{"device '" + device.traits().name +
-                     "' cannot show pictures in this window; choose another with "
-                     "--device, or run with --headless"};
+    SUNFLECK_TRY(chain->make_surface());
     const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     chain->acquired_.resize(frames_in_flight + 1);
     for (VkSemaphore& semaphore : chain->acquired_)
@@ -36,6 +29,38 @@ Swapchain::~Swapchain() {
         vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
 }
 
+Status Swapchain::make_surface() {
+    if (surface_ != VK_NULL_HANDLE)
+        vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
+    surface_ = VK_NULL_HANDLE;
+    SUNFLECK_VK(glfwCreateWindowSurface(device_.instance(), window_.handle(), nullptr, &surface_),
+                "making the window's surface");
+    VkBool32 supported = VK_FALSE;
+    vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical_device(), device_.queue_family(), surface_, &supported);
+    if (!supported)
+        return Error{"device '" + device_.traits().name +
+                     "' cannot show pictures in this window; choose another with --device, or run with --headless"};
+    surface_lost_ = false;
+    return {};
+}
+
+void Swapchain::set_vertical_sync(bool wait) {
+    stale_ = stale_ || wait != vertical_sync_;
+    vertical_sync_ = wait;
+}
+
+VkPresentModeKHR Swapchain::present_mode() const {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count, nullptr);
+    std::vector<VkPresentModeKHR> modes(count);
+    vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count, modes.data());
+    if (!vertical_sync_)
+        for (const VkPresentModeKHR mode : {VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR})
+            if (std::find(modes.begin(), modes.end(), mode) != modes.end())
+                return mode;
+    return VK_PRESENT_MODE_FIFO_KHR; // every device has it
+}
+
 void Swapchain::destroy_chain() {
     for (VkSemaphore semaphore : rendered_)
         device_.vk.vkDestroySemaphore(device_.handle(), semaphore, nullptr);
@@ -48,6 +73,8 @@ void Swapchain::destroy_chain() {
 Status Swapchain::rebuild() {
     SUNFLECK_TRY(device_.wait_idle());
     destroy_chain();
+    if (surface_lost_)
+        SUNFLECK_TRY(make_surface());
     VkSurfaceCapabilitiesKHR capabilities;
     SUNFLECK_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical_device(), surface_, &capabilities),
                 "asking what the window can show");
@@ -85,7 +112,7 @@ Status Swapchain::rebuild() {
     info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     info.preTransform = capabilities.currentTransform;
     info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
-    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+    info.presentMode = present_mode();
     info.clipped = VK_TRUE;
     SUNFLECK_VK(device_.vk.vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &chain_), "making the swapchain");
     device_.vk.vkGetSwapchainImagesKHR(device_.handle(), chain_, &count, nullptr);
@@ -112,11 +139,15 @@ Result<bool> Swapchain::acquire(std::uint64_t serial) {
     current_.acquired = acquired_[serial % acquired_.size()];
     const VkResult result = device_.vk.vkAcquireNextImageKHR(device_.handle(), chain_, UINT64_MAX, current_.acquired,
                                                              VK_NULL_HANDLE, &image_);
-    if (result == VK_ERROR_OUT_OF_DATE_KHR) {
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
         stale_ = true;
+        surface_lost_ = result == VK_ERROR_SURFACE_LOST_KHR;
         return false;
     }
-    SUNFLECK_VK(result, "getting the window's next image");
+    if (result == VK_SUBOPTIMAL_KHR) // still shown; made anew next time
+        stale_ = true;
+    else
+        SUNFLECK_VK(result, "getting the window's next image");
     current_.rendered = rendered_[image_];
     return true;
 }
@@ -158,8 +189,9 @@ Status Swapchain::present() {
     info.pSwapchains = &chain_;
     info.pImageIndices = &image_;
     const VkResult result = device_.vk.vkQueuePresentKHR(device_.queue(), &info);
-    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
         stale_ = true;
+        surface_lost_ = surface_lost_ || result == VK_ERROR_SURFACE_LOST_KHR;
         return {};
     }
     SUNFLECK_VK(result, "showing the picture");

@@ -3,38 +3,124 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace sunfleck::app {
 namespace {
 
-void forward_key(GLFWwindow* handle, int key, int, int action, int) {
-    auto* window = static_cast<Window*>(glfwGetWindowUserPointer(handle));
-    if (action != GLFW_PRESS || !window->on_key)
-        return;
-    switch (key) {
-    case GLFW_KEY_ESCAPE:
-        window->on_key(Key::escape);
-        break;
-    case GLFW_KEY_SPACE:
-        window->on_key(Key::space);
-        break;
-    case GLFW_KEY_I:
-        window->on_key(Key::i);
-        break;
-    case GLFW_KEY_P:
-        window->on_key(Key::p);
-        break;
-    case GLFW_KEY_S:
-        window->on_key(Key::s);
-        break;
-    case GLFW_KEY_F:
-        window->on_key(Key::f);
-        break;
-    default:
-        break;
-    }
+constexpr float dead_zone = 0.16f; // of a stick
+
+struct NamedKey {
+    Key key;
+    const char* name;
+};
+constexpr NamedKey named_keys[] = {{key_space, "space"},
+                                   {key_escape, "escape"},
+                                   {key_enter, "enter"},
+                                   {key_tab, "tab"},
+                                   {259, "backspace"},
+                                   {260, "insert"},
+                                   {261, "delete"},
+                                   {key_right, "right"},
+                                   {key_left, "left"},
+                                   {key_down, "down"},
+                                   {key_up, "up"},
+                                   {266, "page up"},
+                                   {267, "page down"},
+                                   {268, "home"},
+                                   {269, "end"},
+                                   {key_left_shift, "left shift"},
+                                   {key_left_control, "left control"},
+                                   {342, "left alt"},
+                                   {344, "right shift"},
+                                   {345, "right control"},
+                                   {346, "right alt"},
+                                   {39, "'"},
+                                   {44, ","},
+                                   {45, "-"},
+                                   {46, "."},
+                                   {47, "/"},
+                                   {59, ";"},
+                                   {61, "="},
+                                   {91, "["},
+                                   {92, "\\"},
+                                   {93, "]"},
+                                   {96, "`"}};
+
+vec2 without_dead_zone(vec2 stick) {
+    const float length = glm::length(stick);
+    if (length < dead_zone)
+        return vec2(0.0f);
+    return stick / length * std::min((length - dead_zone) / (1.0f - dead_zone), 1.0f);
 }
 
 } // namespace
+
+std::string key_name(Key key) {
+    for (const NamedKey& named : named_keys)
+        if (named.key == key)
+            return named.name;
+    if ((key >= 48 && key <= 57) || (key >= 65 && key <= 90))
+        return std::string(1, char(key));
+    if (key >= key_f1 && key < key_f1 + 25)
+        return "F" + std::to_string(key - key_f1 + 1);
+    if (key >= first_mouse_button && key < key_count)
+        return "mouse " + std::to_string(key - first_mouse_button + 1);
+    return key == no_key ? "none" : "key " + std::to_string(key);
+}
+
+Key key_by_name(const std::string& name) {
+    for (Key key = 0; key < key_count; ++key)
+        if (key_name(key) == name)
+            return key;
+    return no_key;
+}
+
+bool InputState::hit(Key key) const {
+    return std::find(went_down.begin(), went_down.end(), key) != went_down.end();
+}
+
+// What the window system calls.
+struct WindowEvents {
+    static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
+    static void set(Window& window, Key key, bool down) {
+        if (key < 0 || key >= key_count)
+            return;
+        window.pending_.keys[std::size_t(key)] = down;
+        if (down)
+            window.pending_.went_down.push_back(key);
+    }
+    static void key(GLFWwindow* handle, int key, int, int action, int) {
+        if (action != GLFW_REPEAT)
+            set(of(handle), key, action == GLFW_PRESS);
+    }
+    static void letter(GLFWwindow* handle, unsigned int code) { of(handle).pending_.text.push_back(code); }
+    static void button(GLFWwindow* handle, int button, int action, int) {
+        set(of(handle), first_mouse_button + button, action == GLFW_PRESS);
+        if (button < 3)
+            of(handle).pending_.mouse_buttons[std::size_t(button)] = action == GLFW_PRESS;
+    }
+    static void pointer(GLFWwindow* handle, double x, double y) {
+        Window& window = of(handle);
+        const vec2 place{float(x), float(y)};
+        if (window.pending_.captured && !window.skip_motion_)
+            window.pending_.mouse_motion += place - window.last_mouse_;
+        window.skip_motion_ = false;
+        window.last_mouse_ = place;
+        window.pending_.mouse = place;
+    }
+    static void scroll(GLFWwindow* handle, double, double y) { of(handle).pending_.scroll += float(y); }
+    static void focus(GLFWwindow* handle, int focused) {
+        Window& window = of(handle);
+        window.pending_.focused = focused == GLFW_TRUE;
+        window.skip_motion_ = true;
+        if (!focused) { // releases that happen elsewhere are never heard of
+            window.pending_.keys.fill(false);
+            window.pending_.mouse_buttons.fill(false);
+        }
+    }
+};
 
 Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::uint32_t width, std::uint32_t height) {
     if (!glfwInit())
@@ -46,8 +132,16 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
     window->handle_ = glfwCreateWindow(int(width), int(height), title.c_str(), nullptr, nullptr);
     if (window->handle_ == nullptr)
         return Error{"a window could not be opened; run with --headless"};
-    glfwSetWindowUserPointer(window->handle_, window.get());
-    glfwSetKeyCallback(window->handle_, forward_key);
+    GLFWwindow* handle = window->handle_;
+    glfwSetWindowSizeLimits(handle, 160, 120, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowUserPointer(handle, window.get());
+    glfwSetKeyCallback(handle, WindowEvents::key);
+    glfwSetCharCallback(handle, WindowEvents::letter);
+    glfwSetMouseButtonCallback(handle, WindowEvents::button);
+    glfwSetCursorPosCallback(handle, WindowEvents::pointer);
+    glfwSetScrollCallback(handle, WindowEvents::scroll);
+    glfwSetWindowFocusCallback(handle, WindowEvents::focus);
+    window->pending_.focused = true; // where there is no window manager, nobody says so
     return window;
 }
 
@@ -63,12 +157,51 @@ std::vector<const char*> Window::instance_extensions() const {
     return {names, names + count};
 }
 
-void Window::poll() {
+const InputState& Window::poll() {
     glfwPollEvents();
+    read_gamepad();
+    input_ = pending_;
+    pending_.went_down.clear();
+    pending_.text.clear();
+    pending_.mouse_motion = vec2(0.0f);
+    pending_.scroll = 0.0f;
+    return input_;
 }
+
+// The first one that the mapping database knows; it may come and go.
+void Window::read_gamepad() {
+    Gamepad& pad = pending_.gamepad;
+    pad = {};
+    for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
+        GLFWgamepadstate state;
+        if (!glfwJoystickIsGamepad(id) || !glfwGetGamepadState(id, &state))
+            continue;
+        pad.present = true;
+        pad.name = glfwGetGamepadName(id);
+        pad.left = without_dead_zone({state.axes[0], state.axes[1]});
+        pad.right = without_dead_zone({state.axes[2], state.axes[3]});
+        pad.left_trigger = 0.5f * (state.axes[4] + 1.0f);
+        pad.right_trigger = 0.5f * (state.axes[5] + 1.0f);
+        for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; ++button)
+            pad.buttons |= state.buttons[button] == GLFW_PRESS ? 1u << button : 0u;
+        return;
+    }
+}
+
 void Window::wait(double seconds) {
     glfwWaitEventsTimeout(seconds);
 }
+
+void Window::capture_pointer(bool capture) {
+    if (capture == pending_.captured)
+        return;
+    pending_.captured = capture;
+    skip_motion_ = true;
+    glfwSetInputMode(handle_, GLFW_CURSOR, capture ? GLFW_CURSOR_DISABLED : GLFW_CURSOR_NORMAL);
+    if (glfwRawMouseMotionSupported())
+        glfwSetInputMode(handle_, GLFW_RAW_MOUSE_MOTION, capture ? GLFW_TRUE : GLFW_FALSE);
+}
+
 bool Window::should_close() const {
     return glfwWindowShouldClose(handle_);
 }
@@ -78,24 +211,47 @@ void Window::close() {
 void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(handle_, title.c_str());
 }
+bool Window::full_screen() const {
+    return glfwGetWindowMonitor(handle_) != nullptr;
+}
 
-void Window::toggle_full_screen() {
-    if (glfwGetWindowMonitor(handle_) != nullptr) {
+void Window::set_full_screen(bool wanted) {
+    if (wanted == full_screen())
+        return;
+    if (!wanted) {
         glfwSetWindowMonitor(handle_, nullptr, windowed_[0], windowed_[1], windowed_[2], windowed_[3], 0);
         return;
     }
     glfwGetWindowPos(handle_, &windowed_[0], &windowed_[1]);
     glfwGetWindowSize(handle_, &windowed_[2], &windowed_[3]);
-    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
-    if (const GLFWvidmode* mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr)
-        glfwSetWindowMonitor(handle_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    int count = 0;
+    GLFWmonitor** monitors = glfwGetMonitors(&count);
+    GLFWmonitor* best = glfwGetPrimaryMonitor();
+    int largest = 0;
+    for (int i = 0; i < count; ++i) {
+        int x = 0, y = 0;
+        glfwGetMonitorPos(monitors[i], &x, &y);
+        const GLFWvidmode* mode = glfwGetVideoMode(monitors[i]);
+        if (mode == nullptr)
+            continue;
+        const int wide = std::min(x + mode->width, windowed_[0] + windowed_[2]) - std::max(x, windowed_[0]);
+        const int high = std::min(y + mode->height, windowed_[1] + windowed_[3]) - std::max(y, windowed_[1]);
+        if (wide > 0 && high > 0 && wide * high > largest) {
+            largest = wide * high;
+            best = monitors[i];
+        }
+    }
+    if (const GLFWvidmode* mode = best != nullptr ? glfwGetVideoMode(best) : nullptr)
+        glfwSetWindowMonitor(handle_, best, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
 void Window::size(std::uint32_t& width, std::uint32_t& height) const {
     int w = 0, h = 0;
     glfwGetFramebufferSize(handle_, &w, &h);
-    width = std::uint32_t(w);
-    height = std::uint32_t(h);
+    // A minimised window keeps its size on some window systems.
+    const bool hidden = glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) == GLFW_TRUE;
+    width = hidden ? 0 : std::uint32_t(std::max(w, 0));
+    height = hidden ? 0 : std::uint32_t(std::max(h, 0));
 }
 
 } // namespace sunfleck::app

@@ -1,10 +1,11 @@
-// A window, its keys and its swapchain.
+// A window, its input and its swapchain.
 #pragma once
 
+#include "engine/core/maths.h"
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/submission.h"
 
-#include <functional>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,7 +14,41 @@ struct GLFWwindow;
 
 namespace sunfleck::app {
 
-enum class Key { escape, space, i, p, s, f };
+// Keys by the window system's numbers (those of GLFW); mouse buttons follow them, so that both can be bound to actions.
+using Key = int;
+inline constexpr Key no_key = -1, key_space = 32, key_escape = 256, key_enter = 257, key_tab = 258, key_right = 262,
+                     key_left = 263, key_down = 264, key_up = 265, key_f1 = 290, key_left_shift = 340,
+                     key_left_control = 341, first_mouse_button = 400, key_count = 408;
+// "W", "space", "left shift", "mouse 2".
+std::string key_name(Key key);
+// The other way round; no_key if there is none of that name.
+Key key_by_name(const std::string& name);
+
+struct Gamepad {
+    bool present = false;
+    vec2 left{0.0f}, right{0.0f};                    // sticks, -1 to 1, without their dead zone; y downwards
+    float left_trigger = 0.0f, right_trigger = 0.0f; // 0 to 1
+    std::uint32_t buttons = 0; // bits in GLFW's order: A, B, X, Y, bumpers, back, start, guide, thumbs, d-pad
+    bool pressed(int button) const { return (buttons >> button & 1u) != 0; }
+    std::string name;
+};
+
+// What happened up to a poll.
+struct InputState {
+    std::array<bool, key_count> keys{};
+    std::vector<Key> went_down; // since the last poll, in order
+    std::vector<std::uint32_t> text;
+    vec2 mouse{0.0f};        // pixels
+    vec2 mouse_motion{0.0f}; // since the last poll, while captured
+    std::array<bool, 3> mouse_buttons{};
+    float scroll = 0.0f;
+    bool focused = true;
+    bool captured = false; // the pointer is hidden and moves the view
+    Gamepad gamepad;
+
+    bool down(Key key) const { return key >= 0 && key < key_count && keys[std::size_t(key)]; }
+    bool hit(Key key) const;
+};
 
 class Window {
 public:
@@ -25,27 +60,34 @@ public:
 
     // Instance extensions that the device must be created with.
     std::vector<const char*> instance_extensions() const;
-    // Handles pending events; calls `on_key` for each key pressed.
-    void poll();
+    // Handles pending events. All keys are up while the window is not focused.
+    const InputState& poll();
+    const InputState& input() const { return input_; }
     // Sleeps until something happens, at most this long; for minimised windows.
     void wait(double seconds);
+    void capture_pointer(bool capture);
     bool should_close() const;
     void close();
     void set_title(const std::string& title);
-    void toggle_full_screen();
+    // On the monitor that shows most of the window.
+    void set_full_screen(bool full_screen);
+    bool full_screen() const;
     // Pixels; 0x0 while minimised.
     void size(std::uint32_t& width, std::uint32_t& height) const;
     GLFWwindow* handle() const { return handle_; }
 
-    std::function<void(Key)> on_key;
-
 private:
+    friend struct WindowEvents;
     Window() = default;
+    void read_gamepad();
     GLFWwindow* handle_ = nullptr;
     int windowed_[4] = {};
+    InputState input_, pending_;
+    vec2 last_mouse_{0.0f};
+    bool skip_motion_ = true; // the pointer has just been captured
 };
 
-// The window's images. Made anew when the window changes size.
+// The window's images. Made anew when the window changes size, and with a new surface when that is lost.
 class Swapchain {
 public:
     static Result<std::unique_ptr<Swapchain>> create(gpu::Device& device, Window& window,
@@ -54,8 +96,12 @@ public:
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
 
+    // Waits for the screen (no torn pictures), or shows pictures as soon as they are there, where the device can.
+    void set_vertical_sync(bool wait);
     // Gets the next image. False: there is none now (minimised, or the swapchain was remade); try again next time.
     Result<bool> acquire(std::uint64_t serial);
+    // Of the acquired image.
+    VkExtent2D extent() const { return extent_; }
     // Adds a pass that scales `source` (in the state that a copy reads from) onto the acquired image.
     Status record_blit(VkCommandBuffer commands, gpu::FrameResources& resources, const gpu::Image& source);
     const gpu::PresentSemaphores& semaphores() const { return current_; }
@@ -63,7 +109,9 @@ public:
 
 private:
     Swapchain(gpu::Device& device, Window& window) : device_(device), window_(window) {}
+    Status make_surface();
     Status rebuild();
+    VkPresentModeKHR present_mode() const;
     void destroy_chain();
 
     gpu::Device& device_;
@@ -77,7 +125,7 @@ private:
     std::vector<VkSemaphore> rendered_; // by image
     gpu::PresentSemaphores current_;
     std::uint32_t image_ = 0;
-    bool stale_ = true;
+    bool stale_ = true, surface_lost_ = false, vertical_sync_ = true;
 };
 
 } // namespace sunfleck::app

@@ -142,6 +142,13 @@ Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry) {
     depth.depthCompareOp = d.depth_compare;
     VkPipelineColorBlendAttachmentState plain{};
     plain.colorWriteMask = 0xf;
+    if (d.blend) {
+        plain.blendEnable = VK_TRUE;
+        plain.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
+        plain.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+        plain.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
+        plain.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+    }
     const std::vector<VkPipelineColorBlendAttachmentState> blends(d.colour_formats.size(), plain);
     VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     blend.attachmentCount = std::uint32_t(blends.size());

@@ -41,6 +41,7 @@ struct GraphicsDescription {
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER; // reverse Z
     bool depth_write = true;
     bool depth_clamp = false;
+    bool blend = false; // colours over what is there, by their alpha
 };
 
 class Pipeline {

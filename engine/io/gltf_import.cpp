@@ -355,8 +355,14 @@ Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, 
     if (bytes.empty())
         return failure("the file is empty");
     const bool binary = bytes.compare(0, 4, "glTF") == 0;
-    if (!nesting_is_sane(binary ? std::string_view(bytes).substr(0, std::min<std::size_t>(bytes.size(), 1u << 26))
-                                : std::string_view(bytes)))
+    std::string_view json = bytes;
+    if (binary) { // 12 bytes of header, then the JSON chunk's length and type; what follows may look like anything
+        std::uint32_t length = 0;
+        if (bytes.size() >= 20)
+            std::memcpy(&length, bytes.data() + 12, sizeof length);
+        json = json.substr(std::min<std::size_t>(20, bytes.size()), length);
+    }
+    if (!nesting_is_sane(json))
         return failure("its JSON is nested too deeply");
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     tinygltf::TinyGLTF loader;

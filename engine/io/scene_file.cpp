@@ -35,11 +35,11 @@ ComponentAccess access() {
 }
 
 const std::vector<ComponentAccess>& saved_components() {
-    static const std::vector<ComponentAccess> list = {access<scene::AreaLight>(),      access<scene::Mover>(),
-                                                      access<scene::Exposure>(),       access<scene::Environment>(),
-                                                      access<scene::SurfacePattern>(), access<scene::SplinePath>(),
-                                                      access<scene::RigidBody>(),      access<scene::LightSwitch>(),
-                                                      access<scene::PlayerStart>(),    access<scene::Lantern>()};
+    static const std::vector<ComponentAccess> list = {
+        access<scene::AreaLight>(),     access<scene::Mover>(),          access<scene::Exposure>(),
+        access<scene::Environment>(),   access<scene::SurfacePattern>(), access<scene::SplinePath>(),
+        access<scene::RigidBody>(),     access<scene::LightSwitch>(),    access<scene::PlayerStart>(),
+        access<scene::ShadowCasting>(), access<scene::Lantern>()};
     return list;
 }
 

@@ -1,5 +1,7 @@
 #include "engine/raytrace/ray_scene.h"
 
+#include "engine/scene/pattern_shared.h"
+
 #include <embree3/rtcore.h>
 #include <unordered_map>
 
@@ -22,6 +24,7 @@ struct Instance {
     mat3 normals{1.0f};
     scene::Material material;
     bool is_static = true;
+    scene::SurfacePattern pattern{scene::PatternKind::none};
 };
 
 bool same_geometry(const Instance& a, const Instance& b) {
@@ -168,6 +171,8 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
             Instance instance{entity, mesh.mesh, transform.matrix, normal_matrix(transform.matrix), {}, true};
             if (const scene::Material* material = registry.try_get<scene::Material>(entity))
                 instance.material = *material;
+            if (const scene::SurfacePattern* pattern = registry.try_get<scene::SurfacePattern>(entity))
+                instance.pattern = *pattern;
             instance.is_static = scene::is_static(registry, entity);
             (instance.is_static ? fresh : movers).push_back(instance);
         });
@@ -178,7 +183,9 @@ Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes)
     bool same_static_materials = same_static, same_emission = same_static;
     for (std::uint32_t i = 0; same_static && i < static_count; ++i) {
         same_static = same_geometry(self.instances[i], fresh[i]);
-        same_static_materials = same_static_materials && reflects_alike(self.instances[i].material, fresh[i].material);
+        same_static_materials = same_static_materials &&
+                                reflects_alike(self.instances[i].material, fresh[i].material) &&
+                                self.instances[i].pattern == fresh[i].pattern;
         same_emission = same_emission && self.instances[i].material.emission == fresh[i].material.emission;
     }
     bool same_movers = same_static && self.instances.size() == fresh.size();
@@ -279,6 +286,14 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
     if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f)
         point.shading_normal = -point.shading_normal;
     point.material = &instance.material;
+    point.base_colour = instance.material.base_colour;
+    if (instance.pattern.kind != scene::PatternKind::none) {
+        const mat4 to_local = glm::inverse(instance.matrix);
+        const float share =
+            shared::pattern_share(std::uint32_t(instance.pattern.kind), instance.pattern.scale,
+                                  vec3(to_local * vec4(point.position, 1.0f)), mat3(to_local) * point.geometric_normal);
+        point.base_colour = glm::mix(point.base_colour, instance.pattern.colour, share);
+    }
     point.entity = instance.entity;
     return point;
 }

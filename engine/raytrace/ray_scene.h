@@ -32,6 +32,7 @@ struct SurfacePoint {
     vec3 geometric_normal{0.0f}; // of the triangle's front side
     vec3 shading_normal{0.0f};   // interpolated, on the geometric normal's side
     const scene::Material* material = nullptr;
+    vec3 base_colour{0.8f}; // of the material, or of its pattern at this point
     ecs::Entity entity;
 };
 

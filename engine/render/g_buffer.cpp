@@ -2,6 +2,9 @@
 
 #include "engine/gpu/rendering.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace sunfleck::render {
 
 Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
@@ -16,6 +19,43 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     SUNFLECK_ASSIGN(pass.pipeline_, pipelines.graphics(description));
     return pass;
 }
+
+namespace {
+
+bool outside(const mat4& view_projection, const Bounds& bounds) {
+    // Outside of one plane of the view with all corners. Reverse Z: the near plane is z = w, the far one at infinity.
+    int left = 0, right = 0, below = 0, above = 0, behind = 0;
+    for (int i = 0; i < 8; ++i) {
+        const vec3 corner(i & 1 ? bounds.maximum.x : bounds.minimum.x, i & 2 ? bounds.maximum.y : bounds.minimum.y,
+                          i & 4 ? bounds.maximum.z : bounds.minimum.z);
+        const vec4 clip = view_projection * vec4(corner, 1.0f);
+        left += clip.x < -clip.w;
+        right += clip.x > clip.w;
+        below += clip.y < -clip.w;
+        above += clip.y > clip.w;
+        behind += clip.w < 0.0f;
+    }
+    return left == 8 || right == 8 || below == 8 || above == 8 || behind == 8;
+}
+
+// What the camera may see, nearest first: what is hidden by then is not shaded.
+std::vector<const scene::DrawItem*> visible_from(const shared::CameraRow& camera,
+                                                 const std::vector<scene::DrawItem>& draws) {
+    std::vector<std::pair<float, const scene::DrawItem*>> seen;
+    const vec3 eye(camera.position);
+    for (const scene::DrawItem& item : draws)
+        if (!outside(camera.view_projection, item.bounds)) {
+            const vec3 nearest = glm::clamp(eye, item.bounds.minimum, item.bounds.maximum);
+            seen.emplace_back(glm::length(nearest - eye), &item);
+        }
+    std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<const scene::DrawItem*> result;
+    for (const auto& [distance, item] : seen)
+        result.push_back(item);
+    return result;
+}
+
+} // namespace
 
 GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                          std::uint32_t width, std::uint32_t height) const {
@@ -67,8 +107,11 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         const VkDeviceSize offsets[] = {0, 0};
         vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);
         vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
-        for (const scene::DrawItem& item : scene.draws())
-            vk.vkCmdDrawIndexed(context.commands, item.index_count, 1, item.first_index, item.vertex_offset, item.row);
+        shared::CameraRow row;
+        std::memcpy(&row, camera.data, sizeof row);
+        for (const scene::DrawItem* item : visible_from(row, scene.draws()))
+            vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset,
+                                item->row);
     }
     vk.vkCmdEndRendering(context.commands);
     return status;

@@ -3,6 +3,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
+#include "engine/scene/pattern_shared.h"
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
@@ -31,6 +32,14 @@ void main() {
     const vec4 emission = rows[in_row].emission;
     out_surface = (in_row + 1u) | (emission.w > 0.0 ? surface_area_light : 0u) |
                   (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u);
-    out_albedo = vec4(rows[in_row].base_colour.rgb, 1.0);
+    const vec4 base = rows[in_row].base_colour;
+    vec3 albedo = base.rgb;
+    if (base.w > 0.0) {
+        const vec4 pattern = rows[in_row].pattern;
+        const vec3 local = (rows[in_row].inverse_model * vec4(in_position, 1.0)).xyz;
+        const vec3 local_normal = mat3(rows[in_row].inverse_model) * geometric;
+        albedo = mix(albedo, pattern.rgb, pattern_share(uint(base.w), pattern.w, local, local_normal));
+    }
+    out_albedo = vec4(albedo, 1.0);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

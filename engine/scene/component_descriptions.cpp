@@ -152,6 +152,15 @@ const TypeDescription& SurfacePattern::description() {
     return type;
 }
 
+const TypeDescription& ShadowCasting::description() {
+    static const TypeDescription type{
+        "ShadowCasting",
+        1,
+        "Whether a moving mesh casts shadows.",
+        {SUNFLECK_FIELD(ShadowCasting, casts, "", 0, 1, "Off for what is thin, or holds a lamp")}};
+    return type;
+}
+
 void register_components(ecs::Registry& registry) {
     registry.register_component<Name>();
     registry.register_component<Transform>();
@@ -167,6 +176,7 @@ void register_components(ecs::Registry& registry) {
     registry.register_component<Environment>();
     registry.register_component<Mover>();
     registry.register_component<SurfacePattern>();
+    registry.register_component<ShadowCasting>();
     register_simulation_components(registry);
 }
 

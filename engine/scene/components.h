@@ -136,6 +136,13 @@ struct SurfacePattern {
     PatternKind kind = PatternKind::checker;
     vec3 colour{0.5f};   // the second one; the first is the material's
     float scale = 0.25f; // m, of a square, plank, brick or vein
+    bool operator==(const SurfacePattern&) const = default;
+    static const TypeDescription& description();
+};
+
+// Without this component, everything casts shadows.
+struct ShadowCasting {
+    bool casts = false; // off for what is thin, or holds a lamp
     static const TypeDescription& description();
 };
 

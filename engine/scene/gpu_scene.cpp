@@ -85,6 +85,8 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
                                              glm::dot(transform.matrix[2], transform.matrix[2])}));
             item.bounds = transform_bounds(transform.matrix, meshes.bounds(instance.mesh));
             item.is_static = is_static(registry, entity);
+            if (const ShadowCasting* casting = registry.try_get<ShadowCasting>(entity))
+                item.casts_shadow = item.is_static || casting->casts;
             bounds_.add(item.bounds);
             if (item.is_static)
                 static_bounds_.add(item.bounds);
@@ -93,11 +95,16 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             const bool known = !previous.bounds.empty();
             item.moved = !known || previous.model != transform.matrix;
             item.previous_bounds = previous.bounds;
-            shared::InstanceRow row;
+            shared::InstanceRow row{};
             row.model = transform.matrix;
             row.previous_model = known ? previous.model : transform.matrix;
             row.normal_matrix = mat4(normal_matrix(transform.matrix));
-            row.base_colour = vec4(surface.base_colour, 1.0f);
+            row.base_colour = vec4(surface.base_colour, 0.0f);
+            if (const SurfacePattern* pattern = registry.try_get<SurfacePattern>(entity)) {
+                row.base_colour.w = float(pattern->kind);
+                row.pattern = vec4(pattern->colour, pattern->scale);
+                row.inverse_model = glm::inverse(transform.matrix);
+            }
             row.emission = vec4(surface.emission, registry.has<AreaLight>(entity) ? 1.0f : 0.0f);
             rows.push_back(row);
             previous = {transform.matrix, item.bounds, true};

@@ -8,8 +8,10 @@ struct InstanceRow {
     mat4 model;          //   0: object to world
     mat4 previous_model; //  64: the same in the previous frame
     mat4 normal_matrix;  // 128: cofactors of `model`, for normals (upper 3x3)
-    vec4 base_colour;    // 192: rgb
+    vec4 base_colour;    // 192: rgb; w: kind of pattern (pattern_shared.h)
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
+    vec4 pattern;        // 224: rgb of the second colour; w: scale, m
+    mat4 inverse_model;  // 240: world to object, for patterns
 };
 
 // A surface id in the G-buffer: instance row + 1 in the low bits; 0 where nothing is.
@@ -19,6 +21,6 @@ SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::InstanceRow) == 224);
+static_assert(sizeof(sunfleck::shared::InstanceRow) == 304);
 #endif
 #endif

@@ -146,7 +146,7 @@ void Character::walk(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
     capsule_.foot.y += up;
     slide(world, motion, ignored);
     const auto down = world.sweep(capsule_, vec3(0.0f, -up - skin, 0.0f), ignored);
-    const bool stands = down && down->normal.y > steepest && down->mass <= 0.0f;
+    const bool stands = down && down->mass <= 0.0f && can_stand_on(world, *down, ignored);
     if (stands)
         capsule_.foot.y -= std::max(0.0f, down->fraction * (up + skin) - skin);
     if (!stands || distance(capsule_) < distance(flat) + 1e-4f)
@@ -158,7 +158,7 @@ void Character::fall(PhysicsWorld& world, ecs::Entity ignored) {
     // On the ground it is followed down steps and slopes.
     const float way = grounded_ ? std::max(step_height, falling_ * seconds) : falling_ * seconds + skin;
     const auto hit = world.sweep(capsule_, vec3(0.0f, -way, 0.0f), ignored);
-    if (hit && hit->normal.y > steepest) {
+    if (hit && can_stand_on(world, *hit, ignored)) {
         capsule_.foot.y -= std::max(0.0f, hit->fraction * way - skin);
         grounded_ = true;
         ground_ = hit->entity;
@@ -172,6 +172,19 @@ void Character::fall(PhysicsWorld& world, ecs::Entity ignored) {
         falling_ = gravity * seconds;
     }
     slide(world, vec3(0.0f, -falling_ * seconds, 0.0f), ignored);
+}
+
+// The round end of the capsule meets the edge of a step aslant: what counts there is the face beyond the edge.
+bool Character::can_stand_on(const PhysicsWorld& world, const SweepHit& hit, ecs::Entity ignored) const {
+    if (hit.normal.y > steepest)
+        return true;
+    if (hit.normal.y < 0.05f)
+        return false;
+    vec3 outwards(hit.normal.x, 0.0f, hit.normal.z);
+    outwards = glm::normalize(outwards);
+    const vec3 above = hit.point - 0.03f * outwards + vec3(0.0f, 0.06f, 0.0f);
+    const auto face = world.ray(above, vec3(0.0f, -0.12f, 0.0f), ignored);
+    return face && face->normal.y > steepest;
 }
 
 void Character::rescue(const PhysicsWorld& world) {

@@ -39,6 +39,7 @@ private:
     void slide(PhysicsWorld& world, vec3 motion, ecs::Entity ignored);
     void walk(PhysicsWorld& world, vec3 motion, ecs::Entity ignored);
     void fall(PhysicsWorld& world, ecs::Entity ignored);
+    bool can_stand_on(const PhysicsWorld& world, const SweepHit& hit, ecs::Entity ignored) const;
     void rescue(const PhysicsWorld& world);
 
     Capsule capsule_;

@@ -45,8 +45,11 @@ ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
 
 ecs::Registry& prepared(ecs::Registry& registry) {
     // Switches first: what is off at the start casts no light. Then movers, so that obstacles stand where they begin.
+    std::vector<scene::LightSwitch> switches;
     registry.view<scene::LightSwitch>().each(
-        [&](ecs::Entity, const scene::LightSwitch& state) { apply_switch(registry, state); });
+        [&](ecs::Entity, const scene::LightSwitch& state) { switches.push_back(state); });
+    for (const scene::LightSwitch& state : switches)
+        apply_switch(registry, state);
     std::vector<ecs::Entity> activated;
     registry.view<scene::Mover>().each([&](ecs::Entity entity, const scene::Mover& mover) {
         if (mover.activation != scene::MoverActivation::clock && !registry.has<scene::MoverState>(entity))

@@ -91,10 +91,13 @@ Status BruteForce::begin_frame(std::uint32_t width, std::uint32_t height, bool a
 
 Result<const gpu::Pipeline*> BruteForce::pipeline(std::uint32_t light_class, const BruteForceOptions& options,
                                                   std::uint32_t map_bits) {
-    const std::vector<std::uint32_t> specialization = {
-        shape_.pixels,  light_class,           options.shadows ? shape_.maps : shared::maps_none,
-        options.filter, options.count_clamped, shape_.storage_lights,
-        map_bits};
+    const std::vector<std::uint32_t> specialization = {shape_.pixels,
+                                                       light_class,
+                                                       options.shadows ? shape_.maps : shared::maps_none,
+                                                       filters_maps(options.filter, light_class),
+                                                       options.count_clamped,
+                                                       shape_.storage_lights,
+                                                       map_bits};
     if (const auto found = kernels_.find(specialization); found != kernels_.end())
         return found->second;
     using enum gpu::BindingKind;

@@ -151,7 +151,7 @@ void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrac
         const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
         if (bounce == 1)
             path.first_hit = point.position;
-        path.throughput *= point.material->base_colour;
+        path.throughput *= point.base_colour;
         sample.position = lift_sample(point.position, normal, rays, raytrace::Scope::static_only);
         sample.normal = shading;
         sample.bounce = bounce;

@@ -289,8 +289,8 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, const LightBatch& b
                  {uniform_buffer, sampled_image, sampled_image, uniform_buffer, texel_buffer, storage_buffer,
                   storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_image},
                  {shared::group_pixels / lanes, batch.light_class,
-                  frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none, frame.options.filter,
-                  frame.maps.bits(), to_image, lanes}));
+                  frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
+                  filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution light");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);

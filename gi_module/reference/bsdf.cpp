@@ -47,15 +47,14 @@ float fresnel_dielectric(float cosine, float eta) {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-Bsdf::Bsdf(const scene::Material& material) {
+Bsdf::Bsdf(const scene::Material& material, vec3 base_colour) {
     const float root = (material.index_of_refraction - 1.0f) / (material.index_of_refraction + 1.0f);
-    diffuse_ = material.base_colour * (1.0f - material.metallic);
+    diffuse_ = base_colour * (1.0f - material.metallic);
     has_specular_ = material.specular || material.metallic > 0.0f;
-    normal_reflectance_ =
-        glm::mix(vec3(material.specular ? root * root : 0.0f), material.base_colour, material.metallic);
+    normal_reflectance_ = glm::mix(vec3(material.specular ? root * root : 0.0f), base_colour, material.metallic);
     alpha_ = std::max(material.roughness * material.roughness, 1e-3f);
     glass_ = material.transmission > 0.0f;
-    tint_ = material.base_colour;
+    tint_ = base_colour;
     index_of_refraction_ = material.index_of_refraction;
 }
 

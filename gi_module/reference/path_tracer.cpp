@@ -191,7 +191,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
                         front ? point.geometric_normal : -point.geometric_normal,
                         frame,
                         frame.to_local(-direction),
-                        Bsdf(*point.material),
+                        Bsdf(*point.material, point.base_colour),
                         front};
         // A shading normal that leans away from the viewer would make the surface vanish.
         vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
@@ -227,7 +227,7 @@ vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sa
     if (path.skip_indirect)
         path.bounces = 0;
     trace(path, {point.position, front ? point.geometric_normal : -point.geometric_normal, frame, outgoing,
-                 radiance ? Bsdf(*point.material) : Bsdf::white(), front});
+                 radiance ? Bsdf(*point.material, point.base_colour) : Bsdf::white(), front});
     rays += path.rays;
     // A white Lambertian surface reflects irradiance / pi.
     return radiance ? path.result + emitted(point, ray.direction) : path.result * pi;

@@ -143,7 +143,8 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands;
     std::vector<std::uint32_t> seen(requests.size());
     for (const scene::DrawItem& item : scene.draws()) {
-        if (occluders != Occluders::all && item.is_static != (occluders == Occluders::static_only))
+        if (!item.casts_shadow ||
+            (occluders != Occluders::all && item.is_static != (occluders == Occluders::static_only)))
             continue;
         // Jobs by level of detail: one command draws all maps that show the item at one level.
         std::vector<std::vector<shared::ShadowJob>> by_level((detail ? item.details.size() : 1) * 2);
@@ -196,7 +197,8 @@ std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::
         texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
     }
     std::size_t level = 0;
-    while (level + 1 < item.details.size() && item.details[level + 1].error * item.scale < request.detail_texels * texel)
+    while (level + 1 < item.details.size() &&
+           item.details[level + 1].error * item.scale < request.detail_texels * texel)
         ++level;
     return level;
 }

@@ -14,6 +14,10 @@ std::uint32_t light_class(SampleKind kind) {
     return shared::light_class_surface;
 }
 
+bool filters_maps(bool wished, std::uint32_t light_class) {
+    return wished || light_class == shared::light_class_point;
+}
+
 shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, float geometry_bound,
                                 const Bounds& scene) {
     shared::LightRow row{};

@@ -165,6 +165,7 @@ void StaticBlockers::add(const FlatMesh& mesh) {
             for (const dvec3& point : polygon)
                 bounds.add(vec3(point));
             bounds_.push_back(bounds);
+            normals_.push_back(area_vector(polygon));
             polygons_.push_back(std::move(polygon));
             body_of_.push_back(body);
         }
@@ -240,7 +241,8 @@ Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
     return any ? Blocking::partial : Blocking::none;
 }
 
-bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
+template <typename Visit>
+bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Visit& visit) const {
     if (nodes_.empty())
         return false;
     std::array<std::uint32_t, 64> stack;
@@ -273,7 +275,7 @@ bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
         }
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const Polygon& polygon = polygons_[order_[i]];
-            const dvec3 normal = area_vector(polygon);
+            const dvec3 normal = normals_[order_[i]];
             const double slope = glm::dot(normal, along);
             if (std::abs(slope) < 1e-14)
                 continue;
@@ -285,11 +287,29 @@ bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
             for (std::size_t k = 0; k < polygon.size() && inside; ++k)
                 inside = glm::dot(glm::cross(normal, polygon[(k + 1) % polygon.size()] - polygon[k]),
                                   point - polygon[k]) >= 0.0;
-            if (inside)
+            if (inside && visit(order_[i]))
                 return true;
         }
     }
     return false;
+}
+
+bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
+    return visit_crossing(from, along, [](std::uint32_t) { return true; });
+}
+
+// What takes all light takes that to the middle of the gate.
+bool StaticBlockers::covers(const OcclusionPyramid& pyramid) const {
+    if (pyramid.gate_count == 0)
+        return false;
+    dvec3 middle(0.0);
+    for (const dvec3& point : pyramid.gate_points())
+        middle += point / double(pyramid.gate_count);
+    const dvec3 along = pyramid.parallel ? -1e4 * pyramid.apex : pyramid.apex - middle;
+    return visit_crossing(middle, along, [&](std::uint32_t polygon) {
+        const std::uint32_t body = body_of_[polygon];
+        return covers_gate(pyramid, polygons_[polygon]) || (body != 0xffffffffu && covers_gate(pyramid, bodies_[body]));
+    });
 }
 
 } // namespace sunfleck::gi

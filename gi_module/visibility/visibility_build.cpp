@@ -60,6 +60,12 @@ void VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     std::iota(roots.begin(), roots.end(), 0u);
     if (!roots.empty())
         make_group(std::move(roots));
+    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+        if (samples_[sample].dynamic) {
+            const std::vector<PairState> states = decide_all_static(sample);
+            for (std::uint32_t node = 0; node < states.size(); ++node)
+                static_states_[at(node, sample)] = std::uint8_t(states[node]);
+        }
     rows_.clear();
     dirty_.clear();
     grow_rows();
@@ -98,14 +104,14 @@ void VisibilityDatabase::split_and_decide() {
 }
 
 PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sample) const {
+    if (samples_[sample].dynamic)
+        return PairState::partial; // until all nodes are known: see decide_all_static
     const SurfacePatch& patch = patches_.nodes()[node];
     PairState parent = PairState::partial;
     if (patch.parent != shared::no_node)
         parent = PairState(static_states_[at(patch.parent, sample)]);
     if (parent == PairState::full || parent == PairState::unlit)
         return parent;
-    if (samples_[sample].dynamic && patch.parent != shared::no_node)
-        return inherit(patch, parent, samples_[sample]);
     if (!patch.planar)
         return decide_box(patch.box, samples_[sample]);
     const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal);
@@ -127,23 +133,61 @@ PairState VisibilityDatabase::inherit(const SurfacePatch& patch, PairState paren
 // Parts come after their parents.
 std::vector<PairState> VisibilityDatabase::decide_all_static(std::uint32_t sample) const {
     std::vector<PairState> result(patches_.nodes().size());
+    const LightSample& light = samples_[sample];
+    if (light.dynamic && !groups_.empty())
+        decide_group(0, light, result);
     for (std::uint32_t node = 0; node < result.size(); ++node) {
         const SurfacePatch& patch = patches_.nodes()[node];
         if (patch.parent == shared::no_node) {
-            result[node] = decide_static(node, sample);
+            if (!light.dynamic)
+                result[node] = decide_static(node, sample);
             continue;
         }
         const PairState parent = result[patch.parent];
         if (parent == PairState::full || parent == PairState::unlit)
             result[node] = parent;
-        else if (samples_[sample].dynamic)
-            result[node] = inherit(patch, parent, samples_[sample]);
-        else if (const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal); !pyramid)
+        else if (light.dynamic)
+            result[node] = inherit(patch, parent, light);
+        else if (const auto pyramid = pyramid_of_patch(light, patch.corners, patch.normal); !pyramid)
             result[node] = PairState::unlit;
         else
             result[node] = parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
     }
     return result;
+}
+
+// All charts that one blocker hides, or the sample's tangent plane, at once.
+void VisibilityDatabase::decide_group(std::uint32_t group, const LightSample& sample,
+                                      std::vector<PairState>& states) const {
+    const Group& node = groups_[group];
+    const Bounds roomy{node.bounds.minimum - 1e-5f, node.bounds.maximum + 1e-5f};
+    const auto pyramid = pyramid_of_box(sample, OrientedBox::of(roomy));
+    if (!pyramid)
+        return decide_roots(group, PairState::unlit, states);
+    if (static_blockers_.covers(*pyramid))
+        return decide_roots(group, PairState::full, states);
+    for (const std::uint32_t root : node.roots) {
+        const SurfacePatch& patch = patches_.nodes()[root];
+        const bool behind = patch.planar && sample.kind != SampleKind::directional &&
+                            glm::dot(patch.normal, dvec3(sample.position) - patch.corners[0]) <= 0.0;
+        states[root] = behind         ? PairState::unlit
+                       : patch.planar ? inherit(patch, PairState::partial, sample)
+                                      : PairState::partial;
+    }
+    if (node.roots.empty()) {
+        decide_group(node.left, sample, states);
+        decide_group(node.right, sample, states);
+    }
+}
+
+void VisibilityDatabase::decide_roots(std::uint32_t group, PairState state, std::vector<PairState>& states) const {
+    const Group& node = groups_[group];
+    for (const std::uint32_t root : node.roots)
+        states[root] = state;
+    if (node.roots.empty()) {
+        decide_roots(node.left, state, states);
+        decide_roots(node.right, state, states);
+    }
 }
 
 PairState VisibilityDatabase::decide_box(const OrientedBox& box, const LightSample& sample) const {
@@ -162,7 +206,7 @@ PairState VisibilityDatabase::decide_mover(const MovingBlocker& mover, const Lig
     const dvec3 to_light = parallel ? -1e4 * dvec3(sample.normal) : dvec3(sample.position) - middle;
     if (!static_blockers_.crosses_segment(middle, to_light))
         return PairState::partial;
-    return static_blockers_.test(*pyramid) == Blocking::full ? PairState::full : PairState::partial;
+    return static_blockers_.covers(*pyramid) ? PairState::full : PairState::partial;
 }
 
 // Samples that move stand alone: clusters keep their shape.
@@ -260,6 +304,8 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
     for (auto& [bits, mover] : movers_)
         for (const std::uint32_t sample : changed) {
             set_mover_pair(mover.slot, sample, decide_mover(mover.blocker, samples_[sample]));
+            if (!mover.blocks)
+                continue;
             const Footprint roots = roots_for(clusters_[cluster_of_[sample]], mover, counters_.tests);
             find_footprint(mover, sample, roots, fresh, counters_.tests);
             changes.clear();

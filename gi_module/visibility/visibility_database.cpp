@@ -268,7 +268,8 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             continue;
         }
         const std::uint32_t slot = it->second.slot;
-        mark_affected(mover_node(it->second.entity));
+        if (it->second.blocks)
+            mark_affected(mover_node(it->second.entity));
         replace_footprints(it->second, false);
         mover_slots_[slot] = ecs::null_entity;
         set_mover_row(slot);
@@ -278,7 +279,7 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         const auto found = movers_.find(bits);
         const bool added = found == movers_.end();
         Mover& mover = movers_[bits];
-        if (!added && mover.matrix == place->matrix)
+        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks)
             continue;
         if (added) {
             mover.entity = place->entity;
@@ -291,15 +292,17 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             *free = place->entity;
             mover.slot = std::uint32_t(free - mover_slots_.begin());
             grow_rows();
-        } else {
+        } else if (mover.blocks) {
             mark_affected(mover_node(mover.entity));
         }
+        mover.blocks = place->blocks;
         mover.matrix = place->matrix;
         mover.blocker.place(place->matrix);
         const std::uint32_t node = mover_node(mover.entity);
         set_mover_row(mover.slot);
-        mark_affected(node);
-        replace_footprints(mover, true);
+        if (mover.blocks)
+            mark_affected(node);
+        replace_footprints(mover, mover.blocks);
     }
 }
 

@@ -13,8 +13,8 @@
 // without a search, and counts at the pair are enough to infer its state.) Nodes within are found top-down: what a
 // parent settles (none, full), its children inherit without tests.
 //
-// Samples of emitters that move (LightSample::dynamic) are decided anew every frame, so more coarsely: whole charts by
-// the same tests, and what is partial there is partial in all its parts.
+// Samples of emitters that move (LightSample::dynamic) are decided anew every frame, so more coarsely: what one blocker
+// hides from them is found for whole groups of charts, all else that they face is "partial".
 //
 // Movers are nodes, too. They shadow themselves and each other, so between "unlit", "full" (by static geometry) and
 // "partial" they have no state "none".
@@ -37,6 +37,7 @@ struct MoverPlace {
     ecs::Entity entity;
     std::uint32_t mesh = 0;
     mat4 matrix{1.0f};
+    bool blocks = true; // false: it is lit, but casts no shadow
 };
 
 struct PairChange {
@@ -106,6 +107,7 @@ private:
         std::uint32_t mesh = 0;
         std::uint32_t slot = 0;
         mat4 matrix{1.0f};
+        bool blocks = true;
         MovingBlocker blocker;
         // By sample: node * 2 + (full ? 1 : 0), sorted.
         std::vector<std::vector<std::uint32_t>> footprint;
@@ -126,6 +128,8 @@ private:
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
     PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;
     std::vector<PairState> decide_all_static(std::uint32_t sample) const;
+    void decide_group(std::uint32_t group, const LightSample& sample, std::vector<PairState>& states) const;
+    void decide_roots(std::uint32_t group, PairState state, std::vector<PairState>& states) const;
     PairState decide_box(const OrientedBox& box, const LightSample& sample) const;
     PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();

@@ -1,0 +1,68 @@
+#include "game_demo/controls.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::demo {
+namespace {
+
+constexpr float pointer_speed = 22.0f;  // 1e-4 rad a pixel
+constexpr float stick_speed = 26000.0f; // 1e-4 rad/s at full deflection
+constexpr int pad_a = 0, pad_b = 1, pad_x = 2, pad_y = 3, pad_left_bumper = 4;
+
+std::int32_t percent(float value) {
+    return std::int32_t(std::lround(std::clamp(value, -1.0f, 1.0f) * 100.0f));
+}
+
+} // namespace
+
+void Controls::take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing) {
+    pad_before_ = pad_now_;
+    pad_now_ = input.gamepad.buttons;
+    held_ = {};
+    if (!playing) {
+        look_ = vec2(0.0f);
+        taps_ = 0;
+        return;
+    }
+    const auto held = [&](Action action) { return input.down(settings.bindings[std::size_t(action)]); };
+    const auto axis = [&](Action plus, Action minus) {
+        return (held(plus) ? 1.0f : 0.0f) - (held(minus) ? 1.0f : 0.0f);
+    };
+    held_.forward = percent(axis(Action::forward, Action::back) - input.gamepad.left.y);
+    held_.right = percent(axis(Action::right, Action::left) + input.gamepad.left.x);
+    const auto button = [&](Action action, std::uint32_t bit, int pad) {
+        if (held(action) || input.gamepad.pressed(pad))
+            held_.buttons |= bit;
+        if (input.hit(settings.bindings[std::size_t(action)]))
+            taps_ |= bit;
+    };
+    button(Action::run, simulation::button_run, pad_left_bumper);
+    button(Action::crouch, simulation::button_crouch, pad_b);
+    button(Action::use, simulation::button_use, pad_a);
+    button(Action::put_down, simulation::button_put_down, pad_x);
+    const float upwards = settings.invert_look ? 1.0f : -1.0f;
+    const float bent = glm::length(input.gamepad.right); // finer near the middle
+    look_ += settings.sensitivity * pointer_speed * vec2(-input.mouse_motion.x, upwards * input.mouse_motion.y);
+    look_ += settings.sensitivity * stick_speed * float(seconds) * bent *
+             vec2(-input.gamepad.right.x, upwards * input.gamepad.right.y);
+}
+
+simulation::StepInput Controls::next_step() {
+    simulation::StepInput step = held_;
+    step.buttons |= taps_;
+    taps_ = 0;
+    step.turn = std::int32_t(std::clamp(look_.x, -30000.0f, 30000.0f));
+    step.look_up = std::int32_t(std::clamp(look_.y, -30000.0f, 30000.0f));
+    look_ -= vec2(float(step.turn), float(step.look_up));
+    return step;
+}
+
+bool Controls::pressed(const app::InputState& input, const DemoSettings& settings, Action action) {
+    if (input.hit(settings.bindings[std::size_t(action)]))
+        return true;
+    const bool pad_hit = (pad_now_ & ~pad_before_ & (1u << pad_y)) != 0;
+    return action == Action::indirect_light && pad_hit;
+}
+
+} // namespace sunfleck::demo

@@ -1,0 +1,67 @@
+// What the player chooses, kept in a file between visits.
+#pragma once
+
+#include "engine/app/window.h"
+#include "engine/core/description.h"
+
+#include <filesystem>
+
+namespace sunfleck::demo {
+
+// How much work a frame is. `software` is for machines without a GPU.
+enum class Preset : std::uint32_t { software, low, medium, high, ultra, custom };
+
+enum class Action : std::uint32_t {
+    forward,
+    back,
+    left,
+    right,
+    run,
+    crouch,
+    use,
+    put_down,
+    indirect_light,
+    frame_times,
+    screenshot,
+    help,
+    full_screen,
+    count
+};
+inline constexpr std::size_t action_count = std::size_t(Action::count);
+// In the settings file, and as the player reads it.
+const char* action_name(Action action);
+const char* action_label(Action action);
+
+struct DemoSettings {
+    Preset preset = Preset::software;
+    float render_scale = 0.5f;
+    std::uint32_t light_samples = 200;
+    std::uint32_t map_budget = 40;
+    float exposure = 0.0f;
+    float field_of_view = 68.0f;
+    float sensitivity = 1.0f;
+    bool invert_look = false;
+    std::uint32_t frame_cap = 60;
+    bool vertical_sync = true;
+    bool full_screen = false;
+    bool show_times = false;
+    float letter_scale = 1.0f;
+    std::array<app::Key, action_count> bindings{};
+
+    DemoSettings();
+    static const TypeDescription& description();
+};
+
+// $XDG_CONFIG_HOME/sunfleck/demo.json, or the same under ~/.config.
+std::filesystem::path settings_path();
+
+struct LoadedSettings {
+    DemoSettings settings;
+    bool found = false;
+    std::string problem; // what was wrong with the file; the damaged one is kept beside it, with ".damaged" added
+};
+// Whatever the file says that is valid is taken, the rest stays as it is by default.
+LoadedSettings load_settings(const std::filesystem::path& path);
+Status save_settings(const std::filesystem::path& path, const DemoSettings& settings);
+
+} // namespace sunfleck::demo

@@ -1,0 +1,85 @@
+#include "game_demo/level.h"
+
+#include "engine/app/gui.h"
+#include "game_demo/presets.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::demo {
+namespace {
+
+constexpr double seconds_a_camera = 9.0;
+
+} // namespace
+
+std::filesystem::path built_in_scene(const std::string& name) {
+    std::error_code code;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
+    const std::string file = name + ".scene.json";
+    const std::filesystem::path installed = program.parent_path() / "../share/sunfleck/scenes" / file;
+    return std::filesystem::exists(installed, code) ? installed : program.parent_path() / "../scenes" / file;
+}
+
+Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::string& scene, const DemoSettings& settings,
+                                           std::uint32_t frames_in_flight) {
+    std::unique_ptr<Level> level(new Level());
+    SUNFLECK_ASSIGN(level->renderer_, viewer::SceneRenderer::create(device, frames_in_flight));
+    level->renderer_->shader_library().add(app::shaders());
+    const bool is_path = scene.find('/') != std::string::npos || scene.find('.') != std::string::npos;
+    SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene)));
+    ecs::Registry& registry = level->renderer_->registry();
+    level->ev100_ = viewer::scene_exposure(registry);
+    registry.view<scene::Camera, scene::Name>().each(
+        [&](ecs::Entity entity, const scene::Camera&, const scene::Name& name) {
+            if (name.name.rfind("bench", 0) != 0)
+                level->cameras_.push_back(scene::camera_view(registry, entity));
+        });
+    level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
+    SUNFLECK_TRY(level->apply(settings));
+    return level;
+}
+
+void Level::step(const simulation::StepInput& input) {
+    simulation_->step(renderer_->registry(), input);
+}
+
+scene::CameraView Level::view(const DemoSettings& settings) const {
+    scene::CameraView view;
+    view.position = simulation_->player().eye();
+    view.target = view.position + simulation_->player().forward();
+    view.vertical_field_of_view = glm::radians(settings.field_of_view);
+    return view;
+}
+
+scene::CameraView Level::show_round(double seconds) const {
+    if (cameras_.empty())
+        return view(DemoSettings());
+    const double place = std::max(seconds, 0.0) / seconds_a_camera;
+    scene::CameraView view = cameras_[std::size_t(place) % cameras_.size()];
+    const float turn = float(place - std::floor(place)) - 0.5f;
+    view.target = view.position + glm::angleAxis(0.35f * turn, vec3(0.0f, 1.0f, 0.0f)) * (view.target - view.position);
+    return view;
+}
+
+Status Level::apply(const DemoSettings& settings) {
+    return renderer_->lighting().set_settings(lighting_of(settings));
+}
+
+viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height) {
+    viewer::FrameRequest request;
+    request.simulate = false;
+    request.step = simulation_->steps();
+    request.camera = view(settings);
+    request.screen_width = width;
+    request.screen_height = height;
+    const auto scaled = [&](std::uint32_t size) {
+        return std::max(1u, std::uint32_t(std::lround(float(size) * settings.render_scale)));
+    };
+    request.width = scaled(width);
+    request.height = scaled(height);
+    request.ev100 = ev100_ - settings.exposure;
+    return request;
+}
+
+} // namespace sunfleck::demo

@@ -1,0 +1,54 @@
+// What is written over the picture: title, pause, settings, help, prompts, frame times. Dear ImGui's functions are
+// called between Gui::begin_frame and end_frame; what the player decides comes back as a Decision.
+#pragma once
+
+#include "engine/simulation/simulation.h"
+#include "game_demo/demo_settings.h"
+
+#include <map>
+
+namespace sunfleck::demo {
+
+enum class Screen { title, playing, paused, settings, help };
+enum class Decision { none, play, restart, quit };
+
+// What the overlays show.
+struct Shown {
+    simulation::Interaction interaction = simulation::Interaction::none;
+    bool carries_lantern = false, indirect_light = true;
+    double frame_ms = 0.0;
+    std::map<std::string, double> gpu_ms, cpu_ms;
+    std::uint64_t light_samples = 0;
+    std::uint32_t rendered_width = 0, rendered_height = 0;
+    std::string device;
+};
+
+class Menu {
+public:
+    Screen screen() const { return screen_; }
+    void show(Screen screen) { screen_ = screen; }
+    // Escape, or the gamepad's start button.
+    void back();
+    // Draws; changes `settings` at once. `changed`: something was changed.
+    Decision draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed);
+    // A line at the top for a few seconds.
+    void say(std::string message, double seconds = 3.5);
+
+private:
+    Decision title_screen();
+    Decision pause_screen();
+    void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
+    void help_screen(const DemoSettings& settings);
+    void prompts(const DemoSettings& settings, const Shown& shown);
+    void times(const Shown& shown);
+    void message();
+    bool field(DemoSettings& settings, const char* name, const char* label);
+    void bindings_tab(DemoSettings& settings, const app::InputState& input, bool& changed);
+
+    Screen screen_ = Screen::title, came_from_ = Screen::title;
+    int rebinding_ = -1; // action that waits for a key
+    std::string message_;
+    double message_seconds_ = 0.0;
+};
+
+} // namespace sunfleck::demo

@@ -1,0 +1,56 @@
+#include "game_demo/presets.h"
+
+namespace sunfleck::demo {
+namespace {
+
+struct Quality {
+    float render_scale;
+    std::uint32_t light_samples, map_budget;
+};
+constexpr Quality qualities[] = {
+    {0.5f, 200, 24},   // software
+    {0.67f, 250, 40},  // low
+    {0.75f, 400, 60},  // medium
+    {1.0f, 600, 120},  // high
+    {1.0f, 1500, 300}, // ultra
+};
+
+// The nearest preset that does as much work.
+Preset like(const DemoSettings& settings) {
+    if (settings.preset != Preset::custom)
+        return settings.preset;
+    return settings.light_samples <= 250   ? Preset::software
+           : settings.light_samples <= 500 ? Preset::medium
+                                           : Preset::ultra;
+}
+
+} // namespace
+
+void apply_preset(DemoSettings& settings) {
+    if (settings.preset == Preset::custom)
+        return;
+    const Quality& quality = qualities[std::size_t(settings.preset)];
+    settings.render_scale = quality.render_scale;
+    settings.light_samples = quality.light_samples;
+    settings.map_budget = quality.map_budget;
+}
+
+gi::Settings lighting_of(const DemoSettings& settings) {
+    const Preset preset = like(settings);
+    gi::Settings result;
+    result.lights = settings.light_samples;
+    result.map_budget = settings.map_budget;
+    result.bounces = preset <= Preset::low ? 3 : 5;
+    result.shadow_map_resolution = preset <= Preset::low ? 128 : 256;
+    result.low_resolution = preset == Preset::ultra ? 1 : 2;
+    result.patch_levels = 2; // the house has many small surfaces
+    result.dynamic_share = 0.2f;
+    result.map_priority = gi::MapPriority::contribution;
+    return result;
+}
+
+Preset usual_preset(bool software_device) {
+    return software_device ? Preset::software : Preset::high;
+}
+
+} // namespace sunfleck::demo

@@ -1,0 +1,286 @@
+// The demo in a window: real time, the simulation on its fixed step.
+#include "engine/app/gui.h"
+#include "engine/core/log.h"
+#include "engine/simulation/path_movers.h"
+#include "game_demo/controls.h"
+#include "game_demo/level.h"
+#include "game_demo/menu.h"
+#include "game_demo/options.h"
+#include "game_demo/presets.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace sunfleck::demo {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double longest_leap = 0.2; // s: a longer stall does not make the world leap
+constexpr int pad_start = 7;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The first free name in the current folder.
+std::filesystem::path free_picture_name() {
+    std::error_code code;
+    for (int number = 1; number < 10000; ++number) {
+        char name[40];
+        std::snprintf(name, sizeof name, "sunfleck_%04d.png", number);
+        if (!std::filesystem::exists(name, code))
+            return name;
+    }
+    return "sunfleck.png";
+}
+
+class Game {
+public:
+    explicit Game(const Options& options) : options_(options) {}
+
+    Status run() {
+        SUNFLECK_TRY(start());
+        for (std::uint32_t frame = 0; !window_->should_close() && (options_.frames == 0 || frame < options_.frames);) {
+            const auto began = Clock::now();
+            SUNFLECK_ASSIGN(const bool shown, frame_once());
+            if (!shown)
+                continue;
+            ++frame;
+            const double rest = 1.0 / double(settings_.frame_cap) - seconds_since(began);
+            if (rest > 0.0)
+                std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+        }
+        return finish();
+    }
+
+private:
+    Status start() {
+        settings_path_ =
+            options_.settings_file.empty() ? settings_path() : std::filesystem::path(options_.settings_file);
+        LoadedSettings loaded = load_settings(settings_path_);
+        settings_ = loaded.settings;
+        SUNFLECK_ASSIGN(window_, app::Window::create("Lantern House", options_.width, options_.height));
+        SUNFLECK_ASSIGN(device_,
+                        gpu::Device::create({options_.device, options_.validation, window_->instance_extensions()}));
+        SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
+        if (options_.preset || !loaded.found)
+            settings_.preset = options_.preset.value_or(usual_preset(device_->traits().software));
+        apply_preset(settings_);
+        SUNFLECK_TRY(load_level());
+        window_->set_full_screen(settings_.full_screen);
+        if (!loaded.problem.empty()) {
+            log_warning(loaded.problem);
+            menu_.say(loaded.problem, 8.0);
+        }
+        last_ = Clock::now();
+        return {};
+    }
+
+    Status load_level() {
+        window_->set_title("Lantern House - loading");
+        if (device_)
+            SUNFLECK_TRY(device_->wait_idle());
+        gui_.reset();
+        level_.reset();
+        blit_resources_ = std::make_unique<gpu::FrameResources>(*device_); // serials begin anew
+        SUNFLECK_ASSIGN(level_, Level::load(*device_, options_.scene, settings_, 2));
+        SUNFLECK_ASSIGN(gui_, app::Gui::create(*device_, level_->renderer().pipelines(), VK_FORMAT_R8G8B8A8_UNORM));
+        window_->set_title("Lantern House");
+        unsimulated_ = 0.0;
+        inputs_.clear();
+        return {};
+    }
+
+    // False: nothing can be shown now.
+    Result<bool> frame_once() {
+        const app::InputState& input = window_->poll();
+        const double seconds = std::min(seconds_since(last_), 1.0);
+        last_ = Clock::now();
+        swapchain_->set_vertical_sync(settings_.vertical_sync);
+        SUNFLECK_TRY(keys(input));
+        const bool playing = menu_.screen() == Screen::playing && input.focused;
+        window_->capture_pointer(playing);
+        controls_.take(input, settings_, seconds, playing);
+        simulate(seconds);
+        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(level_->renderer().submission().serial()));
+        if (!visible) {
+            window_->wait(0.05);
+            return false;
+        }
+        SUNFLECK_TRY(show(input, seconds));
+        return true;
+    }
+
+    Status keys(const app::InputState& input) {
+        const bool start_button = input.gamepad.pressed(pad_start);
+        if (input.hit(app::key_escape) || (start_button && !start_before_) ||
+            (!input.focused && menu_.screen() == Screen::playing))
+            menu_.back();
+        start_before_ = start_button;
+        if (menu_.screen() != Screen::playing)
+            return {};
+        const auto pressed = [&](Action action) { return controls_.pressed(input, settings_, action); };
+        if (pressed(Action::indirect_light)) {
+            indirect_ = !indirect_;
+            menu_.say(indirect_ ? "Bounced light on" : "Bounced light off: only what lamps light directly", 2.5);
+        }
+        if (pressed(Action::frame_times))
+            settings_.show_times = !settings_.show_times;
+        if (pressed(Action::screenshot))
+            wants_picture_ = true;
+        if (pressed(Action::help))
+            menu_.show(Screen::help);
+        if (pressed(Action::full_screen)) {
+            settings_.full_screen = !settings_.full_screen;
+            window_->set_full_screen(settings_.full_screen);
+        }
+        return {};
+    }
+
+    // The world goes on behind the title, and stands still while paused.
+    void simulate(double seconds) {
+        const Screen screen = menu_.screen();
+        title_seconds_ += seconds;
+        if (screen == Screen::paused || (started_ && screen != Screen::playing))
+            return;
+        unsimulated_ += std::min(seconds, longest_leap);
+        while (unsimulated_ >= simulation::step_seconds) {
+            unsimulated_ -= simulation::step_seconds;
+            const simulation::StepInput step = controls_.next_step();
+            level_->step(step);
+            if (started_ && !options_.record.empty())
+                inputs_.push_back(step);
+        }
+    }
+
+    Status show(const app::InputState& input, double seconds) {
+        const VkExtent2D extent = swapchain_->extent();
+        viewer::SceneRenderer& renderer = level_->renderer();
+        viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height);
+        if (!started_)
+            request.camera = level_->show_round(title_seconds_);
+        fade_ += (float(indirect_) - fade_) * float(std::min(1.0, 12.0 * seconds));
+        request.indirect_scale = std::abs(fade_ - float(indirect_)) < 0.02f ? float(indirect_) : fade_;
+        renderer.collect_statistics();
+        gui_->begin_frame(input, extent.width, extent.height, seconds, letter_scale(extent));
+        bool changed = false;
+        const Decision decision = menu_.draw(settings_, shown(request, seconds), input, changed);
+        gui_->end_frame();
+        SUNFLECK_TRY(renderer.update(request));
+        SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
+        SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
+        blit_resources_->begin_frame(renderer.submission().serial(), completed);
+        SUNFLECK_TRY(renderer.record(
+            commands, request, [&](gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
+                return gui_->add_pass(graph, target, resources);
+            }));
+        SUNFLECK_TRY(swapchain_->record_blit(commands, *blit_resources_, renderer.output()));
+        SUNFLECK_TRY(renderer.submission().submit(&swapchain_->semaphores()));
+        SUNFLECK_TRY(swapchain_->present());
+        if (wants_picture_)
+            save_picture();
+        if (changed) {
+            SUNFLECK_TRY(level_->apply(settings_));
+            window_->set_full_screen(settings_.full_screen);
+            keep_settings();
+        }
+        return decide(decision);
+    }
+
+    Shown shown(const viewer::FrameRequest& request, double seconds) {
+        const viewer::FrameStatistics& statistics = level_->renderer().statistics();
+        smooth_ms_ = smooth_ms_ <= 0.0 ? seconds * 1e3 : smooth_ms_ + 0.1 * (seconds * 1e3 - smooth_ms_);
+        Shown result;
+        result.interaction = level_->simulation().possible_interaction(level_->renderer().registry());
+        result.carries_lantern = level_->simulation().carries_lantern();
+        result.indirect_light = indirect_;
+        result.frame_ms = smooth_ms_;
+        result.gpu_ms = statistics.gpu_ms;
+        result.cpu_ms = statistics.cpu_ms;
+        result.light_samples = statistics.counters.light_samples;
+        result.rendered_width = request.width;
+        result.rendered_height = request.height;
+        result.device = device_->traits().name;
+        return result;
+    }
+
+    float letter_scale(VkExtent2D extent) const {
+        return settings_.letter_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
+    }
+
+    Status decide(Decision decision) {
+        switch (decision) {
+        case Decision::none:
+            break;
+        case Decision::play:
+            menu_.show(Screen::playing);
+            if (!started_)
+                SUNFLECK_TRY(load_level()); // the world as it was at first
+            started_ = true;
+            break;
+        case Decision::restart:
+            SUNFLECK_TRY(load_level());
+            menu_.show(Screen::playing);
+            break;
+        case Decision::quit:
+            window_->close();
+            break;
+        }
+        return {};
+    }
+
+    // A failure to save is said, and the game goes on.
+    void save_picture() {
+        wants_picture_ = false;
+        const std::filesystem::path path = free_picture_name();
+        Status status = Status();
+        if (auto picture = level_->renderer().read_back())
+            status = io::write_picture(path, *picture);
+        else
+            status = picture.error();
+        menu_.say(status ? "Saved " + path.string() : status.error().message);
+    }
+
+    void keep_settings() {
+        if (const Status status = save_settings(settings_path_, settings_); !status)
+            menu_.say("The settings could not be kept: " + status.error().message, 6.0);
+    }
+
+    Status finish() {
+        SUNFLECK_TRY(device_->wait_idle());
+        keep_settings();
+        if (!options_.record.empty())
+            SUNFLECK_TRY(simulation::write_recording(options_.record, inputs_));
+        if (device_->validation_messages() > 0)
+            return Error{"validation printed messages (see above)"};
+        return {};
+    }
+
+    const Options& options_;
+    DemoSettings settings_;
+    std::filesystem::path settings_path_;
+    std::unique_ptr<app::Window> window_;
+    std::unique_ptr<gpu::Device> device_;
+    std::unique_ptr<app::Swapchain> swapchain_;
+    std::unique_ptr<gpu::FrameResources> blit_resources_;
+    std::unique_ptr<Level> level_;
+    std::unique_ptr<app::Gui> gui_;
+    Menu menu_;
+    Controls controls_;
+    Clock::time_point last_;
+    double unsimulated_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
+    bool started_ = false, indirect_ = true, wants_picture_ = false, start_before_ = false;
+    float fade_ = 1.0f;
+    std::vector<simulation::StepInput> inputs_;
+};
+
+} // namespace
+
+Status run_window(const Options& options) {
+    Game game(options);
+    return game.run();
+}
+
+} // namespace sunfleck::demo
