@@ -83,13 +83,15 @@ void Menu::back() {
 
 Decision Menu::draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed) {
     changed = false;
+    // Until a key or stick has chosen something, enter means the first entry.
+    const bool enter = input.hit(app::key_enter) && !ImGui::GetIO().NavVisible;
     Decision decision = Decision::none;
     switch (screen_) {
     case Screen::title:
-        decision = title_screen();
+        decision = title_screen(enter);
         break;
     case Screen::paused:
-        decision = pause_screen();
+        decision = pause_screen(enter);
         break;
     case Screen::settings:
         settings_screen(settings, input, changed);
@@ -107,14 +109,14 @@ Decision Menu::draw(DemoSettings& settings, const Shown& shown, const app::Input
     return decision;
 }
 
-Decision Menu::title_screen() {
+Decision Menu::title_screen(bool enter) {
     Decision decision = Decision::none;
     place_next(0.08f, 0.5f, 0.0f, 0.5f);
     ImGui::Begin("title", nullptr, plain);
     heading("Lantern House", 1.9f);
     ImGui::TextUnformatted("a walk in bounced light, by Sunfleck");
     ImGui::Dummy(ImVec2(0.0f, 0.6f * unit()));
-    if (wide_button("Walk in"))
+    if (wide_button("Walk in") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
     if (wide_button("Settings")) {
@@ -131,12 +133,12 @@ Decision Menu::title_screen() {
     return decision;
 }
 
-Decision Menu::pause_screen() {
+Decision Menu::pause_screen(bool enter) {
     Decision decision = Decision::none;
     place_next(0.5f, 0.5f, 0.5f, 0.5f);
     ImGui::Begin("paused", nullptr, plain);
     heading("Paused", 1.4f);
-    if (wide_button("Go on"))
+    if (wide_button("Go on") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
     if (wide_button("Settings")) {

@@ -35,8 +35,8 @@ public:
     void say(std::string message, double seconds = 3.5);
 
 private:
-    Decision title_screen();
-    Decision pause_screen();
+    Decision title_screen(bool enter);
+    Decision pause_screen(bool enter);
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void help_screen(const DemoSettings& settings);
     void prompts(const DemoSettings& settings, const Shown& shown);

@@ -153,33 +153,73 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
     EXPECT_TRUE(nlohmann::json::parse(info.output).contains("driver"));
 }
 
-TEST_F(CommandLine, TheDemoRunsHeadless) {
-    const Outcome outcome =
-        shell("cd " + folder.string() + " && " SUNFLECK_DEMO " --headless --frames 3 --size 64x36 -o out --validation");
-    ASSERT_EQ(outcome.status, 0) << outcome.output;
-    EXPECT_TRUE(fs::exists(folder / "out/stats.json"));
-    EXPECT_TRUE(fs::exists(folder / "out/frame_00002.png"));
+// The same recorded input gives the same world and the same pictures, whatever the number of threads.
+TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
+    const std::string in_folder = "cd " + folder.string() + " && ";
+    const std::string common = " --headless --frames 30 --steps-per-frame 6 --size 96x54 --pictures 2 ";
+    const Outcome first = shell(in_folder + SUNFLECK_DEMO + common + "-o first --record walk.txt --validation");
+    ASSERT_EQ(first.status, 0) << first.output;
+    EXPECT_TRUE(first.output.empty()) << first.output;
+    const Outcome second =
+        shell(in_folder + "LP_NUM_THREADS=1 taskset -c 0 " + SUNFLECK_DEMO + common + "-o second --input walk.txt");
+    ASSERT_EQ(second.status, 0) << second.output;
+    const auto a = nlohmann::json::parse(read_file(folder / "first/stats.json").value());
+    const auto b = nlohmann::json::parse(read_file(folder / "second/stats.json").value());
+    EXPECT_EQ(a["steps"], 180);
+    EXPECT_EQ(a["world_hash"], b["world_hash"]);
+    for (const char* key : {"frame_ms", "cpu_ms", "gpu_ms", "counters", "preset"})
+        EXPECT_TRUE(a.contains(key)) << key;
+    EXPECT_EQ(a["counters"]["player_rescued"], 0);
+    int pictures = 0;
+    for (const auto& entry : fs::directory_iterator(folder / "first"))
+        if (entry.path().extension() == ".png") {
+            ++pictures;
+            EXPECT_EQ(read_file(entry.path()).value(), read_file(folder / "second" / entry.path().filename()).value());
+        }
+    EXPECT_GE(pictures, 2);
 }
 
-// The window under a virtual display: keys, resizing, a picture, a polite end.
+TEST_F(CommandLine, TheDemosBadArgumentsGetOneMessage) {
+    const std::string in_folder = "cd " + folder.string() + " && " SUNFLECK_DEMO " ";
+    ASSERT_TRUE(write_file(folder / "bad.txt", "sunfleck_input 1\n1 2 3\n"));
+    expect_clear_error(shell(in_folder + "--headless"), {"-o DIR"});
+    expect_clear_error(shell(in_folder + "--headless -o out --input bad.txt"), {"bad.txt", "line 2"});
+    expect_clear_error(shell(in_folder + "--headless -o out --input none.txt"), {"none.txt"});
+    expect_clear_error(shell(in_folder + "--headless -o out --scene none.glb"), {"none.glb"});
+    expect_clear_error(shell(in_folder + "--headless -o out --size 0x9"), {"--size"});
+    expect_clear_error(shell(in_folder + "--headless -o bad.txt/out"), {"bad.txt/out"});
+    expect_clear_error(shell("unset DISPLAY; " + in_folder), {"--headless"});
+}
+
+// The window under a virtual display: title, a walk, lights, pause, settings, resizing, a picture, a polite end.
 TEST_F(CommandLine, TheDemoRunsInAWindow) {
     if (shell("command -v xvfb-run && command -v xdotool").status != 0)
         GTEST_SKIP() << "xvfb and xdotool are not installed";
     const std::string script =
         "cd " + folder.string() +
-        "\n" SUNFLECK_DEMO " --validation --size 160x90 --lights 8 & P=$!\n"
-        "for i in $(seq 100); do W=$(xdotool search --name Sunfleck | head -1); [ -n \"$W\" ] && break; sleep 0.2; "
-        "done\n"
-        "sleep 1; xdotool windowfocus $W; for k in i s space f f i; do xdotool key $k; sleep 0.3; done\n"
-        "xdotool windowsize $W 300 300; sleep 0.5; xdotool windowsize $W 111 400; sleep 0.5\n"
-        "for i in $(seq 20); do xdotool key p; sleep 0.5; [ -f sunfleck.png ] && break; done\n"
-        "for i in $(seq 20); do xdotool key Escape; sleep 0.5; kill -0 $P 2>/dev/null || break; done\n"
+        "\nexport XDG_CONFIG_HOME=$PWD/config\n"
+        "if command -v openbox >/dev/null; then openbox & fi\n" SUNFLECK_DEMO " --validation --size 192x108 & P=$!\n"
+        "for i in $(seq 200); do W=$(xdotool search --name 'Lantern House$' | head -1); [ -n \"$W\" ] && break; sleep "
+        "0.2; done\n"
+        "sleep 2; xdotool windowfocus $W; sleep 0.5; xdotool key Return; sleep 4\n"
+        "xdotool keydown w; sleep 1; xdotool keyup w; xdotool mousemove_relative 40 10\n"
+        "for k in l t e c f f l; do xdotool key $k; sleep 0.4; done\n"
+        "xdotool windowsize $W 300 300; sleep 0.7; xdotool windowsize $W 211 400; sleep 0.7\n"
+        "command -v openbox >/dev/null && { xdotool windowminimize $W; sleep 1; xdotool windowmap $W; sleep 1; xdotool "
+        "windowfocus $W; sleep 0.5; xdotool key Return; sleep 1; }\n"
+        "for i in $(seq 20); do xdotool key p; sleep 0.5; [ -f sunfleck_0001.png ] && break; done\n"
+        "xdotool key Escape; sleep 0.7; for k in Down Return; do xdotool key $k; sleep 0.5; done\n" // settings
+        "xdotool key Escape; sleep 0.5\n"
+        "for k in Down Down Down Down; do xdotool key $k; sleep 0.4; done; xdotool key Return\n"
+        "for i in $(seq 40); do kill -0 $P 2>/dev/null || break; sleep 0.5; done\n"
+        "kill -0 $P 2>/dev/null && { echo 'did not quit'; kill $P; }\n"
         "wait $P\n";
     ASSERT_TRUE(write_file(folder / "drive.sh", script));
     const Outcome outcome =
-        shell("timeout 90 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
+        shell("timeout 120 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;
-    EXPECT_TRUE(fs::exists(folder / "sunfleck.png")) << outcome.output;
+    EXPECT_TRUE(fs::exists(folder / "sunfleck_0001.png")) << outcome.output;
+    EXPECT_TRUE(fs::exists(folder / "config/sunfleck/demo.json")) << outcome.output;
 }
 
 } // namespace

@@ -1,0 +1,121 @@
+// What the player chooses: kept whole, and damage does no harm.
+#include "engine/core/file.h"
+#include "game_demo/controls.h"
+#include "game_demo/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+namespace sunfleck::demo {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DemoSettingsTest : public testing::Test {
+protected:
+    void SetUp() override {
+        path = fs::path(testing::TempDir()) / ("sunfleck_demo_" + std::to_string(getpid())) / "demo.json";
+    }
+    void TearDown() override { fs::remove_all(path.parent_path()); }
+    fs::path path;
+};
+
+TEST_F(DemoSettingsTest, ComeBackAsTheyWere) {
+    DemoSettings settings;
+    settings.preset = Preset::custom;
+    settings.exposure = -1.25f;
+    settings.light_samples = 777;
+    settings.invert_look = true;
+    settings.bindings[std::size_t(Action::use)] = app::first_mouse_button + 1;
+    settings.bindings[std::size_t(Action::run)] = app::key_f1 + 4;
+    ASSERT_TRUE(save_settings(path, settings)); // makes the folder
+    const LoadedSettings loaded = load_settings(path);
+    EXPECT_TRUE(loaded.found);
+    EXPECT_EQ(loaded.problem, "");
+    for (const Field& field : DemoSettings::description().fields)
+        EXPECT_EQ(field_to_text(field, &loaded.settings), field_to_text(field, &settings));
+    EXPECT_EQ(loaded.settings.bindings, settings.bindings);
+}
+
+TEST_F(DemoSettingsTest, DamagedFilesGiveTheUsualSettingsAndAreKept) {
+    EXPECT_FALSE(load_settings(path).found);
+    ASSERT_TRUE(save_settings(path, DemoSettings()));
+    const std::string whole = read_file(path).value();
+    for (std::size_t length = 0; length < whole.size(); length += 7) {
+        ASSERT_TRUE(write_file(path, whole.substr(0, length)));
+        const LoadedSettings loaded = load_settings(path);
+        EXPECT_NE(loaded.problem.find("damaged"), std::string::npos) << length;
+        EXPECT_EQ(loaded.settings.light_samples, DemoSettings().light_samples);
+        EXPECT_TRUE(fs::exists(path.string() + ".damaged"));
+    }
+    ASSERT_TRUE(write_file(path, R"({"exposure": 99, "light_samples": "many", "sensitivity": 2.5, "unknown": [1],
+                                     "bindings": {"use": "no such key", "run": "R", "fly": "X"}})"));
+    const LoadedSettings loaded = load_settings(path);
+    EXPECT_NE(loaded.problem, "");
+    EXPECT_EQ(loaded.settings.exposure, 0.0f) << "out of range";
+    EXPECT_EQ(loaded.settings.sensitivity, 2.5f) << "what is valid is taken";
+    EXPECT_EQ(loaded.settings.bindings[std::size_t(Action::use)], 'E');
+    EXPECT_EQ(loaded.settings.bindings[std::size_t(Action::run)], 'R');
+}
+
+TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
+    DemoSettings before, settings;
+    settings.preset = before.preset = Preset::software;
+    apply_preset(before);
+    for (std::uint32_t preset = 1; preset <= std::uint32_t(Preset::ultra); ++preset) {
+        settings.preset = Preset(preset);
+        apply_preset(settings);
+        EXPECT_GE(settings.render_scale, before.render_scale);
+        EXPECT_GT(settings.light_samples, before.light_samples);
+        EXPECT_TRUE(validate(DemoSettings::description(), &settings));
+        const gi::Settings lighting = lighting_of(settings);
+        EXPECT_TRUE(validate(gi::Settings::description(), &lighting));
+        EXPECT_EQ(lighting.lights, settings.light_samples);
+        before = settings;
+    }
+}
+
+TEST(KeyNames, GoBothWays) {
+    for (app::Key key = 0; key < app::key_count; ++key)
+        EXPECT_EQ(app::key_by_name(app::key_name(key)), key) << app::key_name(key);
+    EXPECT_EQ(app::key_by_name("no such key"), app::no_key);
+}
+
+TEST(Controls, HandOnWhatIsHeldAndAllOfTheLook) {
+    DemoSettings settings;
+    Controls controls;
+    app::InputState input;
+    input.captured = true;
+    input.keys['W'] = input.keys['D'] = true;
+    input.mouse_motion = vec2(100.0f, -40.0f);
+    controls.take(input, settings, 0.016, true);
+    const simulation::StepInput first = controls.next_step(), second = controls.next_step();
+    EXPECT_EQ(first.forward, 100);
+    EXPECT_EQ(first.right, 100);
+    EXPECT_EQ(first.turn, -2200); // to the right
+    EXPECT_EQ(first.look_up, 880);
+    EXPECT_EQ(second.turn, 0) << "the motion is handed on once";
+    EXPECT_EQ(second.forward, 100);
+    // A key that went down and up between two polls still counts, once.
+    input = {};
+    input.went_down = {'E'};
+    controls.take(input, settings, 0.016, true);
+    EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_use));
+    EXPECT_EQ(controls.next_step().buttons, 0u);
+    // Paused, nothing is done.
+    input.keys['W'] = true;
+    controls.take(input, settings, 0.016, false);
+    EXPECT_EQ(controls.next_step(), simulation::StepInput{});
+    // The gamepad's stick: half way is slower, and the dead zone was taken off before.
+    input = {};
+    input.gamepad.present = true;
+    input.gamepad.left = vec2(0.0f, -0.5f);
+    input.gamepad.buttons = 1u << 4;
+    controls.take(input, settings, 0.016, true);
+    EXPECT_EQ(controls.next_step().forward, 50);
+    EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_run));
+}
+
+} // namespace
+} // namespace sunfleck::demo
