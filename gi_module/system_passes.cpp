@@ -18,10 +18,17 @@ constexpr float direct_detail = 0.7f, indirect_detail = 2.0f;
 
 std::vector<ShadowRequest> System::make_requests(std::span<const std::uint32_t> samples) const {
     std::vector<ShadowRequest> requests;
-    for (const std::uint32_t sample : samples)
-        requests.push_back({sample % shadow_maps_->slots(), light_class(samples_[sample].kind), rows_[sample],
+    const bool knows_hidden = uses_many_light() && settings_.visibility;
+    for (const std::uint32_t sample : samples) {
+        requests.push_back({sample % shadow_maps_->slots(),
+                            light_class(samples_[sample].kind),
+                            rows_[sample],
                             scheduler_.is_static_stale(sample),
-                            samples_[sample].bounce == 0 ? direct_detail : indirect_detail});
+                            samples_[sample].bounce == 0 ? direct_detail : indirect_detail,
+                            {}});
+        if (knows_hidden)
+            requests.back().hidden = database_.hidden_entities(sample);
+    }
     return requests;
 }
 

@@ -149,6 +149,8 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
         // Jobs by level of detail: one command draws all maps that show the item at one level.
         std::vector<std::vector<shared::ShadowJob>> by_level((detail ? item.details.size() : 1) * 2);
         for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
+            if (requests[layer].hides(item.entity))
+                continue;
             const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
             seen[layer] |= faces;
             const std::size_t level = (detail ? detail_level(requests[layer], item) : 0) * 2 +

@@ -24,6 +24,8 @@ struct ShadowRequest {
     bool redraw_static = true; // the static part is stale, too
     // How far the simplified surface of a mover may be off, in texels.
     float detail_texels = 0.5f;
+    std::vector<std::uint8_t> hidden; // by entity index: 1 for what casts no shadow of its own; may be shorter
+    bool hides(ecs::Entity entity) const { return entity.index < hidden.size() && hidden[entity.index] != 0; }
 };
 
 struct MapLayout {

@@ -248,17 +248,18 @@ bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Visit& visit)
     std::array<std::uint32_t, 64> stack;
     std::size_t depth = 0;
     stack[depth++] = 0;
+    // Slabs, a little widened: in single precision, which errs by less. Along an axis that the segment does not follow,
+    // its inverse is large, not infinite.
+    constexpr float wider = 1e-4f;
+    const vec3 start(from);
+    vec3 inverse;
+    for (int axis = 0; axis < 3; ++axis)
+        inverse[axis] = float(1.0 / (std::abs(along[axis]) > 1e-9 ? along[axis] : std::copysign(1e-9, along[axis])));
     const auto meets = [&](const Bounds& bounds) {
-        double enter = 0.0, leave = 1.0;
+        float enter = 0.0f, leave = 1.0f;
         for (int axis = 0; axis < 3; ++axis) {
-            const double low = double(bounds.minimum[axis]) - 1e-6 - from[axis];
-            const double high = double(bounds.maximum[axis]) + 1e-6 - from[axis];
-            if (std::abs(along[axis]) < 1e-12) {
-                if (low > 0.0 || high < 0.0)
-                    return false;
-                continue;
-            }
-            const double a = low / along[axis], b = high / along[axis];
+            const float a = (bounds.minimum[axis] - wider - start[axis]) * inverse[axis];
+            const float b = (bounds.maximum[axis] + wider - start[axis]) * inverse[axis];
             enter = std::max(enter, std::min(a, b));
             leave = std::min(leave, std::max(a, b));
         }

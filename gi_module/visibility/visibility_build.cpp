@@ -304,7 +304,7 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
     for (auto& [bits, mover] : movers_)
         for (const std::uint32_t sample : changed) {
             set_mover_pair(mover.slot, sample, decide_mover(mover.blocker, samples_[sample]));
-            if (!mover.blocks)
+            if (!mover.blocks || !reaches(mover, sample))
                 continue;
             const Footprint roots = roots_for(clusters_[cluster_of_[sample]], mover, counters_.tests);
             find_footprint(mover, sample, roots, fresh, counters_.tests);

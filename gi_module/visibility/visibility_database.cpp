@@ -70,10 +70,6 @@ bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bound
 
 } // namespace
 
-PairState VisibilityDatabase::static_state(std::uint32_t node, std::uint32_t sample) const {
-    return PairState(static_states_[at(node, sample)]);
-}
-
 PairState VisibilityDatabase::state(std::uint32_t node, std::uint32_t sample) const {
     const PairState fixed = static_state(node, sample);
     if (fixed == PairState::unlit || fixed == PairState::full)
@@ -99,6 +95,26 @@ std::vector<VisibilityDatabase::Blocker> VisibilityDatabase::blockers(std::uint3
             result.push_back({mover.entity, (*found & 1u) != 0});
     }
     return result;
+}
+
+std::vector<std::uint8_t> VisibilityDatabase::hidden_entities(std::uint32_t sample) const {
+    std::vector<std::uint8_t> hidden, known;
+    const auto note = [&](ecs::Entity entity, std::uint32_t node) {
+        if (entity.index >= hidden.size())
+            hidden.resize(entity.index + 1, 1);
+        if (entity.index >= known.size())
+            known.resize(entity.index + 1, 0);
+        known[entity.index] = 1;
+        // A face that looks away may still be what stands in the light's way.
+        hidden[entity.index] &= static_state(node, sample) == PairState::full;
+    };
+    for (std::uint32_t root = 0; root < patches_.roots(); ++root)
+        note(patches_.nodes()[root].entity, root);
+    for (const auto& [bits, mover] : movers_)
+        note(mover.entity, mover_node(mover.entity));
+    for (std::size_t i = 0; i < hidden.size(); ++i)
+        hidden[i] &= known[i];
+    return hidden;
 }
 
 std::uint32_t VisibilityDatabase::mover_node(ecs::Entity entity) const {
@@ -188,6 +204,13 @@ void VisibilityDatabase::find_footprint(const Mover& mover, std::uint32_t sample
     std::sort(out.begin(), out.end());
 }
 
+// Whether light of the sample comes to the mover at all. Where static geometry takes all of it, what lies behind the
+// mover is dark without it.
+bool VisibilityDatabase::reaches(const Mover& mover, std::uint32_t sample) const {
+    const PairState fixed = static_state(std::uint32_t(patches_.nodes().size()) + mover.slot, sample);
+    return fixed != PairState::full && fixed != PairState::unlit;
+}
+
 void VisibilityDatabase::replace_footprints(Mover& mover, bool present) {
     std::vector<std::vector<PairChange>> changes(clusters_.size());
     std::atomic<std::uint64_t> all_tests{0};
@@ -196,9 +219,14 @@ void VisibilityDatabase::replace_footprints(Mover& mover, bool present) {
         Footprint fresh;
         for (std::size_t c = begin; c < end; ++c) {
             const Cluster& cluster = clusters_[c];
-            const Footprint roots = present ? roots_for(cluster, mover, tests) : Footprint();
+            const bool seen = present && std::any_of(cluster.samples.begin(), cluster.samples.end(),
+                                                     [&](std::uint32_t sample) { return reaches(mover, sample); });
+            const Footprint roots = seen ? roots_for(cluster, mover, tests) : Footprint();
             for (const std::uint32_t sample : cluster.samples) {
-                find_footprint(mover, sample, roots, fresh, tests);
+                if (reaches(mover, sample))
+                    find_footprint(mover, sample, roots, fresh, tests);
+                else
+                    fresh.clear();
                 if (fresh == mover.footprint[sample])
                     continue;
                 apply(sample, mover.footprint[sample], fresh, changes[c]);

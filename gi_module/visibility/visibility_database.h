@@ -77,7 +77,12 @@ public:
     std::uint32_t mover_node(ecs::Entity entity) const;
 
     PairState state(std::uint32_t node, std::uint32_t sample) const;
-    PairState static_state(std::uint32_t node, std::uint32_t sample) const;
+    PairState static_state(std::uint32_t node, std::uint32_t sample) const {
+        return PairState(static_states_[at(node, sample)]);
+    }
+    // By entity index: 1 if static geometry hides all of the entity from the sample, so that it casts no shadow of its
+    // own. Entities that are neither static geometry nor movers are not hidden.
+    std::vector<std::uint8_t> hidden_entities(std::uint32_t sample) const;
     struct Blocker {
         ecs::Entity entity; // null: static geometry
         bool full = false;
@@ -143,6 +148,7 @@ private:
     void find_footprint(const Mover& mover, std::uint32_t sample, const Footprint& roots, Footprint& out,
                         std::uint64_t& tests) const;
     Footprint roots_for(const Cluster& cluster, const Mover& mover, std::uint64_t& tests) const;
+    bool reaches(const Mover& mover, std::uint32_t sample) const;
     void replace_footprints(Mover& mover, bool present);
     void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
     void set_mover_row(std::uint32_t slot);
