@@ -238,6 +238,28 @@ void House::table(const std::string& name, vec3 foot, float height, float radius
         foot + vec3(0.0f, 0.5f * (height - 0.05f), 0.0f));
 }
 
+void House::wall_lamp(const std::string& name, vec3 centre, vec3 facing_to, float width, float height, vec3 radiance) {
+    scene::AreaLight light;
+    light.width = width;
+    light.height = height;
+    light.radiance = radiance;
+    scene::Transform transform;
+    transform.position = centre;
+    transform.rotation = facing(facing_to);
+    s_.area_light(name, light, transform);
+}
+
+void House::globe_lamp(const std::string& name, vec3 centre, float radius, vec3 radiance, vec3 stem) {
+    scene::AreaLight light;
+    light.shape = scene::AreaShape::sphere;
+    light.radius = radius;
+    light.radiance = radiance;
+    scene::Transform transform;
+    transform.position = centre;
+    s_.area_light(name, light, transform);
+    add(name + " stem", scene::make_cylinder(0.03f, 0.05f, 12), stem, centre - vec3(0.0f, radius + 0.025f, 0.0f));
+}
+
 void House::light_switch(const std::string& name, vec3 centre, vec3 facing_to, const std::string& lamps) {
     const vec3 half = glm::mix(vec3(0.045f), vec3(0.012f), glm::abs(facing_to)) + vec3(0.0f, 0.025f, 0.0f);
     const ecs::Entity entity = boxes(name, {{centre - half, centre + half}}, vec3(0.85f, 0.83f, 0.76f));

@@ -55,6 +55,9 @@ public:
     ecs::Entity boxes(const std::string& name, const std::vector<Box>& parts, vec3 colour);
     void pattern(const std::string& name, const scene::SurfacePattern& pattern);
     void table(const std::string& name, vec3 foot, float height, float radius, vec3 colour);
+    // A flat lamp before a wall, and a globe on a thin stem of 5 cm.
+    void wall_lamp(const std::string& name, vec3 centre, vec3 facing_to, float width, float height, vec3 radiance);
+    void globe_lamp(const std::string& name, vec3 centre, float radius, vec3 radiance, vec3 stem);
     void light_switch(const std::string& name, vec3 centre, vec3 facing, const std::string& lamps);
 
     void sliding_door(const std::string& name, vec3 centre, vec3 size, vec3 travel, vec3 colour);

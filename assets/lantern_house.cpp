@@ -6,7 +6,7 @@
 namespace sunfleck::assets {
 namespace {
 
-const vec3 white(0.78f, 0.76f, 0.72f), red(0.66f, 0.08f, 0.06f), green(0.13f, 0.46f, 0.12f), blue(0.09f, 0.18f, 0.62f);
+const vec3 white(0.78f, 0.76f, 0.72f), red(0.66f, 0.08f, 0.06f), green(0.13f, 0.46f, 0.12f), blue(0.12f, 0.25f, 0.70f);
 const vec3 oak(0.52f, 0.34f, 0.19f), dark_oak(0.30f, 0.18f, 0.10f), stone(0.62f, 0.59f, 0.54f),
     cream(0.80f, 0.72f, 0.58f);
 const vec3 brass(0.72f, 0.52f, 0.20f), cloth(0.24f, 0.34f, 0.42f), leaf(0.16f, 0.36f, 0.10f), clay(0.60f, 0.28f, 0.16f);
@@ -132,6 +132,8 @@ void furnish_blue_room(House& house) {
     }
     house.add("vase", scene::make_cylinder(0.13f, 0.5f, 24), vec3(0.75f), vec3(8.85f, 0.79f, -0.9f));
     house.boxes("low wall", {{vec3(3.6f, 0.0f, -2.9f), vec3(4.6f, 0.9f, -2.6f)}}, clay);
+    house.wall_lamp("blue lamp", vec3(6.2f, 1.9f, 2.98f), vec3(0, 0, -1), 0.5f, 0.22f, vec3(15.0f, 11.0f, 6.6f));
+    house.light_switch("blue switch", vec3(3.255f, 1.25f, 0.85f), vec3(1, 0, 0), "blue lamp");
     house.pattern("low wall", {PatternKind::bricks, vec3(0.70f, 0.66f, 0.60f), 0.22f});
 }
 
@@ -163,6 +165,7 @@ void furnish_attic(House& house) {
                  {vec3(-2.22f, y, 0.48f), vec3(-2.15f, y + 0.70f, 0.55f)}},
                 oak);
     house.boxes("chest", {{vec3(1.7f, y, 0.9f), vec3(2.8f, y + 0.55f, 1.6f)}}, clay);
+    house.globe_lamp("desk lamp", vec3(-2.55f, y + 0.90f, 0.35f), 0.09f, vec3(34.0f, 23.0f, 12.0f), brass);
     house.add("armillary", scene::make_torus(0.22f, 0.03f, 40, 12), brass, vec3(-2.5f, y + 1.04f, -0.4f));
     house.add("attic ball", scene::make_sphere(0.12f, 24, 12), vec3(0.7f), vec3(-2.5f, y + 1.04f, -0.4f));
 }
@@ -176,7 +179,7 @@ void add_movers(House& house) {
     // A column that rises out of the floor: nobody can be under it.
     house.lift("lift", vec3(1.4f, 0.0f, -9.15f), vec3(2.95f, 3.4f, -7.62f), 0.12f, upper_floor, 14.0f, stone);
     house.turning_panel("turning panel", vec3(7.9f, 1.56f, 0.0f), vec3(1.5f, 2.0f, 0.07f), 18.0f, cream);
-    house.swinging_lamp("swinging lamp", vec3(5.0f, 3.6f, 0.3f), 1.25f, vec3(52.0f, 40.0f, 24.0f), brass);
+    house.swinging_lamp("swinging lamp", vec3(5.0f, 3.6f, 0.3f), 1.25f, vec3(64.0f, 50.0f, 31.0f), brass);
     house.mobile("mobile", scene::make_torus(0.28f, 0.07f, 36, 14), brass,
                  {vec3(-1.6f, 2.6f, -5.0f), vec3(0.4f, 3.1f, -4.6f), vec3(0.6f, 3.7f, -7.2f), vec3(-1.0f, 3.3f, -7.4f)},
                  21.0f);

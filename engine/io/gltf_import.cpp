@@ -1,10 +1,8 @@
 #include "engine/core/file.h"
 #include "engine/io/gltf.h"
+#include "engine/io/gltf_accessor.h"
+#include "engine/io/gltf_animation.h"
 #include "engine/scene/procedural.h"
-
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cstring>
@@ -15,7 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::size_t depth_limit = 256; // of JSON nesting and of the node hierarchy
-constexpr std::size_t vertex_limit = 50u << 20;
 
 // tinygltf's parser recurses: deep nesting would overflow the stack.
 bool nesting_is_sane(std::string_view json) {
@@ -97,48 +94,13 @@ public:
         return {};
     }
 
+    // By node; null for nodes outside the scene.
+    const std::vector<ecs::Entity>& entities() const { return entities_; }
     ImportReport report;
 
 private:
-    template <typename T>
-    static bool in_range(int index, const std::vector<T>& list) {
-        return index >= 0 && std::size_t(index) < list.size();
-    }
-
-    // Calls read(element, address of its first component) after checking that all elements lie in their buffer.
-    template <typename Read>
-    Status each_element(int accessor_index, int type, std::vector<int> component_types, Read&& read) const {
-        if (!in_range(accessor_index, model_.accessors))
-            return Error{"an accessor does not exist"};
-        const tinygltf::Accessor& accessor = model_.accessors[std::size_t(accessor_index)];
-        if (accessor.sparse.isSparse || !in_range(accessor.bufferView, model_.bufferViews))
-            return Error{"sparse accessors and accessors without data are not supported"};
-        if (accessor.type != type ||
-            std::find(component_types.begin(), component_types.end(), accessor.componentType) == component_types.end())
-            return Error{"an accessor has the wrong type"};
-        const tinygltf::BufferView& view = model_.bufferViews[std::size_t(accessor.bufferView)];
-        if (!in_range(view.buffer, model_.buffers))
-            return Error{"a buffer does not exist"};
-        const std::vector<unsigned char>& data = model_.buffers[std::size_t(view.buffer)].data;
-        const int component = tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType));
-        const int components = tinygltf::GetNumComponentsInType(std::uint32_t(type));
-        const int stride = accessor.ByteStride(view);
-        if (component <= 0 || components <= 0 || stride < component * components)
-            return Error{"an accessor has an invalid stride"};
-        const std::size_t element = std::size_t(component) * std::size_t(components);
-        if (accessor.count > vertex_limit || view.byteOffset > data.size() ||
-            view.byteLength > data.size() - view.byteOffset || accessor.byteOffset > view.byteLength ||
-            (accessor.count > 0 &&
-             (accessor.count - 1) * std::size_t(stride) + element > view.byteLength - accessor.byteOffset))
-            return Error{"an accessor reaches outside its buffer"};
-        const unsigned char* first = data.data() + view.byteOffset + accessor.byteOffset;
-        for (std::size_t i = 0; i < accessor.count; ++i)
-            read(i, first + i * std::size_t(stride), accessor.componentType);
-        return {};
-    }
-
     Status read_vectors(int accessor, std::vector<vec3>& target) const {
-        SUNFLECK_TRY(each_element(accessor, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT},
+        SUNFLECK_TRY(each_element(model_, accessor, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT},
                                   [&](std::size_t, const unsigned char* address, int) {
                                       float v[3];
                                       std::memcpy(v, address, sizeof v);
@@ -150,7 +112,7 @@ private:
     }
 
     Status read_indices(int accessor, std::size_t vertices, std::vector<std::uint32_t>& target) const {
-        SUNFLECK_TRY(each_element(accessor, TINYGLTF_TYPE_SCALAR,
+        SUNFLECK_TRY(each_element(model_, accessor, TINYGLTF_TYPE_SCALAR,
                                   {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
                                    TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
                                   [&](std::size_t, const unsigned char* address, int type) {
@@ -297,6 +259,8 @@ private:
     void add_node(int index, ecs::Entity parent) {
         const tinygltf::Node& node = model_.nodes[std::size_t(index)];
         const ecs::Entity entity = registry_.create();
+        entities_.resize(model_.nodes.size());
+        entities_[std::size_t(index)] = entity;
         registry_.emplace<scene::Name>(entity, {node.name});
         registry_.emplace<scene::Transform>(entity, transform_of(node));
         if (!parent.is_null())
@@ -335,6 +299,7 @@ private:
     std::vector<std::uint32_t> mesh_ids_;
     std::vector<std::size_t> first_primitive_;
     std::set<int> visited_;
+    std::vector<ecs::Entity> entities_;
 };
 
 Status check_extensions(const tinygltf::Model& model) {
@@ -384,13 +349,23 @@ Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, 
     }
     if (const Status status = check_extensions(model); !status)
         return failure(status.error().message);
+    auto animations = read_animations(model);
+    if (!animations)
+        return failure(animations.error().message);
     Importer importer(model, registry, meshes);
     if (const Status status = importer.run(); !status)
         return failure(status.error().message);
     if (!model.textures.empty())
         importer.report.notes.push_back("textures are left out");
-    if (!model.animations.empty() || !model.skins.empty())
-        importer.report.notes.push_back("animations and skins are left out");
+    if (!model.skins.empty())
+        importer.report.notes.push_back("skins are left out");
+    if (model.animations.size() > 1)
+        importer.report.notes.push_back("of several animations the first plays");
+    for (auto& [node, animation] : *animations)
+        if (const ecs::Entity entity = importer.entities()[std::size_t(node)]; !entity.is_null()) {
+            registry.emplace<scene::Mover>(entity, {});
+            registry.emplace<scene::Animation>(entity, std::move(animation));
+        }
     return importer.report;
 }
 

@@ -1,5 +1,6 @@
 #include "engine/simulation/path_movers.h"
 
+#include "engine/scene/animation.h"
 #include "engine/scene/simulation_components.h"
 
 #include <cmath>
@@ -102,6 +103,13 @@ void set_movers_to_step(ecs::Registry& registry, std::uint64_t step) {
             if (next.position != transform.position || next.rotation != transform.rotation)
                 registry.patch<scene::Transform>(entity, [&](scene::Transform& t) { t = next; });
         });
+    registry.view<scene::Animation, scene::Transform>().each([&](ecs::Entity entity, const scene::Animation& animation,
+                                                                 const scene::Transform& transform) {
+        scene::Transform next = transform;
+        animation.apply(seconds, next);
+        if (next.position != transform.position || next.rotation != transform.rotation || next.scale != transform.scale)
+            registry.patch<scene::Transform>(entity, [&](scene::Transform& t) { t = next; });
+    });
     scene::update_world_transforms(registry);
 }
 

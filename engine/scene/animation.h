@@ -1,0 +1,34 @@
+// Key frames that move an entity (glTF's node animation). Its pose is a function of the simulation step alone.
+#pragma once
+
+#include "engine/scene/components.h"
+
+#include <vector>
+
+namespace sunfleck::scene {
+
+enum class AnimationTarget : std::uint32_t { position, rotation, scale };
+enum class AnimationInterpolation : std::uint32_t { step, linear, cubic_spline };
+
+// One property over time.
+struct AnimationCurve {
+    AnimationTarget target = AnimationTarget::position;
+    AnimationInterpolation interpolation = AnimationInterpolation::linear;
+    std::vector<float> times; // s, rising
+    // One a time: xyz, or a quaternion's xyzw; cubic_spline: three a time (in-tangent, value, out-tangent).
+    std::vector<vec4> values;
+
+    // Before the first key and after the last, the nearest holds.
+    vec4 at(float seconds) const;
+};
+
+// Curves of one entity; they start anew after `duration`, which is the same for all entities of a clip.
+struct Animation {
+    std::vector<AnimationCurve> curves;
+    float duration = 0.0f; // s
+
+    // Sets what the curves say; the rest of `transform` stays.
+    void apply(double seconds, Transform& transform) const;
+};
+
+} // namespace sunfleck::scene
