@@ -109,6 +109,16 @@ Decision Menu::draw(DemoSettings& settings, const Shown& shown, const app::Input
     return decision;
 }
 
+void Menu::settings_and_help_buttons() {
+    const Screen from = screen_;
+    if (wide_button("Settings"))
+        screen_ = Screen::settings;
+    if (wide_button("Help"))
+        screen_ = Screen::help;
+    if (screen_ != from)
+        came_from_ = from;
+}
+
 Decision Menu::title_screen(bool enter) {
     Decision decision = Decision::none;
     place_next(0.08f, 0.5f, 0.0f, 0.5f);
@@ -119,14 +129,7 @@ Decision Menu::title_screen(bool enter) {
     if (wide_button("Walk in") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
-    if (wide_button("Settings")) {
-        came_from_ = screen_;
-        screen_ = Screen::settings;
-    }
-    if (wide_button("Help")) {
-        came_from_ = screen_;
-        screen_ = Screen::help;
-    }
+    settings_and_help_buttons();
     if (wide_button("Quit"))
         decision = Decision::quit;
     ImGui::End();
@@ -141,14 +144,7 @@ Decision Menu::pause_screen(bool enter) {
     if (wide_button("Go on") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
-    if (wide_button("Settings")) {
-        came_from_ = screen_;
-        screen_ = Screen::settings;
-    }
-    if (wide_button("Help")) {
-        came_from_ = screen_;
-        screen_ = Screen::help;
-    }
+    settings_and_help_buttons();
     if (wide_button("Start again"))
         decision = Decision::restart;
     if (wide_button("Quit"))

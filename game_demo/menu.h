@@ -37,6 +37,7 @@ public:
 private:
     Decision title_screen(bool enter);
     Decision pause_screen(bool enter);
+    void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void help_screen(const DemoSettings& settings);
     void prompts(const DemoSettings& settings, const Shown& shown);

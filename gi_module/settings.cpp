@@ -17,6 +17,8 @@ const TypeDescription& Settings::description() {
          SUNFLECK_FIELD(Settings, direct_share, "", 0, 1, "Share of the samples that lie on emitters"),
          SUNFLECK_FIELD(Settings, dynamic_share, "", 0, 1,
                         "Share of the samples for emitters that move or vary, where there are any"),
+         SUNFLECK_FIELD(Settings, mover_paths, "", 0, 1,
+                        "Doors and other large boxes that move block the light that samples reflect"),
          SUNFLECK_FIELD(Settings, bounces, "", 0, 64, "How often light is reflected at most; 0 is direct light only"),
          SUNFLECK_FIELD(Settings, seed, "", 0, 4294967295.0, "Another seed is another set of samples"),
          SUNFLECK_CHOICE(Settings, sequence, "Random numbers of the samples; sobol is smoother at equal count",

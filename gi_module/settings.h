@@ -26,6 +26,7 @@ struct Settings {
     float direct_share = 0.25f; // of the samples, for light from area emitters
     // Of the samples, for emitters that move or vary, if there are any; they divide it by flux.
     float dynamic_share = 0.15f;
+    bool mover_paths = true;   // large boxes that move, as doors do, block the light that samples reflect
     std::uint32_t bounces = 5; // reflections before the surface that is shown
     std::uint32_t seed = 1;
     Sequence sequence = Sequence::sobol;

@@ -240,8 +240,9 @@ void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
     rows_.resize(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
         rows_[i] = make_light_row(samples_[i], i % slots, bound_, scene_bounds_);
+        const float share = blocked_paths_.is_blocked(i) ? 0.0f : input_.indirect_scale;
         if (samples_[i].bounce > 0)
-            rows_[i].intensity_slot *= vec4(vec3(input_.indirect_scale), 1.0f);
+            rows_[i].intensity_slot *= vec4(vec3(share), 1.0f);
     }
 }
 
@@ -335,6 +336,10 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         if (static_changed)
             scheduler_.reset(samples_.size());
         SUNFLECK_TRY(configure_maps());
+        if (settings_.mover_paths && settings_.movers == MoverHandling::per_pixel)
+            blocked_paths_.update(registry, meshes, gpu_scene, samples_, sample_generation_);
+        else
+            blocked_paths_ = {};
         update_rows(bounds, rays);
     }
     if (uses_many_light()) {
@@ -356,6 +361,7 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
     counters_.light_samples = samples_.size();
     counters_.light_samples_dynamic = dynamic_samples_.size();
+    counters_.light_samples_blocked = blocked_paths_.count();
     counters_.light_samples_moved = changed_samples_.size();
     counters_.light_samples_direct = std::uint64_t(
         std::count_if(samples_.begin(), samples_.end(), [](const LightSample& s) { return s.bounce == 0; }));

@@ -17,6 +17,7 @@
 
 #include "engine/raytrace/ray_scene.h"
 #include "gi_module/brute_force/brute_force.h"
+#include "gi_module/light_sampling/blocked_paths.h"
 #include "gi_module/light_sampling/dynamic_lights.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/many_light/many_light.h"
@@ -54,6 +55,7 @@ struct Counters {
     std::uint64_t light_samples_direct = 0;
     std::uint64_t light_samples_dynamic = 0; // of emitters that move or vary
     std::uint64_t light_samples_moved = 0;   // in this frame
+    std::uint64_t light_samples_blocked = 0; // whose light a door or the like keeps from them
     std::uint64_t shadow_map_updates = 0;
     std::uint64_t shadow_map_faces = 0;
     std::uint64_t shadow_map_vertices = 0;
@@ -138,6 +140,7 @@ private:
     std::set<ecs::Entity> varying_;         // do not move, but have changed their strength
     std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
     DynamicLights dynamic_lights_;
+    BlockedPaths blocked_paths_;
     std::vector<std::uint32_t> dynamic_samples_; // where each of theirs is among all
     std::vector<std::uint32_t> changed_samples_; // in this frame
     std::vector<LightSample> samples_;           // grouped by class, direct before indirect

@@ -11,7 +11,6 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr std::uint32_t direction_count = 512;
-constexpr float stop_probability = 0.65f;      // of a path, at each surface
 constexpr float leg_margin = 2e-3f;            // m, before the first surface
 constexpr float far_away = 1e4f;               // m
 constexpr std::uint32_t resampled_at_once = 4; // a light and frame
@@ -155,7 +154,9 @@ void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrac
         sample.position = lift_sample(point.position, normal, rays, raytrace::Scope::static_only);
         sample.normal = shading;
         sample.bounce = bounce;
-        const float stop = bounce == settings_.bounces ? 1.0f : stop_probability;
+        // What a path stops with is nearly the same wherever it stops, within limits: no sample outshines the others.
+        const float largest = std::max({point.base_colour.x, point.base_colour.y, point.base_colour.z});
+        const float stop = bounce == settings_.bounces ? 1.0f : std::clamp(1.0f - largest, 0.35f, 0.8f);
         const float u = random.next(), v = random.next();
         if (random.next() < stop) {
             path.throughput /= stop;

@@ -90,6 +90,15 @@ std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitte
     return samples;
 }
 
+// The oldest point gives way where there is no room.
+void add_way_point(LightSample& sample, vec3 point) {
+    if (sample.way_points == LightSample::most_way_points) {
+        std::rotate(sample.way.begin(), sample.way.begin() + 1, sample.way.end());
+        --sample.way_points;
+    }
+    sample.way[sample.way_points++] = point;
+}
+
 // The samples of one walk, for a flux of 1 W in all walks together (divided by their number later).
 std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::vector<double>& cumulative,
                               std::uint32_t index, const Settings& settings, const raytrace::RayScene& rays) {
@@ -131,6 +140,11 @@ std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::v
         sample.flux = flux;
         sample.bounce = bounce;
         sample.emitter = emitter.entity;
+        if (!samples.empty()) {
+            sample.way = samples.back().way;
+            sample.way_points = samples.back().way_points;
+        }
+        add_way_point(sample, ray.origin);
         samples.push_back(sample);
         ray = {point.position + ray_offset * normal, sample_cosine_direction(shading_normal, u, v), 0.0f, 1e30f};
         if (glm::dot(ray.direction, normal) <= 0.0f)

@@ -8,8 +8,9 @@ namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
-constexpr std::uint32_t most_texels = 256;   // along a patch's side
-constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
+constexpr std::uint32_t most_texels = 256;     // along a patch's side
+constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
+constexpr float highest_sum = 1073741824.0f;   // of all samples at once: 2^30 leaves room in 32 bits
 
 bool reaches(PairState state) {
     return state == PairState::none || state == PairState::partial;
@@ -76,38 +77,69 @@ void LightMaps::add_job(const VisibilityDatabase& database, std::uint32_t node, 
     jobs_.push_back(job);
 }
 
+// False if more than strengths changed, or too many of them.
+bool LightMaps::find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
+                                   std::vector<std::uint32_t>& changed) const {
+    if (rows.size() != summed_rows_.size())
+        return false;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+        if (!holds(samples[i]) || std::memcmp(&rows[i], &summed_rows_[i], sizeof rows[i]) == 0)
+            continue;
+        shared::LightRow like = summed_rows_[i];
+        like.intensity_slot = rows[i].intensity_slot;
+        if (std::memcmp(&rows[i], &like, sizeof like) != 0)
+            return false;
+        changed.push_back(i);
+    }
+    return changed.size() <= most_new_strengths;
+}
+
+// Pairs that changed their state, with the old strengths; then the new strengths, wherever the samples reach now.
+void LightMaps::follow_changes(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                               std::span<const std::uint32_t> changed) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted; // node, change
+    for (const PairChange& change : database.changes())
+        if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
+            holds(samples[change.sample]) && reaches(change.before) != reaches(change.after))
+            wanted.emplace_back(change.node, change.sample | (reaches(change.after) ? 0u : shared::light_map_subtract));
+    for (std::uint32_t k = 0; k < changed.size(); ++k)
+        for (std::uint32_t node = 0; node < node_rows_.size(); ++node)
+            if (node_rows_[node].first_texel != shared::no_light_map && reaches(database.state(node, changed[k]))) {
+                wanted.emplace_back(node, changed[k] | shared::light_map_subtract);
+                wanted.emplace_back(node, std::uint32_t(summed_rows_.size()) + k);
+            }
+    std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (i == 0 || wanted[i].first != wanted[i - 1].first)
+            add_job(database, wanted[i].first, false);
+        changes_.push_back(wanted[i].second);
+        ++jobs_.back().change_count;
+    }
+}
+
 Status LightMaps::update(const VisibilityDatabase& database, std::span<const LightSample> samples,
                          std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
     jobs_.clear();
     changes_.clear();
-    bool same_rows = rows.size() == summed_rows_.size();
-    for (std::size_t i = 0; i < rows.size() && same_rows; ++i)
-        same_rows = !holds(samples[i]) || std::memcmp(&rows[i], &summed_rows_[i], sizeof rows[i]) == 0;
-    const bool anew = generation_ != database.generation() || !same_rows;
-    if (!anew) {
-        std::vector<PairChange> wanted;
-        for (const PairChange& change : database.changes())
-            if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
-                holds(samples[change.sample]) && reaches(change.before) != reaches(change.after))
-                wanted.push_back(change);
-        std::stable_sort(wanted.begin(), wanted.end(),
-                         [](const PairChange& a, const PairChange& b) { return a.node < b.node; });
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            if (i == 0 || wanted[i].node != wanted[i - 1].node)
-                add_job(database, wanted[i].node, false);
-            changes_.push_back(wanted[i].sample | (reaches(wanted[i].after) ? 0u : shared::light_map_subtract));
-            ++jobs_.back().change_count;
-        }
+    std::vector<std::uint32_t> changed;
+    if (generation_ == database.generation() && find_new_strengths(samples, rows, changed)) {
+        job_rows_ = summed_rows_;
+        for (const std::uint32_t sample : changed)
+            job_rows_.push_back(rows[sample]);
+        follow_changes(database, samples, changed);
+        summed_rows_.assign(rows.begin(), rows.end());
         counters_.updates = changes_.size();
         return {};
     }
     generation_ = database.generation();
     summed_rows_.assign(rows.begin(), rows.end());
+    job_rows_ = summed_rows_;
     double most = 0.0;
     float bound = 0.0f;
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (holds(samples[i])) {
-            const vec4& intensity = rows[i].intensity_slot;
+            // Of all samples at full strength, so that the steps are the same whatever is blocked.
+            const vec3 intensity = samples[i].flux / pi;
             most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(rows[i].position_bound.w);
             bound = std::max(bound, rows[i].position_bound.w);
         }
@@ -133,7 +165,7 @@ Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resour
         return {};
     SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(std::span<const shared::LightMapJob>(jobs_)));
     SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(std::span<const std::uint32_t>(changes_)));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(summed_rows_)));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
     graph.add_pass("light maps")
         .write(graph.import_buffer(texels_), gpu::Usage::storage_read_write)
         .execute([this, jobs, changes, rows, count = std::uint32_t(jobs_.size())](gpu::PassContext& context) -> Status {

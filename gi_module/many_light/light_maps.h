@@ -29,7 +29,8 @@ public:
     static Result<std::unique_ptr<LightMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
     // Follows the database's changes; `rows` are the samples' rows by index. All is summed anew when the database's
-    // generation, the samples or their bound changed.
+    // generation, the samples or their bound changed; of samples that only changed their strength (doors do that), the
+    // old light is subtracted and the new one added.
     Status update(const VisibilityDatabase& database, std::span<const LightSample> samples,
                   std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
     // Adds the passes that bring the maps up to date; nothing if they are.
@@ -47,6 +48,10 @@ private:
     explicit LightMaps(gpu::Device& device) : device_(device) {}
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
     void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
+    bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
+                            std::vector<std::uint32_t>& changed) const;
+    void follow_changes(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                        std::span<const std::uint32_t> changed);
 
     gpu::Device& device_;
     std::vector<shared::NodeRow> node_rows_;
@@ -54,6 +59,7 @@ private:
     float fixed_point_ = 1.0f;
     std::uint64_t generation_ = 0;
     std::vector<shared::LightRow> summed_rows_; // what the maps were made with
+    std::vector<shared::LightRow> job_rows_;    // those, then the new ones of samples whose strength changed
     std::vector<shared::LightMapJob> jobs_;
     std::vector<std::uint32_t> changes_;
     const gpu::Pipeline* kernel_ = nullptr;

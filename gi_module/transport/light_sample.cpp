@@ -16,6 +16,7 @@ const TypeDescription& LightSample::description() {
          SUNFLECK_FIELD(LightSample, cone_offset, "", -1e6, 1e6, "Spot cone: offset of the falloff"),
          SUNFLECK_FIELD(LightSample, index, "", 0, 4294967295.0, "Stable number"),
          SUNFLECK_FIELD(LightSample, emitter, "", 0, 0, "Where its light comes from"),
+         SUNFLECK_FIELD(LightSample, way_points, "", 0, 6, "Known points of the way that the light came"),
          SUNFLECK_FIELD(LightSample, dynamic, "", 0, 1, "Its emitter moves or varies")}};
     return type;
 }

@@ -3,6 +3,8 @@
 
 #include "engine/scene/components.h"
 
+#include <array>
+
 namespace sunfleck::gi {
 
 enum class SampleKind : std::uint32_t {
@@ -24,6 +26,11 @@ struct LightSample {
     float cone_offset = 0.0f;
     std::uint32_t index = 0; // stable: map slot, GPU row and random sequence follow it
     ecs::Entity emitter;
+    // Reflected light of emitters that stay: the way that it came, from the emitter or, of long ways, the last points
+    // of them; the last leg ends in `position`.
+    static constexpr std::uint32_t most_way_points = 6;
+    std::array<vec3, most_way_points> way{};
+    std::uint32_t way_points = 0;
     // Of an emitter that moves or varies: never in light maps, and its visibility is decided for whole charts only.
     bool dynamic = false;
 

@@ -11,7 +11,7 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr std::size_t samples_per_cluster = 16;
-constexpr std::size_t roots_per_group = 2;
+constexpr std::size_t roots_per_group = 4;
 
 // Place of a point on a curve that keeps neighbours together (Morton order of ten bits an axis).
 std::uint32_t morton(vec3 point, const Bounds& bounds) {

@@ -106,6 +106,41 @@ TEST_F(ManyLightTest, ExactPartsChangeNothing) {
     }
 }
 
+// A door that shuts keeps the light out: what was reflected beyond the doorway, too. (Without `mover_paths` samples
+// beyond it, made without the door, go on shining.)
+TEST_F(ManyLightTest, AClosedDoorKeepsReflectedLightOut) {
+    const auto mean_in_dark_room = [](bool mover_paths, std::uint64_t step) {
+        GpuWorld world(assets::make_two_rooms, "view");
+        gi::Settings settings;
+        settings.mover_paths = mover_paths;
+        settings.map_budget = 65536;
+        world.set(settings);
+        world.request.width = 96;
+        world.request.height = 72;
+        for (const std::uint64_t k : {std::uint64_t(0), step / 2, step}) {
+            world.request.step = k;
+            world.render();
+        }
+        const io::Picture picture = world.renderer->read_back().value();
+        double sum = 0;
+        for (const vec4& pixel : picture.pixels)
+            sum += double(pixel.r + pixel.g + pixel.b) / double(picture.pixels.size());
+        if (!mover_paths) {
+            EXPECT_EQ(world.renderer->lighting().counters().light_samples_blocked, 0u);
+        } else if (step == 120) {
+            EXPECT_GT(world.renderer->lighting().counters().light_samples_blocked, 10u);
+        }
+        return sum;
+    };
+    const double open = mean_in_dark_room(true, 0), closed = mean_in_dark_room(true, 120);
+    const double leaking = mean_in_dark_room(false, 120);
+    std::printf("open %.4f, closed %.4f, closed for shadows only %.4f\n", open, closed, leaking);
+    EXPECT_GT(open, 0.02);
+    // What is left comes round the door: it stands 3 to 5 cm before walls of different thickness.
+    EXPECT_LT(closed, 0.05 * open);
+    EXPECT_GT(leaking, 5.0 * closed) << "the test must be able to fail";
+}
+
 // A lantern is carried about and a lamp changes its strength: samples, database, maps and lists follow, and the picture
 // is brute force's of the same samples (which have the same past: both worlds see every step).
 TEST_F(ManyLightTest, FollowsLightsThatMoveAndVary) {

@@ -49,6 +49,14 @@ struct House {
         input.forward = std::abs(turn) < 0.3f ? forward : 0;
         return input;
     }
+    void open_swinging_door() {
+        walk_to(0.0f, 4.4f);
+        walk_to(0.0f, 1.8f);
+        walk_to(2.2f, 0.0f);
+        look_at(vec3(3.12f, 1.1f, 0.2f));
+        press(button_use);
+        run(120);
+    }
     void press(std::uint32_t button) {
         StepInput input;
         input.buttons = button;
@@ -208,12 +216,7 @@ TEST(Simulation, TheLiftCarriesToTheAttic) {
 
 TEST(Simulation, StepsAreClimbedAndWallsAreNot) {
     House house;
-    house.walk_to(0.0f, 4.4f);
-    house.walk_to(0.0f, 1.8f);
-    house.walk_to(2.2f, 0.0f);
-    house.look_at(vec3(3.12f, 1.1f, 0.2f));
-    house.press(button_use);
-    house.run(120);
+    house.open_swinging_door();
     house.walk_to(4.5f, -0.6f);
     house.walk_to(7.3f, 0.9f); // three steps of 18 cm
     EXPECT_NEAR(house.foot().y, 0.54f, 0.03f);
@@ -251,12 +254,7 @@ TEST(Simulation, LampsAreSwitchedAndTheLanternIsCarried) {
 // A person in a closing door is not squeezed through the floor or the frame.
 TEST(Simulation, DoorsDoNotCrushPeople) {
     House house;
-    house.walk_to(0.0f, 4.4f);
-    house.walk_to(0.0f, 1.8f);
-    house.walk_to(2.2f, 0.0f);
-    house.look_at(vec3(3.12f, 1.1f, 0.2f));
-    house.press(button_use);
-    house.run(120);
+    house.open_swinging_door();
     house.walk_to(3.45f, 0.05f); // in the door's way
     house.look_at(house.position("swinging door"));
     house.press(button_use);
