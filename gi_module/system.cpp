@@ -226,10 +226,15 @@ void System::mirror_samples(ecs::Registry& registry) {
 }
 
 void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
-    std::uint32_t surface_samples = 0;
-    for (const LightSample& sample : samples_)
+    // Emitters that move have few samples of their own, each of which carries more: the bound of what they reflect is
+    // as if there were no others.
+    std::uint32_t surface_samples = 0, dynamic_samples = 0;
+    for (const LightSample& sample : samples_) {
         surface_samples += sample.kind == SampleKind::surface;
+        dynamic_samples += sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0;
+    }
     bound_ = gi::geometry_bound(surface_samples, rays.static_area(), settings_.clamp_scale);
+    const float dynamic_bound = gi::geometry_bound(dynamic_samples, rays.static_area(), settings_.clamp_scale);
     // The maps of directional lights cover the scene's bounds, so all of them follow a change of those.
     if (bounds.minimum != scene_bounds_.minimum || bounds.maximum != scene_bounds_.maximum)
         for (std::uint32_t i = 0; i < samples_.size(); ++i)
@@ -239,7 +244,8 @@ void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
     const std::uint32_t slots = std::max(shadow_maps_->slots(), 1u);
     rows_.resize(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
-        rows_[i] = make_light_row(samples_[i], i % slots, bound_, scene_bounds_);
+        const bool few = samples_[i].dynamic && samples_[i].bounce > 0;
+        rows_[i] = make_light_row(samples_[i], i % slots, few ? dynamic_bound : bound_, scene_bounds_);
         const float share = blocked_paths_.is_blocked(i) ? 0.0f : input_.indirect_scale;
         if (samples_[i].bounce > 0)
             rows_[i].intensity_slot *= vec4(vec3(share), 1.0f);

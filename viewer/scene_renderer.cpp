@@ -134,8 +134,8 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera));
 
     graph_->reset();
-    const render::GBuffer g_buffer =
-        g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width, request.height);
+    const render::GBuffer g_buffer = g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width,
+                                                        request.height, request.view == shared::view_motion);
     SUNFLECK_ASSIGN(
         const gpu::ResourceId irradiance,
         lighting_->add_passes(*graph_, *gpu_scene_,

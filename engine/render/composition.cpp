@@ -28,8 +28,10 @@ void CompositionPass::destroy(gpu::Device& device) {
 
 void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                           const CompositionInput& input, gpu::ResourceId output) const {
-    const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth,  g_buffer.normals,
-                                      g_buffer.surface, g_buffer.albedo, g_buffer.motion};
+    const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
+                                      g_buffer.albedo,
+                                      // bound, but not read, where there is none
+                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo};
     auto pass = graph.add_pass("composition");
     for (const gpu::ResourceId id : inputs)
         pass.read(id, gpu::Usage::sampled);

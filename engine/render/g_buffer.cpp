@@ -16,7 +16,9 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
     description.depth_format = depth_format;
     GBufferPass pass;
-    SUNFLECK_ASSIGN(pass.pipeline_, pipelines.graphics(description));
+    SUNFLECK_ASSIGN(pass.with_motion_, pipelines.graphics(description));
+    description.colour_formats.pop_back();
+    SUNFLECK_ASSIGN(pass.without_motion_, pipelines.graphics(description));
     return pass;
 }
 
@@ -58,7 +60,7 @@ std::vector<const scene::DrawItem*> visible_from(const shared::CameraRow& camera
 } // namespace
 
 GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
-                         std::uint32_t width, std::uint32_t height) const {
+                         std::uint32_t width, std::uint32_t height, bool motion) const {
     GBuffer target;
     target.width = width;
     target.height = height;
@@ -66,13 +68,15 @@ GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, c
     target.normals = graph.create_image("normals", normals_format, width, height);
     target.surface = graph.create_image("surface ids", surface_format, width, height);
     target.albedo = graph.create_image("albedo", albedo_format, width, height);
-    target.motion = graph.create_image("motion", motion_format, width, height);
-    graph.add_pass("g-buffer")
-        .write(target.depth, gpu::Usage::depth_attachment)
+    if (motion)
+        target.motion = graph.create_image("motion", motion_format, width, height);
+    auto pass = graph.add_pass("g-buffer");
+    if (motion)
+        pass.write(target.motion, gpu::Usage::colour_attachment);
+    pass.write(target.depth, gpu::Usage::depth_attachment)
         .write(target.normals, gpu::Usage::colour_attachment)
         .write(target.surface, gpu::Usage::colour_attachment)
         .write(target.albedo, gpu::Usage::colour_attachment)
-        .write(target.motion, gpu::Usage::colour_attachment)
         .execute([this, &scene, camera, target](gpu::PassContext& context) {
             return record(context, scene, camera, target);
         });
@@ -85,14 +89,17 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         return gpu::rendering_attachment(context.graph.view(id), layout);
     };
     const VkImageLayout colour = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    const VkRenderingAttachmentInfo colours[] = {attachment(target.normals, colour), attachment(target.surface, colour),
-                                                 attachment(target.albedo, colour), attachment(target.motion, colour)};
+    std::vector<VkRenderingAttachmentInfo> colours = {
+        attachment(target.normals, colour), attachment(target.surface, colour), attachment(target.albedo, colour)};
+    if (target.motion.valid())
+        colours.push_back(attachment(target.motion, colour));
+    const gpu::Pipeline& pipeline = target.motion.valid() ? *with_motion_ : *without_motion_;
     const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {target.width, target.height};
     rendering.layerCount = 1;
-    rendering.colorAttachmentCount = 4;
-    rendering.pColorAttachments = colours;
+    rendering.colorAttachmentCount = std::uint32_t(colours.size());
+    rendering.pColorAttachments = colours.data();
     rendering.pDepthAttachment = &depth;
     const VolkDeviceTable& vk = context.device.vk;
     vk.vkCmdBeginRendering(context.commands, &rendering);
@@ -102,7 +109,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     Status status;
     if (!scene.draws().empty()) {
         const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
-        status = context.resources.bind(context.commands, *pipeline_, bindings);
+        status = context.resources.bind(context.commands, pipeline, bindings);
         const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle()};
         const VkDeviceSize offsets[] = {0, 0};
         vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);

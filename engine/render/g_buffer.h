@@ -22,14 +22,16 @@ class GBufferPass {
 public:
     static Result<GBufferPass> create(gpu::PipelineStore& pipelines);
 
-    // Adds the pass that draws `scene` as seen by the camera in `camera` (a CameraRow).
+    // Adds the pass that draws `scene` as seen by the camera in `camera` (a CameraRow). Without `motion` that image is
+    // left out (its id is not valid).
     GBuffer add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
-                std::uint32_t width, std::uint32_t height) const;
+                std::uint32_t width, std::uint32_t height, bool motion = true) const;
 
 private:
     Status record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                   const GBuffer& target) const;
-    const gpu::Pipeline* pipeline_ = nullptr;
+    const gpu::Pipeline* with_motion_ = nullptr;
+    const gpu::Pipeline* without_motion_ = nullptr;
 };
 
 } // namespace sunfleck::render

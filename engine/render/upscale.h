@@ -15,6 +15,7 @@ public:
 
 private:
     const gpu::Pipeline* pipeline_ = nullptr;
+    const gpu::Pipeline* doubling_ = nullptr; // to twice the size
 };
 
 } // namespace sunfleck::render
