@@ -119,6 +119,18 @@ void Menu::settings_and_help_buttons() {
         came_from_ = from;
 }
 
+// A window would take a frame to find its size; there is only one frame.
+void Menu::loading_screen() {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImDrawList* list = ImGui::GetForegroundDrawList();
+    const auto line = [&](const char* text, float height, float scale, ImU32 colour) {
+        const float wide = scale * ImGui::CalcTextSize(text).x;
+        list->AddText(ImGui::GetFont(), scale * unit(), ImVec2(0.5f * (size.x - wide), height * size.y), colour, text);
+    };
+    line("Lantern House", 0.42f, 1.9f, IM_COL32(255, 214, 150, 255));
+    line("sending light through the rooms ...", 0.52f, 1.0f, IM_COL32(220, 210, 195, 255));
+}
+
 Decision Menu::title_screen(bool enter) {
     Decision decision = Decision::none;
     place_next(0.08f, 0.5f, 0.0f, 0.5f);

@@ -31,6 +31,8 @@ public:
     void back();
     // Draws; changes `settings` at once. `changed`: something was changed.
     Decision draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed);
+    // In place of draw, while a level loads.
+    static void loading_screen();
     // A line at the top for a few seconds.
     void say(std::string message, double seconds = 3.5);
 

@@ -87,10 +87,44 @@ private:
         blit_resources_ = std::make_unique<gpu::FrameResources>(*device_); // serials begin anew
         SUNFLECK_ASSIGN(level_, Level::load(*device_, options_.scene, settings_, 2));
         SUNFLECK_ASSIGN(gui_, app::Gui::create(*device_, level_->renderer().pipelines(), VK_FORMAT_R8G8B8A8_UNORM));
-        window_->set_title("Lantern House");
         unsimulated_ = 0.0;
         inputs_.clear();
+        SUNFLECK_TRY(show_loading());
+        window_->set_title("Lantern House");
+        last_ = Clock::now();
         return {};
+    }
+
+    // The first frame of a level makes all samples and maps, which takes seconds without a GPU.
+    Status show_loading() {
+        const app::InputState& input = window_->poll();
+        viewer::SceneRenderer& renderer = level_->renderer();
+        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(renderer.submission().serial()));
+        if (!visible)
+            return {};
+        const VkExtent2D extent = swapchain_->extent();
+        gui_->begin_frame(input, extent.width, extent.height, 0.016, letter_scale(extent));
+        Menu::loading_screen();
+        gui_->end_frame();
+        SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
+        SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
+        blit_resources_->begin_frame(renderer.submission().serial(), completed);
+        SUNFLECK_TRY(
+            renderer.record_overlay(commands, level_->request(settings_, extent.width, extent.height), overlay()));
+        return present(commands);
+    }
+
+    viewer::SceneRenderer::Overlay overlay() {
+        return [this](gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
+            return gui_->add_pass(graph, target, resources);
+        };
+    }
+
+    Status present(VkCommandBuffer commands) {
+        viewer::SceneRenderer& renderer = level_->renderer();
+        SUNFLECK_TRY(swapchain_->record_blit(commands, *blit_resources_, renderer.output()));
+        SUNFLECK_TRY(renderer.submission().submit(&swapchain_->semaphores()));
+        return swapchain_->present();
     }
 
     // False: nothing can be shown now.
@@ -172,13 +206,8 @@ private:
         SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
         SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
         blit_resources_->begin_frame(renderer.submission().serial(), completed);
-        SUNFLECK_TRY(renderer.record(
-            commands, request, [&](gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
-                return gui_->add_pass(graph, target, resources);
-            }));
-        SUNFLECK_TRY(swapchain_->record_blit(commands, *blit_resources_, renderer.output()));
-        SUNFLECK_TRY(renderer.submission().submit(&swapchain_->semaphores()));
-        SUNFLECK_TRY(swapchain_->present());
+        SUNFLECK_TRY(renderer.record(commands, request, overlay()));
+        SUNFLECK_TRY(present(commands));
         if (wants_picture_)
             save_picture();
         if (changed) {

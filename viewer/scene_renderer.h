@@ -63,6 +63,8 @@ public:
     // reads from. `overlay` may add passes that draw over it.
     using Overlay = std::function<Status(gpu::FrameGraph&, gpu::ResourceId target, gpu::FrameResources&)>;
     Status record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay = {});
+    // In place of update and record: a dark picture with only the overlay, for what is shown while a level loads.
+    Status record_overlay(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay);
     const gpu::Image& output() const { return output_; }
 
     // update, record, submit and wait; fills statistics.
