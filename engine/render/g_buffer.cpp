@@ -16,9 +16,13 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
     description.depth_format = depth_format;
     GBufferPass pass;
-    SUNFLECK_ASSIGN(pass.with_motion_, pipelines.graphics(description));
-    description.colour_formats.pop_back();
-    SUNFLECK_ASSIGN(pass.without_motion_, pipelines.graphics(description));
+    for (std::uint32_t kind = 0; kind < pattern_kinds; ++kind) {
+        description.specialization = {kind};
+        description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
+        SUNFLECK_ASSIGN(pass.with_motion_[kind], pipelines.graphics(description));
+        description.colour_formats.pop_back();
+        SUNFLECK_ASSIGN(pass.without_motion_[kind], pipelines.graphics(description));
+    }
     return pass;
 }
 
@@ -93,7 +97,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         attachment(target.normals, colour), attachment(target.surface, colour), attachment(target.albedo, colour)};
     if (target.motion.valid())
         colours.push_back(attachment(target.motion, colour));
-    const gpu::Pipeline& pipeline = target.motion.valid() ? *with_motion_ : *without_motion_;
+    const auto& pipelines = target.motion.valid() ? with_motion_ : without_motion_;
     const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {target.width, target.height};
@@ -109,16 +113,21 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     Status status;
     if (!scene.draws().empty()) {
         const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
-        status = context.resources.bind(context.commands, pipeline, bindings);
         const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle()};
         const VkDeviceSize offsets[] = {0, 0};
         vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);
         vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
         shared::CameraRow row;
         std::memcpy(&row, camera.data, sizeof row);
-        for (const scene::DrawItem* item : visible_from(row, scene.draws()))
+        std::uint32_t bound = pattern_kinds;
+        for (const scene::DrawItem* item : visible_from(row, scene.draws())) {
+            const std::uint32_t kind = std::min(item->pattern, pattern_kinds - 1);
+            if (kind != bound && status)
+                status = context.resources.bind(context.commands, *pipelines[kind], bindings);
+            bound = kind;
             vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset,
                                 item->row);
+        }
     }
     vk.vkCmdEndRendering(context.commands);
     return status;

@@ -5,6 +5,9 @@
 #include "engine/scene/instance_shared.h"
 #include "engine/scene/pattern_shared.h"
 
+// A pipeline for each: a CPU device runs both sides of every branch.
+layout(constant_id = 0) const uint pattern_kind = pattern_none;
+
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
 
@@ -34,11 +37,11 @@ void main() {
                   (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u);
     const vec4 base = rows[in_row].base_colour;
     vec3 albedo = base.rgb;
-    if (base.w > 0.0) {
+    if (pattern_kind != pattern_none) {
         const vec4 pattern = rows[in_row].pattern;
         const vec3 local = (rows[in_row].inverse_model * vec4(in_position, 1.0)).xyz;
         const vec3 local_normal = mat3(rows[in_row].inverse_model) * geometric;
-        albedo = mix(albedo, pattern.rgb, pattern_share(uint(base.w), pattern.w, local, local_normal));
+        albedo = mix(albedo, pattern.rgb, pattern_share(pattern_kind, pattern.w, local, local_normal));
     }
     out_albedo = vec4(albedo, 1.0);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;

@@ -30,8 +30,10 @@ public:
 private:
     Status record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                   const GBuffer& target) const;
-    const gpu::Pipeline* with_motion_ = nullptr;
-    const gpu::Pipeline* without_motion_ = nullptr;
+    static constexpr std::uint32_t pattern_kinds = 5;
+    // By kind of pattern.
+    const gpu::Pipeline* with_motion_[pattern_kinds] = {};
+    const gpu::Pipeline* without_motion_[pattern_kinds] = {};
 };
 
 } // namespace sunfleck::render

@@ -30,6 +30,7 @@ struct DrawItem {
     bool closed = false;                  // and not mirrored: seen from outside, only front faces show
     float scale = 1.0f;                   // greatest length of the model matrix's axes
     Bounds bounds;                        // world space
+    std::uint32_t pattern = 0;            // kind (pattern_shared.h)
     bool casts_shadow = true;             // movers only: static geometry always does
     bool is_static = true;
     // The bounds changed in the last update, or the item is new; previous_bounds is where it was (empty if new).
