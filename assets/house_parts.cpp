@@ -249,14 +249,18 @@ void House::wall_lamp(const std::string& name, vec3 centre, vec3 facing_to, floa
     s_.area_light(name, light, transform);
 }
 
-void House::globe_lamp(const std::string& name, vec3 centre, float radius, vec3 radiance, vec3 stem) {
+ecs::Entity House::sphere_light(const std::string& name, vec3 centre, float radius, vec3 radiance) {
     scene::AreaLight light;
     light.shape = scene::AreaShape::sphere;
     light.radius = radius;
     light.radiance = radiance;
     scene::Transform transform;
     transform.position = centre;
-    s_.area_light(name, light, transform);
+    return s_.area_light(name, light, transform);
+}
+
+void House::globe_lamp(const std::string& name, vec3 centre, float radius, vec3 radiance, vec3 stem) {
+    sphere_light(name, centre, radius, radiance);
     add(name + " stem", scene::make_cylinder(0.03f, 0.05f, 12), stem, centre - vec3(0.0f, radius + 0.025f, 0.0f));
 }
 
@@ -386,13 +390,7 @@ void House::ball(const std::string& name, vec3 centre, float radius, float mass,
 }
 
 void House::glowing_ball(const std::string& name, vec3 centre, float radius, float mass, vec3 radiance) {
-    scene::AreaLight light;
-    light.shape = scene::AreaShape::sphere;
-    light.radius = radius;
-    light.radiance = radiance;
-    scene::Transform transform;
-    transform.position = centre;
-    const ecs::Entity entity = s_.area_light(name, light, transform);
+    const ecs::Entity entity = sphere_light(name, centre, radius, radiance);
     s_.mover(entity, {});
     body(entity, scene::BodyShape::sphere, mass);
 }

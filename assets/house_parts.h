@@ -73,6 +73,7 @@ public:
     void lantern(const std::string& name, vec3 foot, vec3 intensity, vec3 colour);
 
 private:
+    ecs::Entity sphere_light(const std::string& name, vec3 centre, float radius, vec3 radiance);
     ecs::Entity group(const std::string& name, vec3 position);
     ecs::Entity part(const std::string& name, ecs::Entity parent, scene::Mesh mesh, vec3 colour, vec3 position);
     void body(ecs::Entity entity, scene::BodyShape shape, float mass);

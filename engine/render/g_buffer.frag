@@ -35,8 +35,7 @@ void main() {
     const vec4 emission = rows[in_row].emission;
     out_surface = (in_row + 1u) | (emission.w > 0.0 ? surface_area_light : 0u) |
                   (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u);
-    const vec4 base = rows[in_row].base_colour;
-    vec3 albedo = base.rgb;
+    vec3 albedo = rows[in_row].base_colour.rgb;
     if (pattern_kind != pattern_none) {
         const vec4 pattern = rows[in_row].pattern;
         const vec3 local = (rows[in_row].inverse_model * vec4(in_position, 1.0)).xyz;

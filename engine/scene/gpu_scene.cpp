@@ -102,7 +102,6 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             row.base_colour = vec4(surface.base_colour, 0.0f);
             if (const SurfacePattern* pattern = registry.try_get<SurfacePattern>(entity)) {
                 item.pattern = std::uint32_t(pattern->kind);
-                row.base_colour.w = float(pattern->kind);
                 row.pattern = vec4(pattern->colour, pattern->scale);
                 row.inverse_model = glm::inverse(transform.matrix);
             }

@@ -8,7 +8,7 @@ struct InstanceRow {
     mat4 model;          //   0: object to world
     mat4 previous_model; //  64: the same in the previous frame
     mat4 normal_matrix;  // 128: cofactors of `model`, for normals (upper 3x3)
-    vec4 base_colour;    // 192: rgb; w: kind of pattern (pattern_shared.h)
+    vec4 base_colour;    // 192: rgb
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
     vec4 pattern;        // 224: rgb of the second colour; w: scale, m
     mat4 inverse_model;  // 240: world to object, for patterns

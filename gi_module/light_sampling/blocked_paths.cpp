@@ -5,12 +5,13 @@
 namespace sunfleck::gi {
 
 // All corners of the mesh are corners of its bounds, and all of those are taken.
-bool BlockedPaths::is_large_box(const scene::Mesh& mesh, const mat4& matrix) {
-    const Bounds bounds = mesh.bounds();
+bool BlockedPaths::is_large_box(const scene::Mesh& mesh, const Bounds& bounds, const mat4& matrix) {
+    if (mesh.positions.size() > 64)
+        return false;
     int large = 0;
     for (int axis = 0; axis < 3; ++axis)
         large += bounds.extent()[axis] * glm::length(vec3(matrix[axis])) > smallest_side;
-    if (large < 2 || mesh.positions.size() > 64)
+    if (large < 2)
         return false;
     std::uint32_t corners = 0;
     for (const vec3 p : mesh.positions) {
@@ -55,10 +56,10 @@ void BlockedPaths::update(ecs::Registry& registry, const scene::MeshStore& meshe
     for (const scene::DrawItem& item : gpu_scene.draws()) {
         if (item.is_static || !item.casts_shadow)
             continue;
-        const scene::Mesh& mesh = meshes[registry.get<scene::MeshInstance>(item.entity).mesh];
+        const std::uint32_t mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
         const mat4& matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
-        if (is_large_box(mesh, matrix))
-            boxes.push_back({matrix, glm::inverse(matrix), mesh.bounds()});
+        if (is_large_box(meshes[mesh], meshes.bounds(mesh), matrix))
+            boxes.push_back({matrix, glm::inverse(matrix), meshes.bounds(mesh)});
     }
     if (boxes == boxes_ && generation == generation_ && blocked_.size() == samples.size())
         return;

@@ -27,10 +27,11 @@ private:
         mat4 matrix, inverse;
         Bounds bounds; // in the mesh's space
         bool operator==(const Box& other) const {
-            return matrix == other.matrix && bounds.minimum == other.bounds.minimum;
+            return matrix == other.matrix && bounds.minimum == other.bounds.minimum &&
+                   bounds.maximum == other.bounds.maximum;
         }
     };
-    static bool is_large_box(const scene::Mesh& mesh, const mat4& matrix);
+    static bool is_large_box(const scene::Mesh& mesh, const Bounds& bounds, const mat4& matrix);
     static bool crosses(const Box& box, vec3 from, vec3 to);
     static bool crosses_way(const Box& box, const LightSample& sample);
 

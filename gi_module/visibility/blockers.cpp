@@ -208,46 +208,51 @@ std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count) {
     return index;
 }
 
-Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
+template <typename Meets, typename Visit>
+bool StaticBlockers::visit_leaves(const Meets& meets, const Visit& visit) const {
     if (nodes_.empty())
-        return Blocking::none;
+        return false;
     std::array<std::uint32_t, 64> stack;
     std::size_t depth = 0;
     stack[depth++] = 0;
-    bool any = false;
-    std::uint32_t last_body = 0xffffffffu;
     while (depth > 0) {
         const Node& node = nodes_[stack[--depth]];
-        if (!may_enter(pyramid, node.bounds))
+        if (!meets(node.bounds))
             continue;
         if (node.count == 0) {
             stack[depth++] = node.first;
             stack[depth++] = node.right;
             continue;
         }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const std::uint32_t polygon = order_[i];
-            if (!enters(pyramid, polygons_[polygon]))
-                continue;
-            any = true;
-            if (covers_gate(pyramid, polygons_[polygon]))
-                return Blocking::full;
-            const std::uint32_t body = body_of_[polygon];
-            if (body != 0xffffffffu && body != last_body && covers_gate(pyramid, bodies_[body]))
-                return Blocking::full;
-            last_body = body;
-        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+            if (visit(order_[i]))
+                return true;
     }
+    return false;
+}
+
+Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
+    bool any = false;
+    std::uint32_t last_body = 0xffffffffu;
+    const auto takes_all = [&](std::uint32_t polygon) {
+        if (!enters(pyramid, polygons_[polygon]))
+            return false;
+        any = true;
+        if (covers_gate(pyramid, polygons_[polygon]))
+            return true;
+        const std::uint32_t body = body_of_[polygon];
+        if (body != 0xffffffffu && body != last_body && covers_gate(pyramid, bodies_[body]))
+            return true;
+        last_body = body;
+        return false;
+    };
+    if (visit_leaves([&](const Bounds& bounds) { return may_enter(pyramid, bounds); }, takes_all))
+        return Blocking::full;
     return any ? Blocking::partial : Blocking::none;
 }
 
 template <typename Visit>
 bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Visit& visit) const {
-    if (nodes_.empty())
-        return false;
-    std::array<std::uint32_t, 64> stack;
-    std::size_t depth = 0;
-    stack[depth++] = 0;
     // Slabs, a little widened: in single precision, which errs by less. Along an axis that the segment does not follow,
     // its inverse is large, not infinite.
     constexpr float wider = 1e-4f;
@@ -265,34 +270,21 @@ bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Visit& visit)
         }
         return enter <= leave;
     };
-    while (depth > 0) {
-        const Node& node = nodes_[stack[--depth]];
-        if (!meets(node.bounds))
-            continue;
-        if (node.count == 0) {
-            stack[depth++] = node.first;
-            stack[depth++] = node.right;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            const Polygon& polygon = polygons_[order_[i]];
-            const dvec3 normal = normals_[order_[i]];
-            const double slope = glm::dot(normal, along);
-            if (std::abs(slope) < 1e-14)
-                continue;
-            const double t = glm::dot(normal, polygon[0] - from) / slope;
-            if (t < 0.0 || t > 1.0)
-                continue;
-            const dvec3 point = from + t * along;
-            bool inside = true;
-            for (std::size_t k = 0; k < polygon.size() && inside; ++k)
-                inside = glm::dot(glm::cross(normal, polygon[(k + 1) % polygon.size()] - polygon[k]),
-                                  point - polygon[k]) >= 0.0;
-            if (inside && visit(order_[i]))
-                return true;
-        }
-    }
-    return false;
+    return visit_leaves(meets, [&](std::uint32_t index) {
+        const Polygon& polygon = polygons_[index];
+        const dvec3 normal = normals_[index];
+        const double slope = glm::dot(normal, along);
+        if (std::abs(slope) < 1e-14)
+            return false;
+        const double t = glm::dot(normal, polygon[0] - from) / slope;
+        if (t < 0.0 || t > 1.0)
+            return false;
+        const dvec3 point = from + t * along;
+        for (std::size_t k = 0; k < polygon.size(); ++k)
+            if (glm::dot(glm::cross(normal, polygon[(k + 1) % polygon.size()] - polygon[k]), point - polygon[k]) < 0.0)
+                return false;
+        return bool(visit(index));
+    });
 }
 
 bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {

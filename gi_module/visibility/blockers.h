@@ -63,6 +63,9 @@ private:
         std::uint32_t right = 0;
     };
     std::uint32_t build(std::uint32_t first, std::uint32_t count);
+    // Calls `visit` with the polygons of all leaves whose bounds `meets` accepts, until it returns true.
+    template <typename Meets, typename Visit>
+    bool visit_leaves(const Meets& meets, const Visit& visit) const;
     // Calls `visit` with polygons that cross the segment until it returns true.
     template <typename Visit>
     bool visit_crossing(dvec3 from, dvec3 along, const Visit& visit) const;
