@@ -19,7 +19,9 @@ int main(int argc, char** argv) {
         scene::MeshStore meshes;
         assets::SceneBuilder builder(registry, meshes);
         built_in.make(builder);
-        const Status status = io::save_scene(folder / (std::string(built_in.name) + ".scene.json"), registry, meshes);
+        const std::filesystem::path path = folder / (std::string(built_in.name) + ".scene.json");
+        std::filesystem::remove(path, code); // saving beside an older file would take another name for the geometry
+        const Status status = io::save_scene(path, registry, meshes, {});
         if (!status) {
             log_error(status.error().message);
             return 1;

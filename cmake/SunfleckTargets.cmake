@@ -11,15 +11,31 @@ if(SUNFLECK_SANITIZE)
   target_link_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
 endif()
 
-# sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries])
-# A static library with the project's flags; headers are included by their path from the project's root.
+# sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries] [INSTALL])
+# A static library (shared with SUNFLECK_BUILD_SHARED) with the project's flags; headers are included by their path from
+# the project's root. INSTALL: it is part of the installed package.
 function(sunfleck_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
-  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}")
-  target_include_directories(${name} SYSTEM PUBLIC "${SUNFLECK_VOLK_INCLUDE}")
-  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE sunfleck_flags ${ARG_PRIVATE_LINK})
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  set(kind STATIC)
+  if(SUNFLECK_BUILD_SHARED AND ARG_INSTALL)
+    set(kind SHARED)
+  endif()
+  add_library(${name} ${kind} ${ARG_SOURCES})
+  target_include_directories(${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+                             "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>")
+  target_include_directories(${name} SYSTEM PUBLIC "$<BUILD_INTERFACE:${SUNFLECK_VOLK_INCLUDE}>")
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:sunfleck_flags> ${ARG_PRIVATE_LINK})
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN")
+  if(ARG_INSTALL)
+    target_include_directories(${name} PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sunfleck>")
+    string(REPLACE sunfleck_ "" short "${name}")
+    set_target_properties(${name} PROPERTIES EXPORT_NAME ${short})
+    add_library(sunfleck::${short} ALIAS ${name})
+    install(TARGETS ${name} EXPORT sunfleckTargets
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
 endfunction()
 
 # sunfleck_program(name SOURCES ... LINK libraries)

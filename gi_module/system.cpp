@@ -58,6 +58,17 @@ bool same_sampling(const Settings& a, const Settings& b) {
            a.spread == b.spread;
 }
 
+MoverPlace place_of(const ecs::Registry& registry, const scene::MeshStore& meshes, const scene::DrawItem& item) {
+    MoverPlace place;
+    place.entity = item.entity;
+    place.mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
+    place.matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
+    place.blocks = item.casts_shadow;
+    place.revision = meshes.revision(place.mesh);
+    place.solid = item.kind != scene::surface_kind_holes && place.revision == 0;
+    return place;
+}
+
 } // namespace
 
 std::span<const gpu::EmbeddedShader> shaders() {
@@ -292,8 +303,7 @@ void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& 
     std::vector<MoverPlace> movers;
     for (const scene::DrawItem& item : gpu_scene.draws())
         if (!item.is_static)
-            movers.push_back({item.entity, registry.get<scene::MeshInstance>(item.entity).mesh,
-                              registry.get<scene::WorldTransform>(item.entity).matrix, item.casts_shadow});
+            movers.push_back(place_of(registry, meshes, item));
     database_.update_movers(movers, meshes);
 }
 

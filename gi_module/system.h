@@ -93,6 +93,10 @@ public:
                                        const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                                        VkFormat output_format = VK_FORMAT_R16G16B16A16_SFLOAT);
 
+    // The same into an image of the caller's: four channels of float, storage write.
+    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                      const gpu::UploadSlice& camera, gpu::ResourceId output);
+
     const Counters& counters() const { return counters_; }
     // Milliseconds on the CPU of the last update, by stage.
     const std::map<std::string, double>& cpu_times() const { return cpu_times_; }

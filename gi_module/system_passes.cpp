@@ -56,12 +56,18 @@ Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::
                                            const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                                            VkFormat output_format) {
     const gpu::ResourceId output = graph.create_image("irradiance", output_format, g_buffer.width, g_buffer.height);
+    SUNFLECK_TRY(add_passes(graph, gpu_scene, g_buffer, camera, output));
+    return output;
+}
+
+Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
+                          const gpu::UploadSlice& camera, gpu::ResourceId output) {
     if (uses_many_light())
         SUNFLECK_TRY(add_many_light(graph, gpu_scene, g_buffer, camera, output));
     else
         SUNFLECK_TRY(add_brute_force(graph, gpu_scene, g_buffer, camera, output));
     counters_.shadow_maps_stale = scheduler_.stale();
-    return output;
+    return {};
 }
 
 Status System::add_brute_force(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,

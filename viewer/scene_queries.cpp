@@ -106,12 +106,14 @@ Bounds scene_bounds(ecs::Registry& registry, const scene::MeshStore& meshes) {
 }
 
 bool add_default_light(ecs::Registry& registry) {
+    // What glows no more than this (W/(sr m2)) is a label or an ornament, not the light of a scene.
+    constexpr float faint_glow = 0.75f;
     bool lit = registry.count<scene::AreaLight>() + registry.count<scene::PointLight>() +
                    registry.count<scene::SpotLight>() + registry.count<scene::DirectionalLight>() +
                    registry.count<scene::Environment>() >
                0;
     registry.view<scene::Material>().each(
-        [&](ecs::Entity, const scene::Material& material) { lit = lit || material.emission != vec3(0.0f); });
+        [&](ecs::Entity, const scene::Material& material) { lit = lit || luminance(material.emission) > faint_glow; });
     if (lit)
         return false;
     const ecs::Entity sky = registry.create();

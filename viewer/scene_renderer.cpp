@@ -1,6 +1,7 @@
 #include "viewer/scene_renderer.h"
 
 #include "engine/io/scene_file.h"
+#include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
 
 #include <chrono>
@@ -55,8 +56,8 @@ SceneRenderer::~SceneRenderer() {
     composition_.destroy(device_);
 }
 
-Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path) {
-    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_));
+Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options) {
+    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
     if (add_default_light(registry_))
         report.notes.push_back("the scene names no light: the default sky and sun light it");
     SUNFLECK_TRY(upload_meshes());
@@ -64,6 +65,7 @@ Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path) 
 }
 
 Status SceneRenderer::upload_meshes() {
+    SUNFLECK_TRY(gpu_scene_->update_textures(textures_, *submission_));
     return gpu_scene_->update_meshes(meshes_, *submission_);
 }
 
@@ -77,7 +79,8 @@ Status SceneRenderer::update(const FrameRequest& request) {
     resources_->begin_frame(submission_->serial(), completed);
     timers_->begin_frame(submission_->serial(), completed);
     start = Clock::now();
-    SUNFLECK_TRY(rays_->update(registry_, meshes_));
+    scene::deform_meshes(registry_, meshes_);
+    SUNFLECK_TRY(rays_->update(registry_, meshes_, &textures_));
     statistics_.cpu_ms["ray scene"] = milliseconds_since(start);
     start = Clock::now();
     SUNFLECK_TRY(gpu_scene_->update(registry_, meshes_, *resources_));
@@ -134,6 +137,7 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera));
 
     graph_->reset();
+    gpu_scene_->add_passes(*graph_);
     const render::GBuffer g_buffer = g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width,
                                                         request.height, request.view == shared::view_motion);
     SUNFLECK_ASSIGN(

@@ -44,6 +44,7 @@ public:
 
     ecs::Registry& registry() { return registry_; }
     scene::MeshStore& meshes() { return meshes_; }
+    scene::TextureStore& textures() { return textures_; }
     raytrace::RayScene& rays() { return *rays_; }
     gi::System& lighting() { return *lighting_; }
     gpu::Submission& submission() { return *submission_; }
@@ -53,8 +54,8 @@ public:
 
     // Loads a scene into the (empty) registry. A scene without any light gets the default light: a sky of
     // 0.3 W/(sr m2) and a sun of 2 W/m2 from above.
-    Result<io::ImportReport> load(const std::filesystem::path& path);
-    // Uploads meshes that were added to the store. Waits for the GPU.
+    Result<io::ImportReport> load(const std::filesystem::path& path, const io::ImportOptions& options = {});
+    // Uploads meshes and textures that were added to the store. Waits for the GPU.
     Status upload_meshes();
 
     // Brings movers, transforms, rays and lighting to `request.step` (CPU work of a frame).
@@ -87,6 +88,7 @@ private:
     gpu::Device& device_;
     ecs::Registry registry_;
     scene::MeshStore meshes_;
+    scene::TextureStore textures_;
     std::unique_ptr<gpu::ShaderLibrary> shaders_;
     std::unique_ptr<gpu::PipelineStore> pipelines_;
     std::unique_ptr<gpu::Submission> submission_;

@@ -204,8 +204,9 @@ Result<BenchTable> bench_reference(const BenchOptions& options) {
     for (const char* scene : {"cornell", "four_pillars"}) {
         ecs::Registry registry;
         scene::MeshStore meshes;
+        scene::TextureStore textures;
         SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(scene));
-        SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes));
+        SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes, textures));
         SUNFLECK_ASSIGN(const auto rays, raytrace::RayScene::create());
         SUNFLECK_TRY(rays->update(registry, meshes));
         const Bounds bounds = viewer::scene_bounds(registry, meshes);

@@ -3,6 +3,7 @@
 #include "engine/core/log.h"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <unistd.h>
@@ -54,8 +55,24 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         ->check(CLI::Range(0, 64))
         ->capture_default_str();
     app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
+    app.add_option("--scene", options.import.scene, "Which scene of a glTF file, by number (default: the file's own)");
+    app.add_option("--variant", options.import.variant, "Material variant of a glTF file, by name");
+    app.add_option("--animation", options.import.animation, "Which animation of a glTF file plays; -1: none")
+        ->capture_default_str();
     app.add_option("--device", options.device, "Vulkan device by number or part of its name");
     app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
+}
+
+io::ImportOptions import_options(const SceneOptions& options) {
+    io::ImportOptions result = options.import;
+    const auto progress = std::make_shared<Progress>("loading");
+    const auto start = std::chrono::steady_clock::now();
+    result.progress = [progress, start](float share) {
+        if (std::chrono::steady_clock::now() - start > std::chrono::milliseconds(500))
+            progress->show(double(share), "");
+        return !interrupted();
+    };
+    return result;
 }
 
 Result<Size> parse_size(const std::string& text) {

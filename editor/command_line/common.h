@@ -30,10 +30,13 @@ struct SceneOptions {
     std::uint32_t seed = 1;
     std::uint32_t bounces = 5;
     float ev100 = -1000.0f; // the scene's own
+    io::ImportOptions import;
     std::string device;
     bool validation = false;
 };
 void add_scene_options(CLI::App& app, SceneOptions& options);
+// With a progress bar for what takes long, and Ctrl-C to stop.
+io::ImportOptions import_options(const SceneOptions& options);
 
 struct Size {
     std::uint32_t width, height;

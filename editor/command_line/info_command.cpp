@@ -45,17 +45,53 @@ Status run(const std::string& wanted, bool as_json) {
     return {};
 }
 
+// What a scene file holds, and what its import leaves out.
+Status describe_scene(const std::string& scene, bool as_json) {
+    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(scene));
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    scene::TextureStore textures;
+    SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes, textures));
+    const Bounds bounds = viewer::scene_bounds(registry, meshes);
+    const auto list = [](vec3 v) { return Json{v.x, v.y, v.z}; };
+    const Json json = {{"file", path.string()},
+                       {"counts", report.counts},
+                       {"memory_bytes", report.memory_bytes},
+                       {"scenes", report.scenes},
+                       {"animations", report.animations},
+                       {"variants", report.variants},
+                       {"bounds", {{"minimum", list(bounds.minimum)}, {"maximum", list(bounds.maximum)}}},
+                       {"notes", report.notes}};
+    if (as_json) {
+        std::printf("%s\n", json.dump(2).c_str());
+        return {};
+    }
+    std::printf("file        %s\n", path.c_str());
+    for (const char* key : {"counts", "memory_bytes", "scenes", "animations", "variants", "bounds"})
+        std::printf("%-11s %s\n", key, json[key].dump().c_str());
+    for (const std::string& note : report.notes)
+        std::printf("note        %s\n", note.c_str());
+    return {};
+}
+
 } // namespace
 
 Command make_info_command(CLI::App& program) {
     auto device = std::make_shared<std::string>();
-    auto as_json = std::make_shared<bool>(false);
+    auto scene = std::make_shared<std::string>();
+    auto as_json = std::make_shared<bool>(false), schema = std::make_shared<bool>(false);
     CLI::App* app = program.add_subcommand("info", "Shows device, driver, limits, scenes and settings");
-    app->footer("Example: sunfleck info --json");
+    app->footer("Example: sunfleck info --json\nExample: sunfleck info helmet.gltf");
+    app->add_option("SCENE", *scene, "Show what is in this scene or glTF file instead");
     app->add_option("--device", *device, "Vulkan device by number or part of its name");
     app->add_flag("--json", *as_json, "Print one JSON object");
-    return {app, [device, as_json] {
-                const Status status = run(*device, *as_json);
+    app->add_flag("--schema", *schema, "Print the JSON schema of scene files");
+    return {app, [device, scene, as_json, schema] {
+                if (*schema) {
+                    std::fputs(io::scene_file_schema().c_str(), stdout);
+                    return 0;
+                }
+                const Status status = scene->empty() ? run(*device, *as_json) : describe_scene(*scene, *as_json);
                 return status ? 0 : fail(status.error());
             }};
 }

@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "engine/render/tone_map.h"
+#include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
 #include "gi_module/reference/path_tracer.h"
 
@@ -64,12 +65,14 @@ Status run(const ReferenceOptions& options) {
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
     ecs::Registry registry;
     scene::MeshStore meshes;
-    SUNFLECK_TRY(io::load_scene(path, registry, meshes));
+    scene::TextureStore textures;
+    SUNFLECK_TRY(io::load_scene(path, registry, meshes, textures, import_options(options.scene)));
     viewer::add_default_light(registry);
     const std::uint32_t last_frame = options.scene.warmup + options.scene.frames - 1;
     simulation::set_movers_to_step(registry, step_of_frame(options.scene, last_frame));
     SUNFLECK_ASSIGN(const auto rays, raytrace::RayScene::create());
-    SUNFLECK_TRY(rays->update(registry, meshes));
+    scene::deform_meshes(registry, meshes);
+    SUNFLECK_TRY(rays->update(registry, meshes, &textures));
     const Bounds bounds = viewer::scene_bounds(registry, meshes);
     SUNFLECK_ASSIGN(const scene::CameraView start, viewer::find_camera(registry, bounds, options.scene.camera));
     const scene::CameraView camera = camera_of_frame(start, options.scene, last_frame);

@@ -72,6 +72,8 @@ UsageTraits traits_of(Usage usage) {
                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_DST_BIT};
     case Usage::host_read:
         return {"host read", VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_GENERAL, 0};
+    case Usage::host:
+        return {"host", 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
     case Usage::present:
         return {"present", VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, 0};
     }
@@ -105,6 +107,13 @@ bool advance(ResourceState& state, const UsageTraits& usage, bool write, bool is
     state.read_stages |= usage.stages;
     state.read_access |= usage.access;
     return needed;
+}
+
+// How the host uses an image after the graph.
+UsageTraits exit_traits(const ImportedImage& image) {
+    if (image.exit != Usage::host)
+        return traits_of(image.exit);
+    return {"host", image.exit_stages, image.exit_access, image.exit_layout, 0};
 }
 
 } // namespace
@@ -175,7 +184,7 @@ ResourceId FrameGraph::import_host_image(const ImportedImage& image) {
     resource.description = image.description;
     resource.state = image.entry;
     resource.has_exit = image.has_exit;
-    resource.exit = image.exit;
+    resource.host = image;
     return add_resource(std::move(resource));
 }
 
@@ -190,7 +199,7 @@ ResourceId FrameGraph::create_image(const std::string& name, VkFormat format, st
     Resource resource;
     resource.name = name;
     resource.is_image = resource.created = true;
-    resource.description = {name, format, width, height, layers, 0, layers > 1};
+    resource.description = {name, format, width, height, layers, 1, 0, layers > 1};
     resource.pool_key = name;
     return add_resource(std::move(resource));
 }
@@ -288,7 +297,12 @@ Status FrameGraph::compile() {
     for (std::uint32_t i = 0; i < resources_.size(); ++i) {
         PassBarrier barrier;
         Resource& resource = resources_[i];
-        if (!resource.has_exit || !advance(resource.state, traits_of(resource.exit), false, true, barrier))
+        const UsageTraits exit = exit_traits(resource.host);
+        constexpr VkAccessFlags2 writes = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                                          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
+                                          VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+        if (!resource.has_exit || !advance(resource.state, exit, (exit.access & writes) != 0, true, barrier))
             continue;
         barrier.resource = resource.name;
         barrier.resource_index = i;

@@ -34,6 +34,7 @@ enum class Usage {
     blit_destination,
     host_read,
     present,
+    host, // what ImportedImage::exit_... says; for exits only
 };
 
 struct ResourceId {
@@ -51,6 +52,10 @@ struct ImportedImage {
     ResourceState entry;
     bool has_exit = false;
     Usage exit{};
+    // With Usage::host: how it is used next.
+    VkPipelineStageFlags2 exit_stages = 0;
+    VkAccessFlags2 exit_access = 0;
+    VkImageLayout exit_layout = VK_IMAGE_LAYOUT_UNDEFINED;
 };
 
 class FrameGraph;
@@ -152,7 +157,7 @@ private:
         VkImage host_image = VK_NULL_HANDLE;
         VkImageView host_view = VK_NULL_HANDLE;
         bool has_exit = false;
-        Usage exit{};
+        ImportedImage host; // of images that the host owns
         bool created = false;
         std::string pool_key;
         ResourceState state;

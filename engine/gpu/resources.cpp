@@ -83,7 +83,7 @@ Result<Image> Image::create(Device& device, const ImageDescription& description)
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = description.format;
     info.extent = {description.width, description.height, 1};
-    info.mipLevels = 1;
+    info.mipLevels = description.levels;
     info.arrayLayers = description.layers;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = description.usage;
@@ -99,7 +99,7 @@ Result<Image> Image::create(Device& device, const ImageDescription& description)
     view.image = image.handle_;
     view.viewType = description.layers > 1 || description.array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
     view.format = description.format;
-    view.subresourceRange = {aspect_of(description.format), 0, 1, 0, description.layers};
+    view.subresourceRange = {aspect_of(description.format), 0, description.levels, 0, description.layers};
     SUNFLECK_VK(device.vk.vkCreateImageView(device.handle(), &view, nullptr, &image.view_), doing);
     device.set_name(VK_OBJECT_TYPE_IMAGE, std::uint64_t(image.handle_), description.name);
     return image;

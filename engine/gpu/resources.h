@@ -49,6 +49,7 @@ struct ImageDescription {
     std::string name;
     VkFormat format = VK_FORMAT_UNDEFINED;
     std::uint32_t width = 1, height = 1, layers = 1;
+    std::uint32_t levels = 1; // of detail, each half the size of the one before
     VkImageUsageFlags usage = 0;
     bool array = false; // the view is an array view even with one layer
     bool operator==(const ImageDescription&) const = default;

@@ -4,6 +4,10 @@
 #ifndef VK_NO_PROTOTYPES
 #define VK_NO_PROTOTYPES
 #endif
+// volk's globals bear the names of the loader's functions. In a program that links the loader, too, the program's own
+// calls would land in them; so ours have names of their own (made from volk.h when the project is configured).
+#include "sunfleck_vulkan_names.h"
+
 #include <volk.h>
 
 #include "engine/core/result.h"

@@ -1,11 +1,15 @@
-// glTF 2.0: geometry, materials, cameras, punctual lights and the node hierarchy, both ways.
+// glTF 2.0 both ways: geometry, materials and textures, cameras, punctual lights, the node hierarchy, skins, morph
+// targets and node animations. Imported files may be anything at all: what is not valid gives one message.
 #pragma once
 
 #include "engine/core/result.h"
 #include "engine/scene/components.h"
 #include "engine/scene/mesh_store.h"
+#include "engine/scene/texture_store.h"
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,16 +18,39 @@ namespace sunfleck::io {
 // glTF's photometric units (candela, lux, nit) over ours, lm/W. Used both ways, here alone.
 inline constexpr float luminous_efficacy = 683.0f;
 
-struct ImportReport {
-    std::vector<std::string> notes; // what the file has and this import leaves out
+// Radiance, W/(sr m2), that emission 1 without KHR_materials_emissive_strength is taken for: by glTF's text it would be
+// a nit, which nobody sees beside a lamp, and what its authors mean is a glow.
+inline constexpr float emission_without_unit = 0.5f;
+
+struct ImportOptions {
+    int scene = -1;      // -1: the file's default, else its first, else all nodes without a parent
+    std::string variant; // of KHR_materials_variants, by name; empty: the file's own materials
+    int animation = 0;   // which one plays; -1: none
+    // Called now and then with the share that is done, from any thread but by one at a time; returning false stops the
+    // import with an error.
+    std::function<bool(float)> progress;
 };
 
-// Adds the file's default scene to `registry`. Files outside the glTF file's folder are not read; every accessor and
-// index is checked. On failure nothing has been added.
-Result<ImportReport> import_gltf(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes);
+struct ImportReport {
+    std::vector<std::string> notes;              // what the file has and this import leaves out or changes
+    std::vector<std::string> scenes, animations; // names, by number
+    std::vector<std::string> variants;
+    std::map<std::string, std::uint64_t> counts;       // "nodes", "meshes", "triangles", "materials", "textures", ...
+    std::map<std::string, std::uint64_t> memory_bytes; // "vertices", "indices", "textures"
+    std::map<std::string, std::string> settings;       // of the lighting, from a scene file
+};
+
+// Adds a scene of the file to `registry`. Names of entities differ: later ones of the same name get a number. Files
+// outside the glTF file's folder are not read. On failure nothing has been added.
+Result<ImportReport> import_gltf(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
+                                 scene::TextureStore& textures, const ImportOptions& options = {});
+// The same from memory, without any other files.
+Result<ImportReport> import_gltf_bytes(std::string bytes, ecs::Registry& registry, scene::MeshStore& meshes,
+                                       scene::TextureStore& textures, const ImportOptions& options = {});
 
 // Writes entities with a Name as nodes of a .glb file. What glTF has no words for (AreaLight, Mover, Exposure,
-// Environment) is left to the scene file.
-Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes);
+// Environment) is left to the scene file. Deforming meshes are written as they stand.
+Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
+                   const scene::TextureStore& textures);
 
 } // namespace sunfleck::io

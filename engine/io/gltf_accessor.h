@@ -1,4 +1,4 @@
-// Reading glTF accessors without trusting a number in them.
+// Reading glTF accessors without trusting a number in them: glTF 2.0, sec. 3.6.2.
 #pragma once
 
 #include "engine/core/result.h"
@@ -7,49 +7,42 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #include <tiny_gltf.h>
 
-#include <algorithm>
+#include <span>
 
 namespace sunfleck::io {
 
-inline constexpr std::size_t vertex_limit = 50u << 20;
+inline constexpr std::size_t element_limit = 50u << 20; // of one accessor
 
 template <typename T>
 bool in_range(int index, const std::vector<T>& list) {
     return index >= 0 && std::size_t(index) < list.size();
 }
 
-// Calls read(element, address of its first component, component type) after checking that all elements lie in their
-// buffer.
-template <typename Read>
-Status each_element(const tinygltf::Model& model, int accessor_index, int type, const std::vector<int>& component_types,
-                    Read&& read) {
-    if (!in_range(accessor_index, model.accessors))
-        return Error{"an accessor does not exist"};
-    const tinygltf::Accessor& accessor = model.accessors[std::size_t(accessor_index)];
-    if (accessor.sparse.isSparse || !in_range(accessor.bufferView, model.bufferViews))
-        return Error{"sparse accessors and accessors without data are not supported"};
-    if (accessor.type != type ||
-        std::find(component_types.begin(), component_types.end(), accessor.componentType) == component_types.end())
-        return Error{"an accessor has the wrong type"};
-    const tinygltf::BufferView& view = model.bufferViews[std::size_t(accessor.bufferView)];
-    if (!in_range(view.buffer, model.buffers))
-        return Error{"a buffer does not exist"};
-    const std::vector<unsigned char>& data = model.buffers[std::size_t(view.buffer)].data;
-    const int component = tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType));
-    const int components = tinygltf::GetNumComponentsInType(std::uint32_t(type));
-    const int stride = accessor.ByteStride(view);
-    if (component <= 0 || components <= 0 || stride < component * components)
-        return Error{"an accessor has an invalid stride"};
-    const std::size_t element = std::size_t(component) * std::size_t(components);
-    if (accessor.count > vertex_limit || view.byteOffset > data.size() ||
-        view.byteLength > data.size() - view.byteOffset || accessor.byteOffset > view.byteLength ||
-        (accessor.count > 0 &&
-         (accessor.count - 1) * std::size_t(stride) + element > view.byteLength - accessor.byteOffset))
-        return Error{"an accessor reaches outside its buffer"};
-    const unsigned char* first = data.data() + view.byteOffset + accessor.byteOffset;
-    for (std::size_t i = 0; i < accessor.count; ++i)
-        read(i, first + i * std::size_t(stride), accessor.componentType);
-    return {};
-}
+// What a use of an accessor admits.
+struct AccessorUse {
+    std::vector<int> types;      // TINYGLTF_TYPE_...
+    std::vector<int> components; // TINYGLTF_COMPONENT_TYPE_...
+    // Whole numbers of KHR_mesh_quantization need no `normalized`: they stand for themselves.
+    bool plain_integers = false;
+};
+
+// Elements as floats, component after component; `width` of them an element. Normalised integers become numbers from -1
+// or 0 to 1 (sec. 3.11 there). Everything is finite.
+struct FloatElements {
+    std::vector<float> values;
+    std::size_t width = 1;
+    std::size_t count() const { return values.size() / width; }
+    const float* operator[](std::size_t i) const { return &values[i * width]; }
+};
+
+// Interleaved, sparse and empty (all zero) accessors alike. Errors name the accessor and what is wrong with it.
+Result<FloatElements> read_floats(const tinygltf::Model& model, int accessor, const AccessorUse& use);
+
+// Unsigned whole numbers: indices, joints.
+Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, int accessor, int type,
+                                                 const std::vector<int>& components);
+
+// The bytes of a buffer view, checked against its buffer.
+Result<std::span<const unsigned char>> view_bytes(const tinygltf::Model& model, int buffer_view);
 
 } // namespace sunfleck::io

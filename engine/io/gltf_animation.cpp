@@ -1,116 +1,116 @@
 #include "engine/io/gltf_animation.h"
 
-#include <cmath>
-#include <cstring>
+#include <algorithm>
 
 namespace sunfleck::io {
 namespace {
 
-// glTF 2.0, 3.11: normalised integers stand for -1 to 1.
-float component(const unsigned char* address, int type) {
-    switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-        return std::max(float(static_cast<std::int8_t>(address[0])) / 127.0f, -1.0f);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return float(address[0]) / 255.0f;
-    case TINYGLTF_COMPONENT_TYPE_SHORT: {
-        std::int16_t value;
-        std::memcpy(&value, address, sizeof value);
-        return std::max(float(value) / 32767.0f, -1.0f);
-    }
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: {
-        std::uint16_t value;
-        std::memcpy(&value, address, sizeof value);
-        return float(value) / 65535.0f;
-    }
-    default: {
-        float value;
-        std::memcpy(&value, address, sizeof value);
-        return value;
-    }
-    }
+constexpr int type_float = TINYGLTF_COMPONENT_TYPE_FLOAT;
+// Rotations and weights may be normalised integers.
+const std::vector<int> packed_types = {type_float, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+                                       TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT};
+
+Result<std::vector<float>> read_times(const tinygltf::Model& model, int accessor) {
+    SUNFLECK_ASSIGN(const FloatElements elements, read_floats(model, accessor, {{TINYGLTF_TYPE_SCALAR}, {type_float}}));
+    const std::vector<float>& times = elements.values;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        if (times[i] < 0.0f || (i > 0 && times[i] < times[i - 1]))
+            return Error{"key times must rise from 0"};
+    return times;
 }
 
-Status read_times(const tinygltf::Model& model, int accessor, scene::AnimationCurve& curve) {
-    SUNFLECK_TRY(each_element(model, accessor, TINYGLTF_TYPE_SCALAR, {TINYGLTF_COMPONENT_TYPE_FLOAT},
-                              [&](std::size_t, const unsigned char* address, int) {
-                                  float time;
-                                  std::memcpy(&time, address, sizeof time);
-                                  curve.times.push_back(time);
-                              }));
-    for (std::size_t i = 0; i < curve.times.size(); ++i)
-        if (!std::isfinite(curve.times[i]) || curve.times[i] < 0.0f || (i > 0 && curve.times[i] < curve.times[i - 1]))
-            return Error{"key times must be finite and rise"};
-    if (curve.times.empty())
-        return Error{"a curve has no keys"};
-    return {};
+Result<scene::AnimationInterpolation> interpolation_of(const std::string& name) {
+    if (name == "STEP")
+        return scene::AnimationInterpolation::step;
+    if (name == "CUBICSPLINE")
+        return scene::AnimationInterpolation::cubic_spline;
+    if (name.empty() || name == "LINEAR")
+        return scene::AnimationInterpolation::linear;
+    return Error{"interpolation '" + name + "' does not exist"};
 }
 
 Status read_values(const tinygltf::Model& model, int accessor, scene::AnimationCurve& curve) {
     const bool rotation = curve.target == scene::AnimationTarget::rotation;
-    std::vector<int> types = {TINYGLTF_COMPONENT_TYPE_FLOAT};
-    if (rotation)
-        types = {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                 TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT};
-    SUNFLECK_TRY(each_element(model, accessor, rotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, types,
-                              [&](std::size_t, const unsigned char* address, int type) {
-                                  const int size = tinygltf::GetComponentSizeInBytes(std::uint32_t(type));
-                                  vec4 value(0.0f);
-                                  for (int c = 0; c < (rotation ? 4 : 3); ++c)
-                                      value[c] = component(address + c * size, type);
-                                  curve.values.push_back(value);
-                              }));
+    SUNFLECK_ASSIGN(const FloatElements elements,
+                    read_floats(model, accessor,
+                                {{rotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3},
+                                 rotation ? packed_types : std::vector<int>{type_float}}));
     const bool cubic = curve.interpolation == scene::AnimationInterpolation::cubic_spline;
-    if (curve.values.size() != curve.times.size() * (cubic ? 3 : 1))
-        return Error{"a curve has not one value for each key"};
-    for (std::size_t i = 0; i < curve.values.size(); ++i) {
-        vec4& value = curve.values[i];
-        if (!is_finite(vec3(value)) || !std::isfinite(value.w))
-            return Error{"a key is not finite"};
+    if (elements.count() != curve.times.size() * (cubic ? 3 : 1))
+        return Error{"it has not one value for each key"};
+    for (std::size_t i = 0; i < elements.count(); ++i) {
+        vec4 value(0.0f);
+        for (std::size_t c = 0; c < elements.width; ++c)
+            value[int(c)] = elements[i][c];
         const bool is_tangent = cubic && i % 3 != 1;
-        if (!rotation || is_tangent)
-            continue;
-        const float length = glm::length(value);
-        if (length < 1e-6f)
-            return Error{"a rotation is zero"};
-        value /= length;
+        if (rotation && !is_tangent) {
+            const float length = glm::length(value);
+            if (length < 1e-6f)
+                return Error{"a rotation is zero"};
+            value /= length;
+        }
+        curve.values.push_back(value);
     }
+    return {};
+}
+
+Status read_weights(const tinygltf::Model& model, int accessor, scene::WeightCurve& curve) {
+    SUNFLECK_ASSIGN(FloatElements elements, read_floats(model, accessor, {{TINYGLTF_TYPE_SCALAR}, packed_types}));
+    const std::size_t sets =
+        curve.times.size() * (curve.interpolation == scene::AnimationInterpolation::cubic_spline ? 3 : 1);
+    if (elements.count() % sets != 0)
+        return Error{"it has not the same number of weights for each key"};
+    curve.width = std::uint32_t(elements.count() / sets);
+    curve.values = std::move(elements.values);
+    return {};
+}
+
+Status read_channel(const tinygltf::Model& model, const tinygltf::AnimationChannel& channel,
+                    const tinygltf::AnimationSampler& sampler, scene::Animation& animation) {
+    SUNFLECK_ASSIGN(const scene::AnimationInterpolation interpolation, interpolation_of(sampler.interpolation));
+    SUNFLECK_ASSIGN(std::vector<float> times, read_times(model, sampler.input));
+    animation.duration = std::max(animation.duration, times.back());
+    if (channel.target_path == "weights") {
+        animation.weights = {interpolation, std::move(times), {}, 0};
+        return read_weights(model, sampler.output, animation.weights);
+    }
+    scene::AnimationCurve curve;
+    curve.interpolation = interpolation;
+    curve.times = std::move(times);
+    if (channel.target_path == "rotation")
+        curve.target = scene::AnimationTarget::rotation;
+    else if (channel.target_path == "scale")
+        curve.target = scene::AnimationTarget::scale;
+    else if (channel.target_path != "translation")
+        return Error{"it moves '" + channel.target_path + "', which glTF does not know"};
+    SUNFLECK_TRY(read_values(model, sampler.output, curve));
+    animation.curves.push_back(std::move(curve));
     return {};
 }
 
 } // namespace
 
-Result<std::map<int, scene::Animation>> read_animations(const tinygltf::Model& model) {
+Result<std::map<int, scene::Animation>> read_animation(const tinygltf::Model& model, int index) {
     std::map<int, scene::Animation> result;
-    if (model.animations.empty())
+    if (!in_range(index, model.animations))
         return result;
-    const tinygltf::Animation& source = model.animations.front();
+    const tinygltf::Animation& source = model.animations[std::size_t(index)];
     float duration = 0.0f;
-    for (const tinygltf::AnimationChannel& channel : source.channels) {
-        if (channel.target_node < 0 || channel.target_path == "weights")
+    for (std::size_t i = 0; i < source.channels.size(); ++i) {
+        const tinygltf::AnimationChannel& channel = source.channels[i];
+        if (channel.target_node < 0 || channel.target_path == "pointer")
             continue;
-        scene::AnimationCurve curve;
-        if (channel.target_path == "rotation")
-            curve.target = scene::AnimationTarget::rotation;
-        else if (channel.target_path == "scale")
-            curve.target = scene::AnimationTarget::scale;
-        else if (channel.target_path != "translation")
-            return Error{"animation '" + source.name + "' moves '" + channel.target_path +
-                         "', which glTF does not know"};
+        const auto failure = [&](const std::string& why) {
+            return Error{"animation " + std::to_string(index) + ", channel " + std::to_string(i) + ": " + why};
+        };
         if (!in_range(channel.target_node, model.nodes) || !in_range(channel.sampler, source.samplers))
-            return Error{"animation '" + source.name + "' names a node or sampler that does not exist"};
-        const tinygltf::AnimationSampler& sampler = source.samplers[std::size_t(channel.sampler)];
-        if (sampler.interpolation == "STEP")
-            curve.interpolation = scene::AnimationInterpolation::step;
-        else if (sampler.interpolation == "CUBICSPLINE")
-            curve.interpolation = scene::AnimationInterpolation::cubic_spline;
-        Status status = read_times(model, sampler.input, curve);
-        if (status)
-            status = read_values(model, sampler.output, curve);
-        if (!status)
-            return Error{"animation '" + source.name + "': " + status.error().message};
-        duration = std::max(duration, curve.times.back());
-        result[channel.target_node].curves.push_back(std::move(curve));
+            return failure("it names a node or sampler that does not exist");
+        scene::Animation& animation = result[channel.target_node];
+        if (const Status status =
+                read_channel(model, channel, source.samplers[std::size_t(channel.sampler)], animation);
+            !status)
+            return failure(status.error().message);
+        duration = std::max(duration, animation.duration);
     }
     for (auto& [node, animation] : result)
         animation.duration = duration;

@@ -8,8 +8,7 @@
 
 namespace sunfleck::io {
 
-// The curves of the file's first animation, by node. Nothing if it has none; every accessor is checked. Channels that
-// animate morph weights are left out.
-Result<std::map<int, scene::Animation>> read_animations(const tinygltf::Model& model);
+// The curves of one of the file's animations, by node. Every accessor is checked.
+Result<std::map<int, scene::Animation>> read_animation(const tinygltf::Model& model, int animation);
 
 } // namespace sunfleck::io

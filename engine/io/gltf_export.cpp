@@ -1,5 +1,6 @@
 #include "engine/core/file.h"
 #include "engine/io/gltf.h"
+#include "engine/io/image.h"
 
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
@@ -14,7 +15,8 @@ namespace {
 
 class Exporter {
 public:
-    Exporter(ecs::Registry& registry, const scene::MeshStore& meshes) : registry_(registry), meshes_(meshes) {
+    Exporter(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore& textures)
+        : registry_(registry), meshes_(meshes), textures_(textures) {
         model_.asset.version = "2.0";
         model_.asset.generator = "sunfleck";
         model_.buffers.emplace_back();
@@ -22,7 +24,8 @@ public:
         model_.defaultScene = 0;
     }
 
-    tinygltf::Model run() {
+    Result<tinygltf::Model> run() {
+        SUNFLECK_TRY(add_textures());
         for (const ecs::Entity entity : registry_.entities())
             if (registry_.has<scene::Name>(entity))
                 node_of_[entity] = add_node(entity);
@@ -40,24 +43,78 @@ public:
     }
 
 private:
-    template <typename T>
-    int add_accessor(const std::vector<T>& values, int type, int component, int target) {
+    int add_view(const void* bytes, std::size_t size, int target) {
         std::vector<unsigned char>& data = model_.buffers[0].data;
+        data.resize((data.size() + 3) / 4 * 4); // accessors begin at multiples of their components' size
         tinygltf::BufferView view;
         view.buffer = 0;
         view.byteOffset = data.size();
-        view.byteLength = values.size() * sizeof(T);
+        view.byteLength = size;
         view.target = target;
-        const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-        data.insert(data.end(), bytes, bytes + view.byteLength);
+        const auto* first = static_cast<const unsigned char*>(bytes);
+        data.insert(data.end(), first, first + size);
         model_.bufferViews.push_back(view);
+        return int(model_.bufferViews.size() - 1);
+    }
+
+    // Every texture of the store, with a sampler of its own, under its number.
+    Status add_textures() {
+        for (std::uint32_t i = 0; i < textures_.size(); ++i) {
+            const scene::Texture& source = textures_[i];
+            SUNFLECK_ASSIGN(const std::string png, encode_png(source.width, source.height, source.pixels));
+            tinygltf::Image image;
+            image.name = source.name;
+            image.mimeType = "image/png";
+            image.bufferView = add_view(png.data(), png.size(), 0);
+            model_.images.push_back(image);
+            tinygltf::Sampler sampler;
+            sampler.wrapS = wrap_mode(source.wrap_u);
+            sampler.wrapT = wrap_mode(source.wrap_v);
+            sampler.magFilter = source.nearest ? TINYGLTF_TEXTURE_FILTER_NEAREST : TINYGLTF_TEXTURE_FILTER_LINEAR;
+            sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
+            model_.samplers.push_back(sampler);
+            tinygltf::Texture texture;
+            texture.source = texture.sampler = int(i);
+            model_.textures.push_back(texture);
+        }
+        return {};
+    }
+
+    static int wrap_mode(scene::TextureWrap wrap) {
+        return wrap == scene::TextureWrap::repeat            ? TINYGLTF_TEXTURE_WRAP_REPEAT
+               : wrap == scene::TextureWrap::mirrored_repeat ? TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT
+                                                             : TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    }
+
+    template <typename T>
+    int add_accessor(const std::vector<T>& values, int type, int component, int target) {
         tinygltf::Accessor accessor;
-        accessor.bufferView = int(model_.bufferViews.size() - 1);
+        accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
         accessor.componentType = component;
         accessor.type = type;
         accessor.count = values.size();
         model_.accessors.push_back(accessor);
         return int(model_.accessors.size() - 1);
+    }
+
+    void add_optional_attributes(const scene::Mesh& mesh, tinygltf::Primitive& primitive) {
+        const auto add = [&](const char* name, const auto& values, int type) {
+            primitive.attributes[name] =
+                add_accessor(values, type, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+        };
+        if (!mesh.texture_coordinates.empty()) {
+            std::vector<vec2> sets[2];
+            for (const vec4 both : mesh.texture_coordinates) {
+                sets[0].emplace_back(both.x, both.y);
+                sets[1].emplace_back(both.z, both.w);
+            }
+            add("TEXCOORD_0", sets[0], TINYGLTF_TYPE_VEC2);
+            add("TEXCOORD_1", sets[1], TINYGLTF_TYPE_VEC2);
+        }
+        if (!mesh.tangents.empty())
+            add("TANGENT", mesh.tangents, TINYGLTF_TYPE_VEC4);
+        if (!mesh.colours.empty())
+            add("COLOR_0", mesh.colours, TINYGLTF_TYPE_VEC4);
     }
 
     // One glTF mesh for each pair of mesh and material.
@@ -75,6 +132,7 @@ private:
             }
             primitive.attributes["NORMAL"] = add_accessor(mesh.normals, TINYGLTF_TYPE_VEC3,
                                                           TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+            add_optional_attributes(mesh, primitive);
             primitive.indices = add_accessor(mesh.indices, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
                                              TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
             geometry_[index] = primitive;
@@ -87,6 +145,26 @@ private:
         return int(model_.meshes.size() - 1);
     }
 
+    template <typename Info>
+    void set_texture(Info& target, const scene::TextureUse& use) {
+        if (!use)
+            return;
+        target.index = use.texture;
+        target.texCoord = int(use.set);
+        if (use.offset == vec2(0.0f) && use.scale == vec2(1.0f) && use.rotation == 0.0f)
+            return;
+        const auto pair = [](vec2 value) {
+            return tinygltf::Value(
+                tinygltf::Value::Array{tinygltf::Value(double(value.x)), tinygltf::Value(double(value.y))});
+        };
+        tinygltf::Value::Object transform;
+        transform["offset"] = pair(use.offset);
+        transform["scale"] = pair(use.scale);
+        transform["rotation"] = tinygltf::Value(double(use.rotation));
+        target.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
+        used_extensions_.insert("KHR_texture_transform");
+    }
+
     void set_extension(tinygltf::ExtensionMap& extensions, const std::string& name, const std::string& key,
                        tinygltf::Value value) {
         tinygltf::Value::Object object;
@@ -95,11 +173,25 @@ private:
         used_extensions_.insert(name);
     }
 
-    int add_material(const scene::Material& source, const std::string& name) {
+    int add_material(const scene::Material& source, const scene::MaterialTextures* textures, const std::string& name) {
         tinygltf::Material material;
         material.name = name;
         material.pbrMetallicRoughness.baseColorFactor = {double(source.base_colour.x), double(source.base_colour.y),
-                                                         double(source.base_colour.z), 1.0};
+                                                         double(source.base_colour.z), double(source.alpha)};
+        if (source.alpha_mode != scene::AlphaMode::opaque)
+            material.alphaMode = source.alpha_mode == scene::AlphaMode::mask ? "MASK" : "BLEND";
+        material.alphaCutoff = double(source.alpha_cutoff);
+        if (source.unlit) {
+            material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
+            used_extensions_.insert("KHR_materials_unlit");
+        }
+        if (textures != nullptr) {
+            set_texture(material.pbrMetallicRoughness.baseColorTexture, textures->base_colour);
+            set_texture(material.pbrMetallicRoughness.metallicRoughnessTexture, textures->metallic_roughness);
+            set_texture(material.normalTexture, textures->normal);
+            material.normalTexture.scale = double(textures->normal_scale);
+            set_texture(material.emissiveTexture, textures->emission);
+        }
         material.pbrMetallicRoughness.metallicFactor = double(source.metallic);
         material.pbrMetallicRoughness.roughnessFactor = double(source.roughness);
         const vec3 nits = source.emission * luminous_efficacy;
@@ -151,7 +243,11 @@ private:
         }
         if (const auto* instance = registry_.try_get<scene::MeshInstance>(entity)) {
             const auto* material = registry_.try_get<scene::Material>(entity);
-            node.mesh = add_mesh(instance->mesh, material != nullptr ? add_material(*material, node.name) : -1);
+            node.mesh =
+                add_mesh(instance->mesh,
+                         material != nullptr
+                             ? add_material(*material, registry_.try_get<scene::MaterialTextures>(entity), node.name)
+                             : -1);
         }
         if (const auto* camera = registry_.try_get<scene::Camera>(entity)) {
             tinygltf::Camera target;
@@ -178,6 +274,7 @@ private:
     };
     ecs::Registry& registry_;
     const scene::MeshStore& meshes_;
+    const scene::TextureStore& textures_;
     tinygltf::Model model_;
     std::map<ecs::Entity, int, ByIndex> node_of_;
     std::map<std::uint32_t, tinygltf::Primitive> geometry_;
@@ -186,11 +283,14 @@ private:
 
 } // namespace
 
-Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes) {
-    const tinygltf::Model model = Exporter(registry, meshes).run();
+Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
+                   const scene::TextureStore& textures) {
+    auto model = Exporter(registry, meshes, textures).run();
+    if (!model)
+        return Error{"cannot write '" + path.string() + "': " + model.error().message};
     std::ostringstream stream;
     tinygltf::TinyGLTF writer;
-    if (!writer.WriteGltfSceneToStream(&model, stream, false, true))
+    if (!writer.WriteGltfSceneToStream(&*model, stream, false, true))
         return Error{"cannot write '" + path.string() + "' as glTF"};
     return write_file(path, stream.str());
 }

@@ -1,372 +1,246 @@
+// From a checked document to entities. Everything that can fail is read first; then the registry is filled.
 #include "engine/core/file.h"
 #include "engine/io/gltf.h"
-#include "engine/io/gltf_accessor.h"
 #include "engine/io/gltf_animation.h"
-#include "engine/scene/procedural.h"
+#include "engine/io/gltf_checks.h"
+#include "engine/io/gltf_materials.h"
+#include "engine/io/gltf_meshes.h"
+#include "engine/io/gltf_nodes.h"
 
 #include <algorithm>
-#include <cstring>
-#include <set>
+#include <exception>
 
 namespace sunfleck::io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t depth_limit = 256; // of JSON nesting and of the node hierarchy
 
-// tinygltf's parser recurses: deep nesting would overflow the stack.
-bool nesting_is_sane(std::string_view json) {
-    std::size_t depth = 0;
-    bool in_text = false;
-    for (std::size_t i = 0; i < json.size(); ++i) {
-        const char c = json[i];
-        if (in_text) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                in_text = false;
-        } else if (c == '"') {
-            in_text = true;
-        } else if (c == '{' || c == '[') {
-            if (++depth > depth_limit)
-                return false;
-        } else if ((c == '}' || c == ']') && depth > 0) {
-            --depth;
+Result<int> find_variant(const tinygltf::Model& model, const std::string& wanted, ImportReport& report) {
+    const auto found = model.extensions.find("KHR_materials_variants");
+    if (found != model.extensions.end() && found->second.Has("variants")) {
+        const tinygltf::Value& list = found->second.Get("variants");
+        for (std::size_t i = 0; list.IsArray() && i < list.ArrayLen(); ++i) {
+            const tinygltf::Value& entry = list.Get(int(i));
+            const bool named = entry.Has("name") && entry.Get("name").IsString();
+            report.variants.push_back(named ? entry.Get("name").Get<std::string>() : "variant " + std::to_string(i));
         }
     }
-    return true;
+    if (wanted.empty())
+        return -1;
+    const auto place = std::find(report.variants.begin(), report.variants.end(), wanted);
+    if (place == report.variants.end())
+        return Error{"it has no material variant '" + wanted + "'"};
+    return int(place - report.variants.begin());
 }
 
-// Only regular files inside the glTF file's folder.
-bool inside_folder(const std::string& file, const fs::path& folder) {
-    std::error_code code;
-    const fs::path target = fs::weakly_canonical(file, code);
-    const fs::path base = fs::weakly_canonical(folder, code);
-    const auto [end, unused] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
-    return !code && end == base.end() && fs::is_regular_file(target, code);
-}
-
-tinygltf::FsCallbacks make_callbacks(const fs::path& folder) {
-    tinygltf::FsCallbacks callbacks{};
-    callbacks.user_data = const_cast<fs::path*>(&folder);
-    callbacks.FileExists = [](const std::string& name, void* base) {
-        return inside_folder(name, *static_cast<fs::path*>(base));
-    };
-    callbacks.ExpandFilePath = [](const std::string& name, void*) { return name; };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& name,
-                                 void* base) {
-        if (!inside_folder(name, *static_cast<fs::path*>(base))) {
-            *error = "'" + name + "' is not a file in the folder of the glTF file";
-            return false;
+Status read_skins(const tinygltf::Model& model, GltfContent& content) {
+    for (std::size_t i = 0; i < model.skins.size(); ++i) {
+        const tinygltf::Skin& source = model.skins[i];
+        const std::string place = "skin " + std::to_string(i);
+        ImportedSkin skin;
+        skin.joints = source.joints;
+        if (skin.joints.empty())
+            return Error{place + " has no joints"};
+        skin.inverse_bind_matrices.assign(skin.joints.size(), mat4(1.0f));
+        if (source.inverseBindMatrices >= 0) {
+            auto elements =
+                read_floats(model, source.inverseBindMatrices, {{TINYGLTF_TYPE_MAT4}, {TINYGLTF_COMPONENT_TYPE_FLOAT}});
+            if (!elements)
+                return Error{place + ": " + elements.error().message};
+            if (elements->count() < skin.joints.size())
+                return Error{place + " has fewer inverse bind matrices than joints"};
+            for (std::size_t j = 0; j < skin.joints.size(); ++j)
+                for (int c = 0; c < 16; ++c)
+                    skin.inverse_bind_matrices[j][c / 4][c % 4] = (*elements)[j][c];
         }
-        const auto content = read_file(name);
-        if (!content) {
-            *error = content.error().message;
-            return false;
-        }
-        out->assign(content->begin(), content->end());
-        return true;
-    };
-    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-        return false;
-    };
-    return callbacks;
-}
-
-class Importer {
-public:
-    Importer(const tinygltf::Model& model, ecs::Registry& registry, scene::MeshStore& meshes)
-        : model_(model), registry_(registry), meshes_(meshes) {}
-
-    Status run() {
-        SUNFLECK_TRY(read_meshes());
-        const int scene = model_.defaultScene >= 0 ? model_.defaultScene : 0;
-        if (model_.scenes.empty())
-            return Error{"it has no scene"};
-        if (scene >= int(model_.scenes.size()))
-            return Error{"its default scene does not exist"};
-        for (const int node : model_.scenes[std::size_t(scene)].nodes)
-            SUNFLECK_TRY(check_node(node, 0));
-        for (scene::Mesh& mesh : fresh_meshes_)
-            mesh_ids_.push_back(meshes_.add(std::move(mesh)));
-        for (const int node : model_.scenes[std::size_t(scene)].nodes)
-            add_node(node, ecs::null_entity);
-        return {};
+        content.skins.push_back(std::move(skin));
     }
-
-    // By node; null for nodes outside the scene.
-    const std::vector<ecs::Entity>& entities() const { return entities_; }
-    ImportReport report;
-
-private:
-    Status read_vectors(int accessor, std::vector<vec3>& target) const {
-        SUNFLECK_TRY(each_element(model_, accessor, TINYGLTF_TYPE_VEC3, {TINYGLTF_COMPONENT_TYPE_FLOAT},
-                                  [&](std::size_t, const unsigned char* address, int) {
-                                      float v[3];
-                                      std::memcpy(v, address, sizeof v);
-                                      target.emplace_back(v[0], v[1], v[2]);
-                                  }));
-        if (!std::all_of(target.begin(), target.end(), is_finite))
-            return Error{"a vertex is not finite"};
-        return {};
-    }
-
-    Status read_indices(int accessor, std::size_t vertices, std::vector<std::uint32_t>& target) const {
-        SUNFLECK_TRY(each_element(model_, accessor, TINYGLTF_TYPE_SCALAR,
-                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                                   TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
-                                  [&](std::size_t, const unsigned char* address, int type) {
-                                      std::uint32_t index = 0;
-                                      std::memcpy(&index, address,
-                                                  std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type))));
-                                      target.push_back(index);
-                                  }));
-        for (const std::uint32_t index : target)
-            if (index >= vertices)
-                return Error{"an index points past the last vertex"};
-        return {};
-    }
-
-    Status read_primitive(const tinygltf::Primitive& primitive, scene::Mesh& mesh) {
-        const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end())
-            return Error{"a primitive has no positions"};
-        SUNFLECK_TRY(read_vectors(position->second, mesh.positions));
-        if (primitive.indices >= 0) {
-            SUNFLECK_TRY(read_indices(primitive.indices, mesh.positions.size(), mesh.indices));
-        } else {
-            for (std::uint32_t i = 0; i < mesh.positions.size(); ++i)
-                mesh.indices.push_back(i);
-        }
-        mesh.indices.resize(mesh.indices.size() / 3 * 3);
-        const auto normal = primitive.attributes.find("NORMAL");
-        if (normal != primitive.attributes.end())
-            SUNFLECK_TRY(read_vectors(normal->second, mesh.normals));
-        if (mesh.normals.size() != mesh.positions.size())
-            scene::compute_normals(mesh);
-        return {};
-    }
-
-    Status read_meshes() {
-        for (const tinygltf::Mesh& mesh : model_.meshes) {
-            first_primitive_.push_back(fresh_meshes_.size());
-            for (const tinygltf::Primitive& primitive : mesh.primitives) {
-                fresh_meshes_.emplace_back();
-                fresh_meshes_.back().name = mesh.name;
-                if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != -1) {
-                    report.notes.push_back("mesh '" + mesh.name + "': only triangle lists are drawn");
-                    continue;
-                }
-                const Status status = read_primitive(primitive, fresh_meshes_.back());
-                if (!status)
-                    return Error{"mesh '" + mesh.name + "': " + status.error().message};
-            }
-        }
-        return {};
-    }
-
-    Status check_node(int node, std::size_t depth) {
-        if (!in_range(node, model_.nodes))
-            return Error{"a node does not exist"};
-        if (depth > depth_limit || !visited_.insert(node).second)
-            return Error{"its nodes form a cycle, or are nested too deeply"};
-        for (const int child : model_.nodes[std::size_t(node)].children)
-            SUNFLECK_TRY(check_node(child, depth + 1));
-        return {};
-    }
-
-    static scene::Transform transform_of(const tinygltf::Node& node) {
-        scene::Transform transform;
-        if (node.matrix.size() == 16) {
-            mat4 m;
-            for (int i = 0; i < 16; ++i)
-                m[i / 4][i % 4] = float(node.matrix[std::size_t(i)]);
-            transform.position = vec3(m[3]);
-            transform.scale = vec3(glm::length(vec3(m[0])), glm::length(vec3(m[1])), glm::length(vec3(m[2])));
-            if (glm::determinant(mat3(m)) < 0.0f)
-                transform.scale.x = -transform.scale.x;
-            mat3 r(1.0f);
-            for (int i = 0; i < 3; ++i)
-                if (transform.scale[i] != 0.0f)
-                    r[i] = vec3(m[i]) / transform.scale[i];
-            transform.rotation = glm::normalize(glm::quat_cast(r));
-            return transform;
-        }
-        if (node.translation.size() == 3)
-            transform.position = vec3(node.translation[0], node.translation[1], node.translation[2]);
-        if (node.rotation.size() == 4)
-            transform.rotation = quat(float(node.rotation[3]), float(node.rotation[0]), float(node.rotation[1]),
-                                      float(node.rotation[2]));
-        if (node.scale.size() == 3)
-            transform.scale = vec3(node.scale[0], node.scale[1], node.scale[2]);
-        return transform;
-    }
-
-    static double extension_number(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key,
-                                   double fallback) {
-        const auto found = extensions.find(extension);
-        if (found == extensions.end() || !found->second.Has(key))
-            return fallback;
-        return found->second.Get(key).GetNumberAsDouble();
-    }
-
-    scene::Material material_of(int index) const {
-        scene::Material material;
-        material.specular = true;
-        if (!in_range(index, model_.materials))
-            return material;
-        const tinygltf::Material& source = model_.materials[std::size_t(index)];
-        const auto& pbr = source.pbrMetallicRoughness;
-        for (int c = 0; c < 3; ++c) {
-            if (pbr.baseColorFactor.size() >= 3)
-                material.base_colour[c] = float(pbr.baseColorFactor[std::size_t(c)]);
-            if (source.emissiveFactor.size() >= 3)
-                material.emission[c] = float(source.emissiveFactor[std::size_t(c)]);
-        }
-        material.metallic = float(pbr.metallicFactor);
-        material.roughness = float(pbr.roughnessFactor);
-        material.emission *=
-            float(extension_number(source.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1.0)) /
-            luminous_efficacy;
-        material.specular = extension_number(source.extensions, "KHR_materials_specular", "specularFactor", 1.0) > 0.0;
-        material.index_of_refraction = float(extension_number(source.extensions, "KHR_materials_ior", "ior", 1.5));
-        material.transmission =
-            float(extension_number(source.extensions, "KHR_materials_transmission", "transmissionFactor", 0.0));
-        return material;
-    }
-
-    void add_light(const tinygltf::Light& light, ecs::Entity entity) {
-        vec3 strength(1.0f);
-        if (light.color.size() == 3)
-            strength = vec3(light.color[0], light.color[1], light.color[2]);
-        strength *= float(light.intensity) / luminous_efficacy;
-        if (light.type == "directional")
-            registry_.emplace<scene::DirectionalLight>(entity, {strength});
-        else if (light.type == "spot")
-            registry_.emplace<scene::SpotLight>(
-                entity, {strength, float(light.spot.innerConeAngle), float(light.spot.outerConeAngle)});
-        else
-            registry_.emplace<scene::PointLight>(entity, {strength});
-    }
-
-    void add_primitive(int mesh, std::size_t primitive, ecs::Entity entity) {
-        const std::size_t place = first_primitive_[std::size_t(mesh)] + primitive;
-        registry_.emplace<scene::MeshInstance>(entity, {mesh_ids_[place]});
-        registry_.emplace<scene::Material>(
-            entity, material_of(model_.meshes[std::size_t(mesh)].primitives[primitive].material));
-    }
-
-    void add_node(int index, ecs::Entity parent) {
-        const tinygltf::Node& node = model_.nodes[std::size_t(index)];
-        const ecs::Entity entity = registry_.create();
-        entities_.resize(model_.nodes.size());
-        entities_[std::size_t(index)] = entity;
-        registry_.emplace<scene::Name>(entity, {node.name});
-        registry_.emplace<scene::Transform>(entity, transform_of(node));
-        if (!parent.is_null())
-            registry_.emplace<scene::Parent>(entity, {parent});
-        if (in_range(node.mesh, model_.meshes)) {
-            const std::size_t primitives = model_.meshes[std::size_t(node.mesh)].primitives.size();
-            for (std::size_t p = 0; p < primitives; ++p) {
-                ecs::Entity owner = entity;
-                if (p > 0) { // further primitives become children: an entity has one material
-                    owner = registry_.create();
-                    registry_.emplace<scene::Transform>(owner);
-                    registry_.emplace<scene::Parent>(owner, {entity});
-                }
-                add_primitive(node.mesh, p, owner);
-            }
-        }
-        if (in_range(node.camera, model_.cameras)) {
-            const tinygltf::Camera& camera = model_.cameras[std::size_t(node.camera)];
-            if (camera.type == "perspective")
-                registry_.emplace<scene::Camera>(entity, {float(camera.perspective.yfov)});
-        }
-        const auto light = node.extensions.find("KHR_lights_punctual");
-        if (light != node.extensions.end() && light->second.Has("light")) {
-            const int which = light->second.Get("light").GetNumberAsInt();
-            if (in_range(which, model_.lights))
-                add_light(model_.lights[std::size_t(which)], entity);
-        }
-        for (const int child : node.children)
-            add_node(child, entity);
-    }
-
-    const tinygltf::Model& model_;
-    ecs::Registry& registry_;
-    scene::MeshStore& meshes_;
-    std::vector<scene::Mesh> fresh_meshes_;
-    std::vector<std::uint32_t> mesh_ids_;
-    std::vector<std::size_t> first_primitive_;
-    std::set<int> visited_;
-    std::vector<ecs::Entity> entities_;
-};
-
-Status check_extensions(const tinygltf::Model& model) {
-    static const std::set<std::string> known = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                "KHR_materials_specular", "KHR_materials_ior",
-                                                "KHR_materials_transmission"};
-    for (const std::string& name : model.extensionsRequired)
-        if (!known.count(name))
-            return Error{"it requires the extension " + name + ", which is not supported"};
     return {};
+}
+
+Status read_meshes(const tinygltf::Model& model, GltfContent& content, ImportReport& report) {
+    for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+        const tinygltf::Mesh& mesh = model.meshes[m];
+        content.meshes.emplace_back();
+        for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+            auto primitive = read_primitive(model, mesh.primitives[p], report.variants.size());
+            if (!primitive)
+                return Error{"mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " + std::to_string(p) +
+                             ": " + primitive.error().message};
+            primitive->mesh.rest.name = mesh.name.empty() ? "mesh " + std::to_string(m) : mesh.name;
+            if (!primitive->drawn)
+                report.notes.push_back("mesh '" + primitive->mesh.rest.name + "': points and lines are not drawn");
+            content.meshes.back().push_back(std::move(*primitive));
+        }
+    }
+    return {};
+}
+
+// Weights beyond the joints of the skin would read past its end.
+Status check_skinned_nodes(const tinygltf::Model& model, const GltfContent& content) {
+    for (std::size_t i = 0; i < model.nodes.size(); ++i) {
+        const tinygltf::Node& node = model.nodes[i];
+        if (!in_range(node.skin, content.skins) || !in_range(node.mesh, content.meshes))
+            continue;
+        const std::size_t joints = content.skins[std::size_t(node.skin)].joints.size();
+        for (const ImportedPrimitive& primitive : content.meshes[std::size_t(node.mesh)])
+            for (const std::uint32_t joint : primitive.mesh.joints)
+                if (joint >= joints)
+                    return Error{"node " + std::to_string(i) + ": a vertex names joint " + std::to_string(joint) +
+                                 " of " + std::to_string(joints)};
+    }
+    return {};
+}
+
+void add_tangents(GltfContent& content) {
+    for (auto& mesh : content.meshes)
+        for (ImportedPrimitive& primitive : mesh) {
+            const scene::MaterialTextures& textures = content.materials.material(primitive.material).textures;
+            scene::Mesh& rest = primitive.mesh.rest;
+            if (textures.normal && rest.tangents.empty() && !rest.texture_coordinates.empty())
+                generate_tangents(rest, int(textures.normal.set));
+        }
+}
+
+std::vector<int> roots_of(const tinygltf::Model& model, int scene) {
+    if (in_range(scene, model.scenes))
+        return model.scenes[std::size_t(scene)].nodes;
+    std::vector<bool> is_child(model.nodes.size(), false);
+    for (const tinygltf::Node& node : model.nodes)
+        for (const int child : node.children)
+            is_child[std::size_t(child)] = true;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < is_child.size(); ++i)
+        if (!is_child[i])
+            roots.push_back(int(i));
+    return roots;
+}
+
+Result<int> choose_scene(const tinygltf::Model& model, const ImportOptions& options, ImportReport& report) {
+    for (std::size_t i = 0; i < model.scenes.size(); ++i)
+        report.scenes.push_back(model.scenes[i].name.empty() ? "scene " + std::to_string(i) : model.scenes[i].name);
+    if (options.scene >= 0 && !in_range(options.scene, model.scenes))
+        return Error{"it has no scene " + std::to_string(options.scene) + " (it has " +
+                     std::to_string(model.scenes.size()) + ")"};
+    if (options.scene >= 0)
+        return options.scene;
+    if (model.defaultScene >= 0 && !in_range(model.defaultScene, model.scenes))
+        return Error{"its default scene " + std::to_string(model.defaultScene) + " does not exist"};
+    if (model.scenes.empty())
+        report.notes.push_back("it has no scene: all its nodes are shown");
+    return model.defaultScene >= 0 ? model.defaultScene : 0;
+}
+
+void note_extensions(const tinygltf::Model& model, ImportReport& report) {
+    for (const std::string& name : model.extensionsUsed)
+        if (!is_known_extension(name))
+            report.notes.push_back("extension " + name + " is left out");
+    bool relative = false;
+    for (const tinygltf::Material& material : model.materials) {
+        const auto& factor = material.emissiveFactor;
+        relative = relative || (!material.extensions.count("KHR_materials_emissive_strength") &&
+                                std::any_of(factor.begin(), factor.end(), [](double v) { return v > 0.0; }));
+    }
+    if (relative)
+        report.notes.push_back(
+            "emission without KHR_materials_emissive_strength has no unit: 1 is taken as 0.5 W/(sr m2)");
+}
+
+void count_content(const GltfContent& content, const scene::TextureStore& textures, std::uint32_t first_texture,
+                   ImportReport& report) {
+    for (const auto& mesh : content.meshes)
+        for (const ImportedPrimitive& primitive : mesh) {
+            const scene::Mesh& rest = primitive.mesh.rest;
+            report.counts["triangles"] += rest.triangle_count();
+            report.memory_bytes["indices"] += rest.indices.size() * sizeof(std::uint32_t);
+            report.memory_bytes["vertices"] +=
+                rest.positions.size() * 2 * sizeof(vec3) +
+                (rest.texture_coordinates.size() + rest.tangents.size() + rest.colours.size()) * sizeof(vec4);
+        }
+    for (std::uint32_t i = first_texture; i < textures.size(); ++i)
+        report.memory_bytes["textures"] += textures[i].pixels.size();
+    report.counts["textures"] = textures.size() - first_texture;
+}
+
+Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& registry, scene::MeshStore& meshes,
+                                     scene::TextureStore& textures, const ImportOptions& options) {
+    if (!read)
+        return read.error();
+    const GltfDocument& document = *read;
+    const tinygltf::Model& model = document.model;
+    ImportReport report;
+    note_extensions(model, report);
+    SUNFLECK_ASSIGN(const int scene, choose_scene(model, options, report));
+    GltfContent content;
+    SUNFLECK_ASSIGN(content.variant, find_variant(model, options.variant, report));
+    SUNFLECK_ASSIGN(content.materials, MaterialImport::read(document, options.progress));
+    report.notes.insert(report.notes.end(), content.materials.notes.begin(), content.materials.notes.end());
+    SUNFLECK_TRY(read_meshes(model, content, report));
+    SUNFLECK_TRY(read_skins(model, content));
+    SUNFLECK_TRY(check_skinned_nodes(model, content));
+    for (std::size_t i = 0; i < model.animations.size(); ++i) {
+        const std::string& name = model.animations[i].name;
+        report.animations.push_back(name.empty() ? "animation " + std::to_string(i) : name);
+    }
+    if (options.animation >= int(model.animations.size()) && options.animation > 0)
+        return Error{"it has no animation " + std::to_string(options.animation) + " (it has " +
+                     std::to_string(model.animations.size()) + ")"};
+    SUNFLECK_ASSIGN(content.animations, read_animation(model, options.animation));
+    add_tangents(content);
+    SUNFLECK_ASSIGN(NodeImport nodes, NodeImport::read(model, std::move(content)));
+    const std::uint32_t first_texture = textures.size();
+    nodes.add_to(registry, meshes, textures, roots_of(model, scene));
+    report.notes.insert(report.notes.end(), nodes.notes.begin(), nodes.notes.end());
+    report.counts["nodes"] = model.nodes.size();
+    report.counts["meshes"] = model.meshes.size();
+    report.counts["materials"] = model.materials.size();
+    report.counts["images"] = document.images.size();
+    report.counts["skins"] = model.skins.size();
+    report.counts["cameras"] = model.cameras.size();
+    report.counts["lights"] = model.lights.size();
+    count_content(nodes.content(), textures, first_texture, report);
+    if (model.animations.size() > 1 && options.animation >= 0)
+        report.notes.push_back("of " + std::to_string(model.animations.size()) + " animations, '" +
+                               report.animations[std::size_t(options.animation)] + "' plays");
+    return report;
+}
+
+// One line of bounded length, whatever libraries put into their messages.
+std::string one_line(std::string message) {
+    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
+        message.pop_back();
+    for (std::size_t at = message.find('\n'); at != std::string::npos; at = message.find('\n', at))
+        message.replace(at, 1, "; ");
+    constexpr std::size_t most = 300;
+    return message.size() > most ? message.substr(0, most) + "..." : message;
+}
+
+template <typename Import>
+Result<ImportReport> guarded(const std::string& what, const Import& import) {
+    // tinygltf, Draco and the containers throw; no exception leaves this function.
+    try {
+        auto report = import();
+        return report ? std::move(report) : Error{"cannot import " + what + ": " + one_line(report.error().message)};
+    } catch (const std::bad_alloc&) {
+        return Error{"cannot import " + what + ": there is not enough memory for it"};
+    } catch (const std::exception& exception) {
+        return Error{"cannot import " + what + ": it is not valid glTF (" + exception.what() + ")"};
+    }
 }
 
 } // namespace
 
-Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, scene::MeshStore& meshes) {
-    const auto failure = [&](const std::string& why) { return Error{"cannot import '" + path.string() + "': " + why}; };
-    SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
-    if (bytes.empty())
-        return failure("the file is empty");
-    const bool binary = bytes.compare(0, 4, "glTF") == 0;
-    std::string_view json = bytes;
-    if (binary) { // 12 bytes of header, then the JSON chunk's length and type; what follows may look like anything
-        std::uint32_t length = 0;
-        if (bytes.size() >= 20)
-            std::memcpy(&length, bytes.data() + 12, sizeof length);
-        json = json.substr(std::min<std::size_t>(20, bytes.size()), length);
-    }
-    if (!nesting_is_sane(json))
-        return failure("its JSON is nested too deeply");
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    tinygltf::TinyGLTF loader;
-    loader.SetFsCallbacks(make_callbacks(folder));
-    loader.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
-                             void*) { return true; },
-                          nullptr);
-    tinygltf::Model model;
-    std::string error, warning;
-    const bool loaded = binary ? loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                                             reinterpret_cast<const unsigned char*>(bytes.data()),
-                                                             unsigned(bytes.size()), folder.string())
-                               : loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(),
-                                                            unsigned(bytes.size()), folder.string());
-    if (!loaded) {
-        while (!error.empty() && (error.back() == '\n' || error.back() == '\r'))
-            error.pop_back();
-        return failure(error.empty() ? "it is not valid glTF" : error);
-    }
-    if (const Status status = check_extensions(model); !status)
-        return failure(status.error().message);
-    auto animations = read_animations(model);
-    if (!animations)
-        return failure(animations.error().message);
-    Importer importer(model, registry, meshes);
-    if (const Status status = importer.run(); !status)
-        return failure(status.error().message);
-    if (!model.textures.empty())
-        importer.report.notes.push_back("textures are left out");
-    if (!model.skins.empty())
-        importer.report.notes.push_back("skins are left out");
-    if (model.animations.size() > 1)
-        importer.report.notes.push_back("of several animations the first plays");
-    for (auto& [node, animation] : *animations)
-        if (const ecs::Entity entity = importer.entities()[std::size_t(node)]; !entity.is_null()) {
-            registry.emplace<scene::Mover>(entity, {});
-            registry.emplace<scene::Animation>(entity, std::move(animation));
-        }
-    return importer.report;
+Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
+                                 scene::TextureStore& textures, const ImportOptions& options) {
+    return guarded("'" + path.string() + "'",
+                   [&] { return import_document(read_gltf_document(path), registry, meshes, textures, options); });
+}
+
+Result<ImportReport> import_gltf_bytes(std::string bytes, ecs::Registry& registry, scene::MeshStore& meshes,
+                                       scene::TextureStore& textures, const ImportOptions& options) {
+    return guarded("the file", [&] {
+        return import_document(parse_gltf_document(std::move(bytes), {}), registry, meshes, textures, options);
+    });
 }
 
 } // namespace sunfleck::io

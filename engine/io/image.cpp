@@ -6,11 +6,10 @@
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace sunfleck::io {
 namespace {
-
-constexpr int size_limit = 16384;
 
 std::vector<unsigned char> to_bytes(const Picture& picture) {
     std::vector<unsigned char> bytes;
@@ -44,13 +43,70 @@ Result<std::string> encode(const std::filesystem::path& path, const Picture& pic
     return std::string(bytes.begin(), bytes.end());
 }
 
-Result<PictureKind> kind_by_content(const std::filesystem::path& path) {
-    SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
-    if (bytes.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0)
-        return PictureKind::png;
-    if (bytes.size() >= 4 && bytes.compare(0, 4, "\x76\x2f\x31\x01") == 0)
-        return PictureKind::exr;
-    return Error{"'" + path.string() + "' is neither a PNG nor an EXR picture"};
+const char* format_name(PictureKind kind) {
+    switch (kind) {
+    case PictureKind::png:
+        return "png";
+    case PictureKind::jpeg:
+        return "jpeg";
+    case PictureKind::hdr:
+        return "hdr";
+    default:
+        return "openexr";
+    }
+}
+
+// A decoder that has read the header, and found a size that can be decoded.
+struct OpenPicture {
+    OIIO::Filesystem::IOMemReader memory;
+    std::unique_ptr<OIIO::ImageInput> input;
+    PictureKind kind;
+    OpenPicture(std::string_view bytes, PictureKind which)
+        : memory(const_cast<char*>(bytes.data()), bytes.size()), kind(which) {}
+};
+
+Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes) {
+    if (bytes.empty())
+        return Error{"the picture is empty"};
+    const std::optional<PictureKind> kind = sniff_picture(bytes);
+    if (!kind)
+        return Error{"it is not a PNG, JPEG, EXR or HDR picture"};
+    auto open = std::make_unique<OpenPicture>(bytes, *kind);
+    open->input = OIIO::ImageInput::create(format_name(*kind));
+    if (!open->input || !open->input->supports("ioproxy") || !open->input->set_ioproxy(&open->memory))
+        return Error{std::string("this build of OpenImageIO cannot read ") + format_name(*kind) + " from memory"};
+    OIIO::ImageSpec spec, wanted;
+    wanted.attribute("oiio:UnassociatedAlpha", 1);
+    if (!open->input->open(std::string("picture.") + format_name(*kind), spec, wanted))
+        return Error{"its header is damaged: " + open->input->geterror()};
+    const int limit = int(picture_side_limit);
+    if (spec.width < 1 || spec.height < 1 || spec.width > limit || spec.height > limit ||
+        std::int64_t(spec.width) * spec.height > (std::int64_t(1) << 26) || spec.nchannels < 1 || spec.nchannels > 16 ||
+        spec.depth > 1)
+        return Error{"it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels with " +
+                     std::to_string(spec.nchannels) + " channels; at most " + std::to_string(limit) +
+                     " a side and 2^26 altogether are read"};
+    return open;
+}
+
+// Reads all pixels in the type of `values`, and spreads the channels to RGBA.
+template <typename T>
+Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, std::vector<T>& rgba) {
+    const OIIO::ImageSpec& spec = open.input->spec();
+    const std::size_t channels = std::size_t(spec.nchannels),
+                      pixels = std::size_t(spec.width) * std::size_t(spec.height);
+    std::vector<T> values(pixels * channels);
+    if (!open.input->read_image(0, 0, 0, spec.nchannels, type, values.data()))
+        return Error{"it is damaged: " + open.input->geterror()};
+    rgba.assign(pixels * 4, opaque);
+    const bool grey = channels < 3, alpha = channels == 2 || channels == 4;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::size_t c = 0; c < 3; ++c)
+            rgba[i * 4 + c] = values[i * channels + (grey ? 0 : c)];
+        if (alpha)
+            rgba[i * 4 + 3] = values[i * channels + channels - 1];
+    }
+    return {};
 }
 
 } // namespace
@@ -69,33 +125,60 @@ Status write_picture(const std::filesystem::path& path, const Picture& picture) 
     return write_file(path, bytes);
 }
 
-Result<Picture> read_picture(const std::filesystem::path& path) {
-    SUNFLECK_TRY(kind_by_content(path));
-    const auto failure = [&](const std::string& why) { return Error{"cannot read '" + path.string() + "': " + why}; };
-    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
-    if (!input)
-        return failure(OIIO::geterror());
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.width > size_limit || spec.height > size_limit ||
-        spec.nchannels < 1 || spec.nchannels > 16)
-        return failure("its size is not between 1x1 and 16384x16384");
+std::optional<PictureKind> sniff_picture(std::string_view bytes) {
+    const auto starts = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
+    if (starts("\x89PNG\r\n\x1a\n"))
+        return PictureKind::png;
+    if (starts("\x76\x2f\x31\x01"))
+        return PictureKind::exr;
+    if (starts("\xff\xd8\xff"))
+        return PictureKind::jpeg;
+    if (starts("#?RADIANCE") || starts("#?RGBE"))
+        return PictureKind::hdr;
+    return std::nullopt;
+}
+
+Result<Picture> decode_picture(std::string_view bytes) {
+    SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes));
+    std::vector<float> values;
+    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::FLOAT, 1.0f, values));
     Picture picture;
-    picture.width = std::uint32_t(spec.width);
-    picture.height = std::uint32_t(spec.height);
-    const std::size_t channels = std::size_t(spec.nchannels),
-                      pixels = std::size_t(spec.width) * std::size_t(spec.height);
-    std::vector<float> values(pixels * channels);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()))
-        return failure(input->geterror());
-    picture.pixels.assign(pixels, vec4(0.0f, 0.0f, 0.0f, 1.0f));
-    for (std::size_t i = 0; i < pixels; ++i)
-        for (std::size_t c = 0; c < 4; ++c) {
-            if (c < channels && (c < 3 || channels == 4))
-                picture.pixels[i][int(c)] = values[i * channels + c];
-            else if (c < 3 && channels < 3)
-                picture.pixels[i][int(c)] = values[i * channels];
-        }
+    picture.width = std::uint32_t(open->input->spec().width);
+    picture.height = std::uint32_t(open->input->spec().height);
+    picture.pixels.resize(values.size() / 4);
+    std::memcpy(picture.pixels.data(), values.data(), values.size() * sizeof(float));
     return picture;
+}
+
+Result<BytePicture> decode_bytes(std::string_view bytes) {
+    SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes));
+    BytePicture picture;
+    picture.width = std::uint32_t(open->input->spec().width);
+    picture.height = std::uint32_t(open->input->spec().height);
+    picture.linear = open->kind == PictureKind::exr || open->kind == PictureKind::hdr;
+    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::UINT8, std::uint8_t(255), picture.pixels));
+    return picture;
+}
+
+Result<Picture> read_picture(const std::filesystem::path& path) {
+    SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
+    auto picture = decode_picture(bytes);
+    if (!picture)
+        return Error{"cannot read '" + path.string() + "': " + picture.error().message};
+    return picture;
+}
+
+Result<std::string> encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& pixels) {
+    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
+    OIIO::ImageSpec spec(int(width), int(height), 4, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput memory(bytes);
+    if (!output || !output->set_ioproxy(&memory) || !output->open("texture.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
+        return Error{"cannot encode a texture as PNG"};
+    return std::string(bytes.begin(), bytes.end());
 }
 
 } // namespace sunfleck::io

@@ -1,10 +1,12 @@
-// Pictures in files: PNG (display values) and EXR (scene-linear), by OpenImageIO.
+// Pictures in files: PNG and JPEG (display values), EXR and HDR (scene-linear), by OpenImageIO.
 #pragma once
 
 #include "engine/core/maths.h"
 #include "engine/core/result.h"
 
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 namespace sunfleck::io {
@@ -15,15 +17,32 @@ struct Picture {
     std::vector<vec4> pixels;
 };
 
-enum class PictureKind { png, exr };
+enum class PictureKind { png, exr, jpeg, hdr };
 
-// By the file's extension.
+// What the bytes are, told by the first of them, whatever the file is called.
+std::optional<PictureKind> sniff_picture(std::string_view bytes);
+
+// By the file's extension, for writing: PNG or EXR.
 Result<PictureKind> picture_kind(const std::filesystem::path& path);
 
 // Replaces `path` whole or not at all. PNG has 8 bits a channel and no alpha; EXR has 32-bit floats and alpha.
 Status write_picture(const std::filesystem::path& path, const Picture& picture);
 
-// PNG or EXR, told by their first bytes; at most 16384 pixels in each direction. Missing alpha reads as 1.
+// Any of the four kinds, told by the first bytes. Missing alpha reads as 1.
 Result<Picture> read_picture(const std::filesystem::path& path);
+// At most `side` pixels in each direction: what is larger is refused before it is decoded.
+inline constexpr std::uint32_t picture_side_limit = 16384;
+Result<Picture> decode_picture(std::string_view bytes);
+
+// Eight bits a channel, RGBA, rows from the top; what textures are made from.
+struct BytePicture {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> pixels;
+    bool linear = false; // EXR and HDR: values are not display values (and are cut off at 1)
+};
+Result<BytePicture> decode_bytes(std::string_view bytes);
+
+// RGBA with 8 bits a channel as PNG.
+Result<std::string> encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& pixels);
 
 } // namespace sunfleck::io

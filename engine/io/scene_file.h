@@ -1,17 +1,34 @@
-// Scene files (.scene.json): a glTF file plus what glTF has no words for, by node name.
+// Scene files (.scene.json): a glTF file plus what glTF has no words for, by node name. Versioned; a checksum tells
+// damage. docs/scene.schema.json describes them.
 //
-//     { "sunfleck_scene": 1, "gltf": "room.glb",
-//       "entities": { "lamp": { "AreaLight": { "shape": "rectangle", "width": 1, ... } } } }
+//     { "sunfleck_scene": 2, "gltf": "room.glb",
+//       "entities": { "lamp": { "AreaLight": { "shape": "rectangle", "width": 1, ... } } },
+//       "settings": { "lights": 600 } }
 #pragma once
 
 #include "engine/io/gltf.h"
 
 namespace sunfleck::io {
 
-// Loads a .gltf, .glb or .scene.json file into an empty registry and brings world transforms up to date.
-Result<ImportReport> load_scene(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes);
+// Loads a .gltf, .glb or .scene.json file into an empty registry and brings world transforms and deformed meshes up to
+// date. On failure nothing has been added.
+Result<ImportReport> load_scene(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
+                                scene::TextureStore& textures, const ImportOptions& options = {});
 
-// Writes `path` (.scene.json) and, beside it, the .glb file of the same name. Names of entities must differ.
-Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes);
+struct SaveOptions {
+    // Names a glTF file (relative to the scene file) that holds the geometry and is left as it is; transforms,
+    // materials, cameras and lights, which may differ from it, go into the scene file. Empty: a .glb file is written.
+    std::string gltf_reference;
+    std::map<std::string, std::string> settings; // of the lighting, by name
+};
+
+// Writes `path` (.scene.json) and, without a reference, a .glb file of the same name (or with `.2`, so that the files
+// of the last save are whole until the new ones are). Names of entities must differ. At any moment, even if the process
+// is killed or the disk is full, the old scene or the new one can be loaded.
+Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
+                  const scene::TextureStore& textures, const SaveOptions& options = {});
+
+// JSON schema of scene files, from the descriptions of components.
+std::string scene_file_schema();
 
 } // namespace sunfleck::io

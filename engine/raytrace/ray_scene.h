@@ -5,6 +5,7 @@
 #include "engine/core/result.h"
 #include "engine/scene/components.h"
 #include "engine/scene/mesh_store.h"
+#include "engine/scene/texture_store.h"
 
 #include <array>
 #include <memory>
@@ -17,6 +18,9 @@ struct Ray {
     vec3 direction{0.0f, 0.0f, 1.0f}; // need not be unit length; distances are multiples of it
     float minimum = 0.0f;
     float maximum = 1e30f;
+    // Blended surfaces let a ray through by chance, in proportion to their transparency; the same ray with another salt
+    // takes another chance.
+    std::uint32_t salt = 0;
 };
 
 struct Hit {
@@ -31,8 +35,7 @@ struct SurfacePoint {
     vec3 position{0.0f};
     vec3 geometric_normal{0.0f}; // of the triangle's front side
     vec3 shading_normal{0.0f};   // interpolated, on the geometric normal's side
-    const scene::Material* material = nullptr;
-    vec3 base_colour{0.8f}; // of the material, or of its pattern at this point
+    scene::Material material;    // at this point: with its textures and pattern
     ecs::Entity entity;
 };
 
@@ -54,7 +57,9 @@ public:
 
     // Follows the registry: builds what is new, moves movers, drops what is gone. World transforms must be up to date.
     // The static scene is rebuilt only if static geometry changed.
-    Status update(ecs::Registry& registry, const scene::MeshStore& meshes);
+    // Masked and blended surfaces have their holes for all rays. Without `textures`, surfaces are as if they had none.
+    Status update(ecs::Registry& registry, const scene::MeshStore& meshes,
+                  const scene::TextureStore* textures = nullptr);
 
     std::optional<Hit> closest_hit(const Ray& ray, Scope scope = Scope::everything) const;
     bool occluded(const Ray& ray, Scope scope = Scope::everything) const;
@@ -62,6 +67,8 @@ public:
     std::uint32_t occluded(const ShadowPacket& packet, Scope scope = Scope::everything) const;
 
     SurfacePoint surface(const Ray& ray, const Hit& hit) const;
+    // Radiance that an entity's triangle emits on its front at a place (weights of the second and third corner).
+    vec3 emission_at(ecs::Entity entity, std::uint32_t primitive, float u, float v) const;
 
     // How often static geometry was built, for tests of "built once".
     std::uint32_t static_builds() const;

@@ -9,14 +9,17 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 // The final tone-mapped picture has a pipeline of its own, without the other views.
 layout(constant_id = 0) const uint final_only = 0;
+// Emission has an image of its own, and is not the same all over a surface.
+layout(constant_id = 1) const uint textured_emission = 0;
 layout(set = 0, binding = 0) uniform sampler2D irradiance_image;
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform usampler2D surface_image;
 layout(set = 0, binding = 4) uniform sampler2D albedo_image;
 layout(set = 0, binding = 5) uniform sampler2D motion_image;
-layout(set = 0, binding = 6) readonly buffer Rows { InstanceRow rows[]; };
-layout(set = 0, binding = 7) writeonly uniform image2D output_image;
+layout(set = 0, binding = 6) uniform sampler2D emission_image;
+layout(set = 0, binding = 7) readonly buffer Rows { InstanceRow rows[]; };
+layout(set = 0, binding = 8) writeonly uniform image2D output_image;
 layout(push_constant) uniform Constants { CompositionConstants constants; };
 
 const float pi = 3.14159265358979;
@@ -26,7 +29,10 @@ vec3 surface_radiance(ivec2 pixel, uint surface) {
     const vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
     vec3 radiance = albedo * irradiance * (1.0 / pi);
     if ((surface & surface_emits) != 0u)
-        radiance += rows[(surface & surface_row_mask) - 1u].emission.rgb;
+        radiance += textured_emission != 0 ? texelFetch(emission_image, pixel, 0).rgb
+                                           : rows[(surface & surface_row_mask) - 1u].emission.rgb;
+    if ((surface & surface_unlit) != 0u)
+        radiance = radiance_from_display(albedo, constants.exposure);
     return radiance;
 }
 

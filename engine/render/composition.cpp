@@ -8,14 +8,14 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
     CompositionPass pass;
     gpu::ComputeDescription description;
     description.shader = "engine/render/composition.comp";
-    description.bindings.assign(6, gpu::BindingKind::sampled_image);
+    description.bindings.assign(7, gpu::BindingKind::sampled_image);
     description.bindings.push_back(gpu::BindingKind::storage_buffer);
     description.bindings.push_back(gpu::BindingKind::storage_image);
     description.push_constant_bytes = sizeof(shared::CompositionConstants);
-    description.specialization = {0};
-    SUNFLECK_ASSIGN(pass.pipeline_, pipelines.compute(description));
-    description.specialization = {1};
-    SUNFLECK_ASSIGN(pass.final_pipeline_, pipelines.compute(description));
+    for (std::uint32_t variant = 0; variant < 4; ++variant) {
+        description.specialization = {variant >> 1, variant & 1};
+        SUNFLECK_ASSIGN(pass.pipelines_[variant >> 1][variant & 1], pipelines.compute(description));
+    }
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.sampler_), "creating a sampler");
     return pass;
@@ -31,7 +31,8 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
                                       g_buffer.albedo,
                                       // bound, but not read, where there is none
-                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo};
+                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo,
+                                      g_buffer.emission.valid() ? g_buffer.emission : g_buffer.albedo};
     auto pass = graph.add_pass("composition");
     for (const gpu::ResourceId id : inputs)
         pass.read(id, gpu::Usage::sampled);
@@ -44,7 +45,8 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     constants.sky_red = input.sky.x;
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
-    const gpu::Pipeline* kernel = input.view == shared::view_final && input.tone_map ? final_pipeline_ : pipeline_;
+    const bool final = input.view == shared::view_final && input.tone_map;
+    const gpu::Pipeline* kernel = pipelines_[final ? 1 : 0][g_buffer.emission.valid() ? 1 : 0];
     pass.write(output, gpu::Usage::storage_write)
         .execute([this, &scene, kernel, output, constants,
                   inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {

@@ -23,8 +23,8 @@ public:
     void destroy(gpu::Device& device);
 
 private:
-    const gpu::Pipeline* pipeline_ = nullptr;
-    const gpu::Pipeline* final_pipeline_ = nullptr; // the final tone-mapped picture only
+    // [the final tone-mapped picture only][emission has an image]
+    const gpu::Pipeline* pipelines_[2][2] = {};
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 

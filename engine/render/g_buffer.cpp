@@ -7,21 +7,40 @@
 
 namespace sunfleck::render {
 
-Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
-    gpu::GraphicsDescription description;
-    description.vertex_shader = "engine/render/g_buffer.vert";
-    description.fragment_shader = "engine/render/g_buffer.frag";
+namespace {
+
+// Surfaces with textures read more of a vertex, and three textures.
+void describe_kind(std::uint32_t kind, gpu::GraphicsDescription& description) {
+    const bool textured = kind >= scene::surface_kind_textured;
+    description.vertex_shader = textured ? "engine/render/g_buffer_textured.vert" : "engine/render/g_buffer.vert";
+    description.fragment_shader = textured ? "engine/render/g_buffer_textured.frag" : "engine/render/g_buffer.frag";
     description.bindings = {gpu::BindingKind::uniform_buffer, gpu::BindingKind::storage_buffer};
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}, {1, VK_FORMAT_R32G32B32_SFLOAT, 12}};
-    description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
-    description.depth_format = depth_format;
+    description.specialization = {kind};
+    if (!textured)
+        return;
+    description.bindings.push_back(gpu::BindingKind::storage_buffer);
+    description.bindings.insert(description.bindings.end(), 3, gpu::BindingKind::sampled_image);
+    description.attributes.push_back({2, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
+    description.attributes.push_back({3, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
+    description.attributes.push_back({4, VK_FORMAT_R8G8B8A8_UNORM, 4});
+    description.specialization = {kind == scene::surface_kind_holes ? 1u : 0u};
+}
+
+} // namespace
+
+Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     GBufferPass pass;
-    for (std::uint32_t kind = 0; kind < pattern_kinds; ++kind) {
-        description.specialization = {kind};
-        description.colour_formats = {normals_format, surface_format, albedo_format, motion_format};
-        SUNFLECK_ASSIGN(pass.with_motion_[kind], pipelines.graphics(description));
-        description.colour_formats.pop_back();
-        SUNFLECK_ASSIGN(pass.without_motion_[kind], pipelines.graphics(description));
+    gpu::GraphicsDescription description;
+    description.depth_format = depth_format;
+    for (std::uint32_t kind = 0; kind < scene::surface_kinds; ++kind) {
+        describe_kind(kind, description);
+        description.colour_formats = {normals_format, surface_format, albedo_format};
+        SUNFLECK_ASSIGN(pass.pipelines_[nothing][kind], pipelines.graphics(description));
+        description.colour_formats.push_back(motion_format);
+        SUNFLECK_ASSIGN(pass.pipelines_[motion][kind], pipelines.graphics(description));
+        description.colour_formats.push_back(emission_format);
+        SUNFLECK_ASSIGN(pass.pipelines_[motion_and_emission][kind], pipelines.graphics(description));
     }
     return pass;
 }
@@ -44,6 +63,10 @@ bool outside(const mat4& view_projection, const Bounds& bounds) {
     return left == 8 || right == 8 || below == 8 || above == 8 || behind == 8;
 }
 
+bool same_bindings(const scene::DrawItem& a, const scene::DrawItem& b) {
+    return a.kind == b.kind && std::equal(std::begin(a.textures), std::end(a.textures), std::begin(b.textures));
+}
+
 // What the camera may see, nearest first: what is hidden by then is not shaded.
 std::vector<const scene::DrawItem*> visible_from(const shared::CameraRow& camera,
                                                  const std::vector<scene::DrawItem>& draws) {
@@ -64,7 +87,7 @@ std::vector<const scene::DrawItem*> visible_from(const shared::CameraRow& camera
 } // namespace
 
 GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
-                         std::uint32_t width, std::uint32_t height, bool motion) const {
+                         std::uint32_t width, std::uint32_t height, bool with_motion) const {
     GBuffer target;
     target.width = width;
     target.height = height;
@@ -72,11 +95,15 @@ GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, c
     target.normals = graph.create_image("normals", normals_format, width, height);
     target.surface = graph.create_image("surface ids", surface_format, width, height);
     target.albedo = graph.create_image("albedo", albedo_format, width, height);
-    if (motion)
+    const bool emission = scene.has_emission_textures();
+    if (with_motion || emission)
         target.motion = graph.create_image("motion", motion_format, width, height);
+    if (emission)
+        target.emission = graph.create_image("emission", emission_format, width, height);
     auto pass = graph.add_pass("g-buffer");
-    if (motion)
-        pass.write(target.motion, gpu::Usage::colour_attachment);
+    for (const gpu::ResourceId extra : {target.motion, target.emission})
+        if (extra.valid())
+            pass.write(extra, gpu::Usage::colour_attachment);
     pass.write(target.depth, gpu::Usage::depth_attachment)
         .write(target.normals, gpu::Usage::colour_attachment)
         .write(target.surface, gpu::Usage::colour_attachment)
@@ -97,7 +124,11 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         attachment(target.normals, colour), attachment(target.surface, colour), attachment(target.albedo, colour)};
     if (target.motion.valid())
         colours.push_back(attachment(target.motion, colour));
-    const auto& pipelines = target.motion.valid() ? with_motion_ : without_motion_;
+    if (target.emission.valid())
+        colours.push_back(attachment(target.emission, colour));
+    const auto& pipelines = pipelines_[target.emission.valid() ? motion_and_emission
+                                       : target.motion.valid() ? motion
+                                                               : nothing];
     const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {target.width, target.height};
@@ -112,19 +143,26 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
     Status status;
     if (!scene.draws().empty()) {
-        const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
-        const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle()};
-        const VkDeviceSize offsets[] = {0, 0};
-        vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);
+        const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle(),
+                                    scene.texture_coordinates().handle(), scene.tangents().handle(),
+                                    scene.colours().handle()};
+        const VkDeviceSize offsets[5] = {};
+        vk.vkCmdBindVertexBuffers(context.commands, 0, 5, buffers, offsets);
         vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
         shared::CameraRow row;
         std::memcpy(&row, camera.data, sizeof row);
-        std::uint32_t bound = pattern_kinds;
+        const scene::DrawItem* bound = nullptr;
         for (const scene::DrawItem* item : visible_from(row, scene.draws())) {
-            const std::uint32_t kind = std::min(item->pattern, pattern_kinds - 1);
-            if (kind != bound && status)
-                status = context.resources.bind(context.commands, *pipelines[kind], bindings);
-            bound = kind;
+            if ((bound == nullptr || !same_bindings(*bound, *item)) && status) {
+                std::vector<gpu::Binding> bindings = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
+                if (item->kind >= scene::surface_kind_textured) {
+                    bindings.push_back(gpu::Binding::slice(scene.materials()));
+                    for (const std::int32_t texture : item->textures)
+                        bindings.push_back(scene.textures().binding(texture));
+                }
+                status = context.resources.bind(context.commands, *pipelines[item->kind], bindings);
+            }
+            bound = item;
             vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset,
                                 item->row);
         }

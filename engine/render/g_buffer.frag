@@ -21,6 +21,7 @@ layout(location = 0) out uvec2 out_normals; // x: shading normal, y: geometric n
 layout(location = 1) out uint out_surface;  // row + 1, and what instance_shared.h marks
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec2 out_motion;   // in units of the picture: where the point was, minus where it is
+layout(location = 4) out vec4 out_emission; // radiance, W/(sr m2)
 
 void main() {
     // Surfaces are two-sided: the geometric normal faces the camera, the shading normal is on its side.
@@ -34,7 +35,9 @@ void main() {
     out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
     const vec4 emission = rows[in_row].emission;
     out_surface = (in_row + 1u) | (emission.w > 0.0 ? surface_area_light : 0u) |
-                  (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u);
+                  (emission.r + emission.g + emission.b > 0.0 ? surface_emits : 0u) |
+                  (rows[in_row].material.y != 0u ? surface_unlit : 0u);
+    out_emission = vec4(emission.rgb, 1.0);
     vec3 albedo = rows[in_row].base_colour.rgb;
     if (pattern_kind != pattern_none) {
         const vec4 pattern = rows[in_row].pattern;

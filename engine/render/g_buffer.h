@@ -12,9 +12,11 @@ inline constexpr VkFormat normals_format = VK_FORMAT_R32G32_UINT; // shading, ge
 inline constexpr VkFormat surface_format = VK_FORMAT_R32_UINT;    // instance row + 1, 0 where nothing is
 inline constexpr VkFormat albedo_format = VK_FORMAT_R8G8B8A8_SRGB;
 inline constexpr VkFormat motion_format = VK_FORMAT_R16G16_SFLOAT;
+inline constexpr VkFormat emission_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 struct GBuffer {
     gpu::ResourceId depth, normals, surface, albedo, motion;
+    gpu::ResourceId emission; // radiance W/(sr m2), RGBA16F; only where some emission has a texture
     std::uint32_t width = 0, height = 0;
 };
 
@@ -23,17 +25,16 @@ public:
     static Result<GBufferPass> create(gpu::PipelineStore& pipelines);
 
     // Adds the pass that draws `scene` as seen by the camera in `camera` (a CameraRow). Without `motion` that image is
-    // left out (its id is not valid).
+    // left out (its id is not valid), unless emission needs an image, too.
     GBuffer add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                 std::uint32_t width, std::uint32_t height, bool motion = true) const;
 
 private:
     Status record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                   const GBuffer& target) const;
-    static constexpr std::uint32_t pattern_kinds = 5;
-    // By kind of pattern.
-    const gpu::Pipeline* with_motion_[pattern_kinds] = {};
-    const gpu::Pipeline* without_motion_[pattern_kinds] = {};
+    // What is written besides normals, surface and albedo.
+    enum Extra : std::uint32_t { nothing, motion, motion_and_emission, extras };
+    const gpu::Pipeline* pipelines_[extras][scene::surface_kinds] = {};
 };
 
 } // namespace sunfleck::render

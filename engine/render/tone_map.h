@@ -25,5 +25,12 @@ SHARED_FUNCTION vec3 display_from_radiance(vec3 radiance, float exposure) {
     return vec3(srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z));
 }
 
+// The radiance that a picture shows as the linear colour `shown`, 0 to 1.
+SHARED_FUNCTION vec3 radiance_from_display(vec3 shown, float exposure) {
+    const vec3 y = clamp(shown, vec3(0.0f), vec3(0.999f));
+    const vec3 a = vec3(2.51f) - 2.43f * y, b = vec3(0.03f) - 0.59f * y;
+    return (sqrt(b * b + 0.56f * a * y) - b) / (2.0f * a) / exposure;
+}
+
 SHARED_END
 #endif

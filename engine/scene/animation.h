@@ -22,13 +22,26 @@ struct AnimationCurve {
     vec4 at(float seconds) const;
 };
 
+// Weights of morph targets over time: `width` numbers a key; cubic_spline: three times as many.
+struct WeightCurve {
+    AnimationInterpolation interpolation = AnimationInterpolation::linear;
+    std::vector<float> times; // s, rising; empty: no curve
+    std::vector<float> values;
+    std::uint32_t width = 0;
+
+    std::vector<float> at(float seconds) const;
+};
+
 // Curves of one entity; they start anew after `duration`, which is the same for all entities of a clip.
 struct Animation {
     std::vector<AnimationCurve> curves;
+    WeightCurve weights;
     float duration = 0.0f; // s
 
     // Sets what the curves say; the rest of `transform` stays.
     void apply(double seconds, Transform& transform) const;
+    // Weights of morph targets at that time; empty without a curve of them.
+    std::vector<float> weights_at(double seconds) const;
 };
 
 } // namespace sunfleck::scene

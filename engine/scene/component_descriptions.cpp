@@ -48,7 +48,12 @@ const TypeDescription& Material::description() {
          SUNFLECK_FIELD(Material, emission, "W/(sr m2)", 0, 1e9, "Radiance emitted on the front side"),
          SUNFLECK_FIELD(Material, transmission, "", 0, 1, "Above 0: smooth glass"),
          SUNFLECK_FIELD(Material, index_of_refraction, "", 1, 4, "Of glass and of the dielectric layer"),
-         SUNFLECK_FIELD(Material, specular, "", 0, 1, "Adds a dielectric GGX layer")}};
+         SUNFLECK_FIELD(Material, specular, "", 0, 1, "Adds a dielectric GGX layer"),
+         SUNFLECK_CHOICE(Material, alpha_mode, "What alpha does: nothing, cut holes, or let light through", "opaque",
+                         "mask", "blend"),
+         SUNFLECK_FIELD(Material, alpha, "", 0, 1, "Share of light that the surface stops, times its texture's alpha"),
+         SUNFLECK_FIELD(Material, alpha_cutoff, "", 0, 1, "Below it, a masked surface has holes"),
+         SUNFLECK_FIELD(Material, unlit, "", 0, 1, "Shows its base colour whatever the light")}};
     return type;
 }
 

@@ -39,6 +39,9 @@ struct MeshInstance {
     static const TypeDescription& description();
 };
 
+// opaque: alpha is ignored. mask: what is below the cutoff is not there. blend: so much of the light is stopped.
+enum class AlphaMode : std::uint32_t { opaque, mask, blend };
+
 // BSDF of the entity's mesh: Lambertian and GGX as in glTF 2.0, or smooth glass where transmission is above zero.
 struct Material {
     vec3 base_colour{0.8f};
@@ -48,7 +51,43 @@ struct Material {
     float transmission = 0.0f;
     float index_of_refraction = 1.5f;
     bool specular = false; // dielectric GGX layer over the diffuse base; off: purely Lambertian unless metallic
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha = 1.0f;
+    float alpha_cutoff = 0.5f; // of mask
+    bool unlit = false;        // pictures show its base colour as it is; in light transport it is Lambertian
     static const TypeDescription& description();
+};
+
+// Which texture (index in the TextureStore) and where on it: KHR_texture_transform.
+struct TextureUse {
+    std::int32_t texture = -1; // -1: none
+    std::uint32_t set = 0;     // of the mesh's texture coordinates, 0 or 1
+    vec2 offset{0.0f}, scale{1.0f};
+    float rotation = 0.0f; // rad, counter-clockwise on the picture
+
+    explicit operator bool() const { return texture >= 0; }
+    // The transform as a matrix, columns first, for coordinates without offset.
+    glm::mat2 matrix() const {
+        const float c = std::cos(rotation), s = std::sin(rotation);
+        return glm::mat2(c * scale.x, -s * scale.x, s * scale.y, c * scale.y);
+    }
+    // `both`: the mesh's two sets.
+    vec2 coordinates(vec4 both) const {
+        return matrix() * (set == 0 ? vec2(both.x, both.y) : vec2(both.z, both.w)) + offset;
+    }
+    bool operator==(const TextureUse&) const = default;
+};
+
+// Textures that the values of the entity's Material are multiplied by, as in glTF 2.0.
+struct MaterialTextures {
+    TextureUse base_colour;        // rgb and alpha
+    TextureUse metallic_roughness; // blue and green
+    TextureUse normal;             // tangent space
+    TextureUse emission;           // rgb
+    TextureUse transmission;       // red
+    float normal_scale = 1.0f;     // of x and y
+    vec3 emission_average{1.0f};   // mean of the emission texture: what samplers take the mesh to emit
+    bool operator==(const MaterialTextures&) const = default;
 };
 
 struct Camera {

@@ -3,29 +3,49 @@
 #include "engine/scene/mesh_detail.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace sunfleck::scene {
 namespace {
 
 template <typename T>
-Result<gpu::Buffer> make_geometry_buffer(gpu::Device& device, gpu::Submission& submission, const char* name,
-                                         const std::vector<T>& values, VkBufferUsageFlags usage) {
+Result<gpu::Buffer> make_geometry_buffer(gpu::Device& device, const char* name, const std::vector<T>& values,
+                                         VkBufferUsageFlags usage) {
     gpu::BufferDescription description;
     description.name = name;
     description.size = values.size() * sizeof(T);
     description.usage = usage | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    SUNFLECK_ASSIGN(gpu::Buffer buffer, gpu::Buffer::create(device, description));
-    SUNFLECK_TRY(gpu::upload_now(device, submission, buffer, std::as_bytes(std::span(values))));
-    return buffer;
+    return gpu::Buffer::create(device, description);
+}
+
+std::uint32_t packed_colour(vec4 colour) {
+    const glm::uvec4 bytes(glm::round(glm::clamp(colour, 0.0f, 1.0f) * 255.0f));
+    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
+}
+
+void memory_barrier(gpu::PassContext& context, VkPipelineStageFlags2 from, VkAccessFlags2 written,
+                    VkPipelineStageFlags2 to, VkAccessFlags2 read) {
+    VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr, from, written, to, read};
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &memory;
+    context.device.vk.vkCmdPipelineBarrier2(context.commands, &dependency);
+}
+
+shared::TextureRow texture_row(const TextureUse& use) {
+    const glm::mat2 m = use.matrix();
+    return {vec4(m[0], m[1]), vec4(use.offset, float(use.set), 0.0f)};
 }
 
 } // namespace
 
-Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission) {
-    if (ranges_.size() == meshes.size() && positions_)
-        return {};
-    std::vector<vec3> positions, normals;
-    std::vector<std::uint32_t> indices;
+Status GpuScene::update_textures(const TextureStore& textures, gpu::Submission& submission) {
+    return textures_.update(textures, submission);
+}
+
+GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
+    Geometry geometry;
+    auto& [positions, normals, coordinates, tangents, colours, indices] = geometry;
     ranges_.clear();
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
         const Mesh& mesh = meshes[i];
@@ -34,9 +54,20 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
                            std::uint32_t(mesh.positions.size()),
                            std::int32_t(positions.size()),
                            {},
-                           false});
+                           false,
+                           meshes.revision(i)});
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
+        // Meshes without these take room for them all the same: one offset serves all buffers.
+        const auto append = [&](std::vector<vec4>& target, const std::vector<vec4>& values, vec4 missing) {
+            target.insert(target.end(), values.begin(), values.end());
+            target.resize(positions.size(), missing);
+        };
+        append(coordinates, mesh.texture_coordinates, vec4(0.0f));
+        append(tangents, mesh.tangents, vec4(1.0f, 0.0f, 0.0f, 1.0f));
+        for (const vec4 colour : mesh.colours)
+            colours.push_back(packed_colour(colour));
+        colours.resize(positions.size(), 0xffffffffu);
         indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
         const std::vector<MeshDetail> details = make_mesh_details(mesh);
         ranges_.back().closed = is_closed(details.front().indices);
@@ -46,14 +77,43 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
             indices.insert(indices.end(), detail.indices.begin(), detail.indices.end());
         }
     }
+    return geometry;
+}
+
+Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission) {
+    if (ranges_.size() == meshes.size() && positions_)
+        return {};
+    const Geometry geometry = gather(meshes);
     SUNFLECK_TRY(device_.wait_idle());
-    SUNFLECK_ASSIGN(positions_, make_geometry_buffer(device_, submission, "mesh positions", positions,
-                                                     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-    SUNFLECK_ASSIGN(normals_, make_geometry_buffer(device_, submission, "mesh normals", normals,
-                                                   VK_BUFFER_USAGE_VERTEX_BUFFER_BIT));
-    SUNFLECK_ASSIGN(
-        indices_, make_geometry_buffer(device_, submission, "mesh indices", indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT));
-    return {};
+    const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
+                          VkBufferUsageFlags usage) -> Status {
+        SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));
+        return gpu::upload_now(device_, submission, target, std::as_bytes(std::span(values)));
+    };
+    return for_each_buffer(geometry, make);
+}
+
+Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources) {
+    if (ranges_.size() == meshes.size() && positions_)
+        return {};
+    const Geometry geometry = gather(meshes);
+    staged_.clear();
+    const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
+                          VkBufferUsageFlags usage) -> Status {
+        if (target)
+            resources.retire(std::move(target));
+        SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));
+        gpu::BufferDescription description;
+        description.name = "mesh upload";
+        description.size = values.size() * sizeof values[0];
+        description.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        description.memory = gpu::MemoryUse::upload;
+        SUNFLECK_ASSIGN(gpu::Buffer staging, gpu::Buffer::create(device_, description));
+        std::memcpy(staging.mapped(), values.data(), values.size() * sizeof values[0]);
+        staged_.push_back({std::make_shared<gpu::Buffer>(std::move(staging)), &target});
+        return {};
+    };
+    return for_each_buffer(geometry, make);
 }
 
 Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources) {
@@ -63,6 +123,12 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
     for (auto& [entity, previous] : previous_)
         previous.seen = false;
     std::vector<shared::InstanceRow> rows;
+    std::vector<shared::MaterialRow> materials;
+    copies_.clear();
+    has_emission_textures_ = false;
+    for (std::uint32_t mesh = 0; mesh < ranges_.size(); ++mesh)
+        if (ranges_[mesh].revision != meshes.revision(mesh))
+            SUNFLECK_TRY(update_vertices(mesh, meshes, resources));
     registry.view<MeshInstance, WorldTransform>().each(
         [&](ecs::Entity entity, const MeshInstance& instance, const WorldTransform& transform) {
             if (instance.mesh >= ranges_.size())
@@ -93,7 +159,8 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
 
             Previous& previous = previous_[entity];
             const bool known = !previous.bounds.empty();
-            item.moved = !known || previous.model != transform.matrix;
+            item.moved =
+                !known || previous.model != transform.matrix || previous.revision != meshes.revision(instance.mesh);
             item.previous_bounds = previous.bounds;
             shared::InstanceRow row{};
             row.model = transform.matrix;
@@ -101,13 +168,16 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             row.normal_matrix = mat4(normal_matrix(transform.matrix));
             row.base_colour = vec4(surface.base_colour, 0.0f);
             if (const SurfacePattern* pattern = registry.try_get<SurfacePattern>(entity)) {
-                item.pattern = std::uint32_t(pattern->kind);
+                item.kind = std::uint32_t(pattern->kind);
                 row.pattern = vec4(pattern->colour, pattern->scale);
                 row.inverse_model = glm::inverse(transform.matrix);
             }
             row.emission = vec4(surface.emission, registry.has<AreaLight>(entity) ? 1.0f : 0.0f);
+            row.material.y = surface.unlit ? 1 : 0;
+            if (meshes[instance.mesh].is_textured() || surface.alpha_mode != AlphaMode::opaque)
+                describe_surface(registry, entity, surface, item, row, materials);
             rows.push_back(row);
-            previous = {transform.matrix, item.bounds, true};
+            previous = {transform.matrix, item.bounds, meshes.revision(instance.mesh), true};
             draws_.push_back(item);
         });
     std::erase_if(previous_, [&](const auto& entry) {
@@ -116,6 +186,92 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
         return !entry.second.seen;
     });
     SUNFLECK_ASSIGN(rows_, resources.upload(std::span<const shared::InstanceRow>(rows)));
+    if (materials.empty())
+        materials.emplace_back(); // bound, but not read
+    SUNFLECK_ASSIGN(materials_, resources.upload(std::span<const shared::MaterialRow>(materials)));
+    return {};
+}
+
+void GpuScene::describe_surface(ecs::Registry& registry, ecs::Entity entity, const Material& material, DrawItem& item,
+                                shared::InstanceRow& row, std::vector<shared::MaterialRow>& materials) {
+    item.kind = material.alpha_mode == AlphaMode::opaque ? surface_kind_textured : surface_kind_holes;
+    row.material.x = std::uint32_t(materials.size());
+    shared::MaterialRow target{};
+    static const MaterialTextures none;
+    const MaterialTextures* found = registry.try_get<MaterialTextures>(entity);
+    const MaterialTextures& textures = found != nullptr ? *found : none;
+    target.base_colour = texture_row(textures.base_colour);
+    target.normal = texture_row(textures.normal);
+    target.emission = texture_row(textures.emission);
+    target.factors = vec4(material.alpha, material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : -1.0f,
+                          textures.normal ? textures.normal_scale : 0.0f, textures.emission ? 1.0f : 0.0f);
+    item.textures[0] = textures.base_colour.texture;
+    item.textures[1] = textures.normal.texture;
+    item.textures[2] = textures.emission.texture;
+    has_emission_textures_ = has_emission_textures_ || (textures.emission && material.emission != vec3(0.0f));
+    materials.push_back(target);
+}
+
+Status GpuScene::update_vertices(std::uint32_t index, const MeshStore& meshes, gpu::FrameResources& resources) {
+    const Mesh& mesh = meshes[index];
+    MeshRange& range = ranges_[index];
+    VertexCopy copy;
+    SUNFLECK_ASSIGN(copy.positions, resources.upload(std::span<const vec3>(mesh.positions)));
+    SUNFLECK_ASSIGN(copy.normals, resources.upload(std::span<const vec3>(mesh.normals)));
+    copy.has_tangents = !mesh.tangents.empty();
+    if (copy.has_tangents) {
+        SUNFLECK_ASSIGN(copy.tangents, resources.upload(std::span<const vec4>(mesh.tangents)));
+    }
+    copy.first = std::uint32_t(range.vertex_offset);
+    copies_.push_back(copy);
+    range.revision = meshes.revision(index);
+    // Simplified triangles are of the mesh at rest; they are not exact for any other pose, and may be off by much.
+    range.details.resize(1);
+    return {};
+}
+
+void GpuScene::add_passes(gpu::FrameGraph& graph) {
+    if (!staged_.empty())
+        graph.add_pass("mesh upload").keep().execute([this](gpu::PassContext& context) {
+            return copy_staged(context);
+        });
+    if (!copies_.empty())
+        graph.add_pass("deformed vertices").keep().execute([this](gpu::PassContext& context) {
+            return copy_vertices(context);
+        });
+}
+
+// Vertex buffers are no resources of the graph: nothing else writes them. The barriers are here.
+Status GpuScene::copy_vertices(gpu::PassContext& context) const {
+    const VolkDeviceTable& vk = context.device.vk;
+    memory_barrier(context, VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, 0, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                   VK_ACCESS_2_TRANSFER_WRITE_BIT);
+    const auto copy_to = [&](const gpu::UploadSlice& source, const gpu::Buffer& target, VkDeviceSize offset) {
+        const VkBufferCopy region{source.offset, offset, source.size};
+        vk.vkCmdCopyBuffer(context.commands, source.buffer, target.handle(), 1, &region);
+    };
+    for (const VertexCopy& copy : copies_) {
+        copy_to(copy.positions, positions_, copy.first * sizeof(vec3));
+        copy_to(copy.normals, normals_, copy.first * sizeof(vec3));
+        if (copy.has_tangents)
+            copy_to(copy.tangents, tangents_, copy.first * sizeof(vec4));
+    }
+    memory_barrier(context, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT);
+    return {};
+}
+
+// New buffers: nothing has read them yet.
+Status GpuScene::copy_staged(gpu::PassContext& context) {
+    for (Staged& staged : staged_) {
+        const VkBufferCopy all{0, 0, staged.source->size()};
+        context.device.vk.vkCmdCopyBuffer(context.commands, staged.source->handle(), staged.target->handle(), 1, &all);
+        context.resources.retire(std::move(staged.source));
+    }
+    staged_.clear();
+    memory_barrier(context, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT,
+                   VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_2_INDEX_READ_BIT);
     return {};
 }
 

@@ -2,12 +2,16 @@
 // Whoever draws the scene (the G-buffer, shadow maps) shares it.
 #pragma once
 
+#include "engine/gpu/frame_graph.h"
 #include "engine/gpu/frame_resources.h"
 #include "engine/gpu/submission.h"
 #include "engine/scene/components.h"
+#include "engine/scene/gpu_textures.h"
 #include "engine/scene/instance_shared.h"
+#include "engine/scene/material_shared.h"
 #include "engine/scene/mesh_store.h"
 
+#include <memory>
 #include <span>
 #include <unordered_map>
 
@@ -19,6 +23,9 @@ struct DetailRange {
     float error = 0.0f; // m, in the mesh's space
 };
 
+// How a surface is shaded in the geometry pass; kinds below `textured` are patterns (pattern_shared.h).
+inline constexpr std::uint32_t surface_kind_textured = 5, surface_kind_holes = 6, surface_kinds = 7;
+
 struct DrawItem {
     ecs::Entity entity;
     std::uint32_t first_index = 0;
@@ -26,12 +33,13 @@ struct DrawItem {
     std::int32_t vertex_offset = 0;
     std::uint32_t row = 0;
     std::uint32_t vertex_count = 0;
-    std::span<const DetailRange> details; // from fine to coarse; the first is the whole mesh
-    bool closed = false;                  // and not mirrored: seen from outside, only front faces show
-    float scale = 1.0f;                   // greatest length of the model matrix's axes
-    Bounds bounds;                        // world space
-    std::uint32_t pattern = 0;            // kind (pattern_shared.h)
-    bool casts_shadow = true;             // movers only: static geometry always does
+    std::span<const DetailRange> details;    // from fine to coarse; the first is the whole mesh
+    bool closed = false;                     // and not mirrored: seen from outside, only front faces show
+    float scale = 1.0f;                      // greatest length of the model matrix's axes
+    Bounds bounds;                           // world space
+    std::uint32_t kind = 0;                  // of its surface
+    std::int32_t textures[3] = {-1, -1, -1}; // base colour, normal, emission
+    bool casts_shadow = true;                // movers only: static geometry always does
     bool is_static = true;
     // The bounds changed in the last update, or the item is new; previous_bounds is where it was (empty if new).
     bool moved = false;
@@ -40,18 +48,33 @@ struct DrawItem {
 
 class GpuScene {
 public:
-    explicit GpuScene(gpu::Device& device) : device_(device) {}
+    explicit GpuScene(gpu::Device& device) : device_(device), textures_(device) {}
 
     // Uploads meshes that are new in the store. Submits and waits when there are any: loading time, not frame time.
     Status update_meshes(const MeshStore& meshes, gpu::Submission& submission);
+    // The same without submitting anything: add_passes copies them in this frame. For hosts with loops of their own.
+    Status stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources);
+    Status update_textures(const TextureStore& textures, gpu::Submission& submission);
 
     // Rewrites the draw list and instance rows from the registry; call once a frame after update_world_transforms.
     Status update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources);
+
+    // Adds the pass that copies vertices of deformed meshes, if there are any; before whatever draws them.
+    void add_passes(gpu::FrameGraph& graph);
 
     const std::vector<DrawItem>& draws() const { return draws_; }
     const gpu::Buffer& positions() const { return positions_; }
     const gpu::Buffer& normals() const { return normals_; }
     const gpu::Buffer& indices() const { return indices_; }
+    // vec4 each: both sets of texture coordinates; tangent; colour as RGBA8.
+    const gpu::Buffer& texture_coordinates() const { return texture_coordinates_; }
+    const gpu::Buffer& tangents() const { return tangents_; }
+    const gpu::Buffer& colours() const { return colours_; }
+    const GpuTextures& textures() const { return textures_; }
+    // MaterialRows of this frame, by InstanceRow::material.x.
+    const gpu::UploadSlice& materials() const { return materials_; }
+    // Some surface's emission has a texture.
+    bool has_emission_textures() const { return has_emission_textures_; }
     // Rows of this frame, by DrawItem::row; a storage buffer slice.
     const gpu::UploadSlice& rows() const { return rows_; }
     // Box around all static geometry, and around everything.
@@ -66,15 +89,54 @@ private:
         std::int32_t vertex_offset;
         std::vector<DetailRange> details;
         bool closed = false;
+        std::uint32_t revision = 0; // that is on the GPU
     };
+    struct Staged {
+        std::shared_ptr<gpu::Buffer> source;
+        const gpu::Buffer* target = nullptr;
+    };
+    // All meshes in the form of the buffers.
+    struct Geometry {
+        std::vector<vec3> positions, normals;
+        std::vector<vec4> coordinates, tangents;
+        std::vector<std::uint32_t> colours, indices;
+    };
+    Geometry gather(const MeshStore& meshes);
+    struct VertexCopy {
+        gpu::UploadSlice positions, normals, tangents;
+        bool has_tangents = false;
+        std::uint32_t first = 0; // vertex
+    };
+    Status update_vertices(std::uint32_t mesh, const MeshStore& meshes, gpu::FrameResources& resources);
+    void describe_surface(ecs::Registry& registry, ecs::Entity entity, const Material& material, DrawItem& item,
+                          shared::InstanceRow& row, std::vector<shared::MaterialRow>& materials);
+    Status copy_vertices(gpu::PassContext& context) const;
+    Status copy_staged(gpu::PassContext& context);
+    // Calls make(buffer, its name, its values, its usage) for all of them.
+    template <typename Make>
+    Status for_each_buffer(const Geometry& geometry, const Make& make) {
+        constexpr VkBufferUsageFlags vertices = VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+        SUNFLECK_TRY(make(positions_, "mesh positions", geometry.positions, vertices));
+        SUNFLECK_TRY(make(normals_, "mesh normals", geometry.normals, vertices));
+        SUNFLECK_TRY(make(texture_coordinates_, "texture coordinates", geometry.coordinates, vertices));
+        SUNFLECK_TRY(make(tangents_, "mesh tangents", geometry.tangents, vertices));
+        SUNFLECK_TRY(make(colours_, "mesh colours", geometry.colours, vertices));
+        return make(indices_, "mesh indices", geometry.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+    }
     struct Previous {
         mat4 model{1.0f};
         Bounds bounds;
+        std::uint32_t revision = 0; // of the mesh
         bool seen = false;
     };
 
     gpu::Device& device_;
-    gpu::Buffer positions_, normals_, indices_;
+    GpuTextures textures_;
+    gpu::Buffer positions_, normals_, indices_, texture_coordinates_, tangents_, colours_;
+    gpu::UploadSlice materials_;
+    bool has_emission_textures_ = false;
+    std::vector<VertexCopy> copies_;
+    std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;
     std::vector<DrawItem> draws_;
     std::vector<Bounds> removed_bounds_;

@@ -12,15 +12,17 @@ struct InstanceRow {
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
     vec4 pattern;        // 224: rgb of the second colour; w: scale, m
     mat4 inverse_model;  // 240: world to object, for patterns
+    uvec4 material;      // 304: x: row of the material buffer, for textured surfaces
 };
 
 // A surface id in the G-buffer: instance row + 1 in the low bits; 0 where nothing is.
-SHARED_CONSTANT uint surface_row_mask = 0x3fffffffu;
+SHARED_CONSTANT uint surface_row_mask = 0x1fffffffu;
 SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an AreaLight
 SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
+SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour whatever the light
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::InstanceRow) == 304);
+static_assert(sizeof(sunfleck::shared::InstanceRow) == 320);
 #endif
 #endif

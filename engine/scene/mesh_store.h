@@ -1,8 +1,10 @@
-// Triangle meshes, by index. Meshes are added and never change, so whoever has seen N of them has seen those for good.
+// Triangle meshes, by index. Meshes are added and keep their triangles; the vertices of deforming ones are replaced,
+// and a revision tells who derives things from them.
 #pragma once
 
 #include "engine/core/maths.h"
 
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,11 @@ struct Mesh {
     std::vector<vec3> positions;
     std::vector<vec3> normals; // one a vertex, unit length
     std::vector<std::uint32_t> indices;
+    // One a vertex, or empty.
+    std::vector<vec4> texture_coordinates; // xy: the first set, zw: the second
+    std::vector<vec4> tangents;            // xyz: along rising u, unit length; w: +1 or -1, sign of the bitangent
+    std::vector<vec4> colours;             // linear RGBA, multiplies the base colour
+
     Bounds bounds() const {
         Bounds result;
         for (const vec3 position : positions)
@@ -20,6 +27,7 @@ struct Mesh {
         return result;
     }
     std::size_t triangle_count() const { return indices.size() / 3; }
+    bool is_textured() const { return !texture_coordinates.empty() || !colours.empty(); }
 };
 
 class MeshStore {
@@ -27,15 +35,27 @@ public:
     std::uint32_t add(Mesh mesh) {
         bounds_.push_back(mesh.bounds());
         meshes_.push_back(std::move(mesh));
+        revisions_.push_back(0);
         return std::uint32_t(meshes_.size() - 1);
+    }
+    // New vertices for the same triangles.
+    void replace(std::uint32_t index, Mesh mesh) {
+        assert(mesh.positions.size() == meshes_[index].positions.size() &&
+               mesh.indices.size() == meshes_[index].indices.size());
+        bounds_[index] = mesh.bounds();
+        meshes_[index] = std::move(mesh);
+        ++revisions_[index];
     }
     const Mesh& operator[](std::uint32_t index) const { return meshes_[index]; }
     const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
+    // How often the vertices were replaced.
+    std::uint32_t revision(std::uint32_t index) const { return revisions_[index]; }
     std::uint32_t size() const { return std::uint32_t(meshes_.size()); }
 
 private:
     std::vector<Mesh> meshes_;
     std::vector<Bounds> bounds_;
+    std::vector<std::uint32_t> revisions_;
 };
 
 } // namespace sunfleck::scene

@@ -1,6 +1,7 @@
 #include "engine/simulation/path_movers.h"
 
 #include "engine/scene/animation.h"
+#include "engine/scene/deformation.h"
 #include "engine/scene/simulation_components.h"
 
 #include <cmath>
@@ -110,6 +111,13 @@ void set_movers_to_step(ecs::Registry& registry, std::uint64_t step) {
         if (next.position != transform.position || next.rotation != transform.rotation || next.scale != transform.scale)
             registry.patch<scene::Transform>(entity, [&](scene::Transform& t) { t = next; });
     });
+    registry.view<scene::Animation, scene::MorphWeights>().each(
+        [&](ecs::Entity entity, const scene::Animation& animation, const scene::MorphWeights& stored) {
+            std::vector<float> weights = animation.weights_at(seconds);
+            if (!weights.empty() && weights != stored.weights)
+                registry.patch<scene::MorphWeights>(
+                    entity, [&](scene::MorphWeights& target) { target.weights = std::move(weights); });
+        });
     scene::update_world_transforms(registry);
 }
 

@@ -150,12 +150,13 @@ void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrac
         const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
         if (bounce == 1)
             path.first_hit = point.position;
-        path.throughput *= point.base_colour;
+        path.throughput *= point.material.base_colour;
         sample.position = lift_sample(point.position, normal, rays, raytrace::Scope::static_only);
         sample.normal = shading;
         sample.bounce = bounce;
         // What a path stops with is nearly the same wherever it stops, within limits: no sample outshines the others.
-        const float largest = std::max({point.base_colour.x, point.base_colour.y, point.base_colour.z});
+        const float largest =
+            std::max({point.material.base_colour.x, point.material.base_colour.y, point.material.base_colour.z});
         const float stop = bounce == settings_.bounces ? 1.0f : std::clamp(1.0f - largest, 0.35f, 0.8f);
         const float u = random.next(), v = random.next();
         if (random.next() < stop) {

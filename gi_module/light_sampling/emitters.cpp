@@ -120,7 +120,13 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
             if (registry.has<scene::AreaLight>(entity) ||
                 (material.emission == vec3(0.0f) && !keep_dark.count(entity)) || instance.mesh >= meshes.size())
                 return;
-            add(entity, mesh_light(meshes[instance.mesh], material, world.matrix), world.matrix);
+            Emitter emitter = mesh_light(meshes[instance.mesh], material, world.matrix);
+            if (const auto* textures = registry.try_get<scene::MaterialTextures>(entity);
+                textures && textures->emission) {
+                emitter.radiance *= textures->emission_average;
+                emitter.textured = true;
+            }
+            add(entity, std::move(emitter), world.matrix);
         });
     registry.view<scene::PointLight, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::PointLight& light, const scene::WorldTransform& world) {
@@ -193,7 +199,8 @@ EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v) {
         const float root = std::sqrt(rest);
         const vec3* p = &emitter.corners[triangle * 3];
         return {p[0] + (root * (1.0f - v)) * (p[1] - p[0]) + (root * v) * (p[2] - p[0]),
-                glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0]))};
+                glm::normalize(glm::cross(p[1] - p[0], p[2] - p[0])), std::uint32_t(triangle), root * (1.0f - v),
+                root * v};
     }
     default:
         return {origin, forward_of(emitter.matrix)};

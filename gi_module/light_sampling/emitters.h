@@ -29,6 +29,7 @@ struct Emitter {
     // kind mesh: world-space triangles and the running sum of their areas
     std::vector<vec3> corners; // three a triangle
     std::vector<float> cumulative_area;
+    bool textured = false; // `radiance` is a mean
 
     // A point source or a direction: one sample carries all of it.
     bool is_delta() const {
@@ -40,6 +41,9 @@ struct Emitter {
 struct EmittedPoint {
     vec3 position{0.0f};
     vec3 normal{0.0f};
+    // Kind mesh: where on it; weights of the second and third corner.
+    std::uint32_t triangle = 0;
+    float u = 0.0f, v = 0.0f;
 };
 
 // Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or

@@ -121,8 +121,9 @@ std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::v
         const bool front = glm::dot(point.geometric_normal, ray.direction) < 0.0f;
         const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
         const vec3 shading_normal = front ? point.shading_normal : -point.shading_normal;
-        flux *= point.base_colour;
-        const float largest = std::max({point.base_colour.x, point.base_colour.y, point.base_colour.z});
+        flux *= point.material.base_colour;
+        const float largest =
+            std::max({point.material.base_colour.x, point.material.base_colour.y, point.material.base_colour.z});
         random.seek(8 + bounce * 4);
         const float u = random.next(), v = random.next(), survive = random.next();
         if (settings.termination == Termination::russian_roulette) {

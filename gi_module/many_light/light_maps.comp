@@ -21,7 +21,10 @@ vec3 unshadowed(LightRow light, vec3 position, vec3 normal) {
 }
 
 void main() {
-    const LightMapJob job = jobs[gl_WorkGroupID.x];
+    const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
+    if (number >= constants.jobs)
+        return;
+    const LightMapJob job = jobs[number];
     for (uint i = gl_LocalInvocationID.x; i < job.columns * job.rows; i += 64u) {
         const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
         const vec3 position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;

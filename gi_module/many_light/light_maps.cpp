@@ -8,7 +8,8 @@ namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
-constexpr std::uint32_t most_texels = 256;     // along a patch's side
+constexpr std::uint32_t most_texels = 256; // along a patch's side
+constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;
 constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
 constexpr float highest_sum = 1073741824.0f;   // of all samples at once: 2^30 leaves room in 32 bits
 
@@ -31,8 +32,27 @@ Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::P
 }
 
 Status LightMaps::lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources) {
+    // Large scenes get coarser maps: a shader sees so many bytes of a buffer, and no host has memory without end.
+    const std::uint64_t most = std::min(device_.traits().max_storage_range, most_bytes) / sizeof(glm::ivec4);
+    std::uint64_t total = place_maps(database, texel_side);
+    for (int i = 0; total > most && i < 64; ++i)
+        total = place_maps(database, texel_side *= 1.25f);
+    counters_.texels = total;
+    const std::uint64_t bytes = std::max<std::uint64_t>(total, 1) * sizeof(glm::ivec4);
+    if (texels_.size() >= bytes)
+        return {};
+    resources.retire(std::move(texels_));
+    SUNFLECK_ASSIGN(texels_,
+                    gpu::Buffer::create(device_, {"light maps", bytes,
+                                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    return {};
+}
+
+// Fills the rows of nodes; returns the number of texels.
+std::uint64_t LightMaps::place_maps(const VisibilityDatabase& database, float texel_side) {
     node_rows_.assign(database.patches().nodes().size(), {});
-    std::uint32_t next = 0;
+    std::uint64_t next = 0;
     for (std::size_t i = 0; i < node_rows_.size(); ++i) {
         const SurfacePatch& patch = database.patches().nodes()[i];
         shared::NodeRow& row = node_rows_[i];
@@ -46,19 +66,10 @@ Status LightMaps::lay_out(const VisibilityDatabase& database, float texel_side, 
         row.chart = patch.chart;
         row.columns = texels(patch.corners[0], patch.corners[1]);
         row.rows = texels(patch.corners[0], patch.corners[3]);
-        row.first_texel = next;
-        next += row.columns * row.rows;
+        row.first_texel = std::uint32_t(next);
+        next += std::uint64_t(row.columns) * row.rows;
     }
-    counters_.texels = next;
-    const std::uint64_t bytes = std::max<std::uint64_t>(next, 1) * sizeof(glm::ivec4);
-    if (texels_.size() >= bytes)
-        return {};
-    resources.retire(std::move(texels_));
-    SUNFLECK_ASSIGN(texels_,
-                    gpu::Buffer::create(device_, {"light maps", bytes,
-                                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
-    return {};
+    return next;
 }
 
 void LightMaps::add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear) {
@@ -171,9 +182,11 @@ Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resour
         .execute([this, jobs, changes, rows, count = std::uint32_t(jobs_.size())](gpu::PassContext& context) -> Status {
             const gpu::Binding bindings[] = {gpu::Binding::slice(jobs), gpu::Binding::slice(changes),
                                              gpu::Binding::slice(rows), gpu::Binding::buffer(texels_)};
+            const std::uint32_t row_length = std::min(count, 32768u);
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel_, bindings));
-            context.resources.push(context.commands, *kernel_, shared::LightMapConstants{fixed_point_});
-            context.device.vk.vkCmdDispatch(context.commands, count, 1, 1);
+            context.resources.push(context.commands, *kernel_,
+                                   shared::LightMapConstants{fixed_point_, count, row_length});
+            context.device.vk.vkCmdDispatch(context.commands, row_length, (count + row_length - 1) / row_length, 1);
             return {};
         });
     return {};

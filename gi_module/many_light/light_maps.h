@@ -46,6 +46,7 @@ public:
 
 private:
     explicit LightMaps(gpu::Device& device) : device_(device) {}
+    std::uint64_t place_maps(const VisibilityDatabase& database, float texel_side);
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
     void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
     bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,

@@ -22,7 +22,9 @@ struct LightMapJob {
 SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // in a change: subtract the sample instead of adding it
 
 struct LightMapConstants {
-    float fixed_point;
+    float fixed_point; // steps per W/m2
+    uint jobs;         // work groups lie in rows: a dispatch is limited in each direction
+    uint row_length;
 };
 
 SHARED_END

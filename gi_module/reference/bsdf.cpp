@@ -47,7 +47,8 @@ float fresnel_dielectric(float cosine, float eta) {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-Bsdf::Bsdf(const scene::Material& material, vec3 base_colour) {
+Bsdf::Bsdf(const scene::Material& material) {
+    const vec3 base_colour = material.base_colour;
     const float root = (material.index_of_refraction - 1.0f) / (material.index_of_refraction + 1.0f);
     diffuse_ = base_colour * (1.0f - material.metallic);
     has_specular_ = material.specular || material.metallic > 0.0f;

@@ -15,8 +15,7 @@ struct BsdfSample {
 
 class Bsdf {
 public:
-    // `base_colour`: the material's, or its pattern's at the point.
-    Bsdf(const scene::Material& material, vec3 base_colour);
+    explicit Bsdf(const scene::Material& material);
     // A Lambertian surface of albedo 1: what an irradiance meter has in place of a material.
     static Bsdf white();
 

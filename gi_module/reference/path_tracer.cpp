@@ -27,6 +27,12 @@ struct Frame {
     vec3 tangent, bitangent, normal;
 };
 
+// Emitters of mirrored meshes have their corners turned round.
+vec3 textured_emission(const raytrace::RayScene& rays, const Emitter& emitter, const EmittedPoint& point) {
+    const bool mirrored = glm::determinant(mat3(emitter.matrix)) < 0.0f;
+    return rays.emission_at(emitter.entity, point.triangle, mirrored ? point.v : point.u, mirrored ? point.u : point.v);
+}
+
 } // namespace
 
 // A surface that the path scatters at, seen from the side it came from.
@@ -41,7 +47,8 @@ struct PathTracer::Vertex {
 
 struct PathTracer::Path {
     RandomSequence random;
-    std::uint32_t bounces; // reflections still allowed after the first vertex
+    std::uint32_t bounces;  // reflections still allowed after the first vertex
+    std::uint32_t salt = 0; // of its rays
     vec3 throughput{1.0f};
     std::vector<vec3>* by_bounce = nullptr; // contributions are added here, by reflections, if set
     bool skip_direct = false;
@@ -73,7 +80,7 @@ PathTracer::PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emit
 }
 
 vec3 PathTracer::emitted(const raytrace::SurfacePoint& point, vec3 direction) const {
-    return glm::dot(point.geometric_normal, direction) < 0.0f ? point.material->emission : vec3(0.0f);
+    return glm::dot(point.geometric_normal, direction) < 0.0f ? point.material.emission : vec3(0.0f);
 }
 
 // Density, per solid angle, with which direct_light would have picked the point that a scattered ray has hit.
@@ -119,7 +126,8 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
             if (cosine <= 0.0f)
                 return vec3(0.0f);
             density = probability / emitter.area * squared / cosine;
-            light = emitter.radiance / density;
+            const bool textured = emitter.kind == EmitterKind::mesh && emitter.textured;
+            light = (textured ? textured_emission(rays_, emitter, point) : emitter.radiance) / density;
         }
     }
     const vec3 direction = glm::normalize(to_light);
@@ -132,7 +140,7 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     ++path.rays;
     const vec3 origin = vertex.position + offset_distance * vertex.geometric_normal;
     const vec3 target_point = emitter.kind == EmitterKind::directional ? origin + to_light : point.position;
-    if (rays_.occluded(raytrace::Ray{origin, target_point - origin, 0.0f, 1.0f - shadow_shortening}))
+    if (rays_.occluded(raytrace::Ray{origin, target_point - origin, 0.0f, 1.0f - shadow_shortening, path.salt}))
         return vec3(0.0f);
     const float weight =
         density > 0.0f ? power_heuristic(density, vertex.bsdf.density(vertex.outgoing, incoming)) : 1.0f;
@@ -162,7 +170,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
 
         const vec3 origin =
             vertex.position + (side > 0.0f ? offset_distance : -offset_distance) * vertex.geometric_normal;
-        const raytrace::Ray ray{origin, direction, 0.0f, 1e30f};
+        const raytrace::Ray ray{origin, direction, 0.0f, 1e30f, path.salt};
         ++path.rays;
         const auto hit = rays_.closest_hit(ray);
         if (!hit) {
@@ -191,7 +199,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
                         front ? point.geometric_normal : -point.geometric_normal,
                         frame,
                         frame.to_local(-direction),
-                        Bsdf(*point.material, point.base_colour),
+                        Bsdf(point.material),
                         front};
         // A shading normal that leans away from the viewer would make the surface vanish.
         vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
@@ -201,11 +209,12 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
 vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sample, const shared::CameraRow& camera,
                               const ReferenceSettings& settings, std::uint64_t& rays, std::uint8_t& covered) const {
     const std::uint32_t pixel_seed = hash_combine(settings.seed, y * 65536u + x);
-    Path path{RandomSequence(SequenceKind::sobol, pixel_seed, sample), settings.bounces};
+    Path path{RandomSequence(SequenceKind::sobol, pixel_seed, sample), settings.bounces, sample};
     vec2 centre(float(x) + 0.5f, float(y) + 0.5f);
     if (settings.antialiasing)
         centre += vec2(path.random.at(0), path.random.at(1)) - 0.5f;
-    const raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f};
+    const raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f,
+                            sample};
     ++rays;
     const auto hit = rays_.closest_hit(ray);
     const bool radiance = settings.view == ReferenceView::radiance;
@@ -227,7 +236,7 @@ vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sa
     if (path.skip_indirect)
         path.bounces = 0;
     trace(path, {point.position, front ? point.geometric_normal : -point.geometric_normal, frame, outgoing,
-                 radiance ? Bsdf(*point.material, point.base_colour) : Bsdf::white(), front});
+                 radiance ? Bsdf(point.material) : Bsdf::white(), front});
     rays += path.rays;
     // A white Lambertian surface reflects irradiance / pi.
     return radiance ? path.result + emitted(point, ray.direction) : path.result * pi;
@@ -277,7 +286,7 @@ std::vector<vec3> PathTracer::irradiance_by_bounce(vec3 position, vec3 normal, s
                                                    std::uint32_t samples, std::uint32_t seed) const {
     std::vector<vec3> sums(bounces + 1, vec3(0.0f));
     for (std::uint32_t s = 0; s < samples; ++s) {
-        Path path{RandomSequence(SequenceKind::sobol, seed, s), bounces};
+        Path path{RandomSequence(SequenceKind::sobol, seed, s), bounces, s};
         path.by_bounce = &sums;
         trace(path, {position, normal, Frame(normal), vec3(0.0f, 0.0f, 1.0f), Bsdf::white(), true});
     }

@@ -31,7 +31,9 @@ float support(const Bounds& bounds, vec3 origin, vec3 axis) {
 struct ShadowMaps::Chunk {
     gpu::UploadSlice jobs, lights, commands;
     std::uint32_t command_count = 0;
-    std::uint32_t culled_count = 0;   // the last of the commands draw faces towards the light only
+    std::uint32_t culled_count = 0; // of the commands, those after the plain ones draw faces towards the light only
+    // The last commands draw surfaces with holes, each with its texture.
+    std::vector<std::int32_t> hole_textures;
     std::vector<std::uint32_t> slots; // by layer
 };
 
@@ -50,6 +52,17 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
         SUNFLECK_ASSIGN(maps->pipelines16_[culled], pipelines.graphics(description));
         description.depth_format = depth_format(32);
         SUNFLECK_ASSIGN(maps->pipelines32_[culled], pipelines.graphics(description));
+    }
+    description.vertex_shader = "gi_module/shadows/shadow_map_holes.vert";
+    description.fragment_shader = "gi_module/shadows/shadow_map_holes.frag";
+    description.bindings.push_back(gpu::BindingKind::storage_buffer);
+    description.bindings.push_back(gpu::BindingKind::sampled_image);
+    description.attributes.push_back({1, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
+    description.attributes.push_back({2, VK_FORMAT_R8G8B8A8_UNORM, 4});
+    description.cull = VK_CULL_MODE_NONE;
+    for (const std::uint32_t bits : {16u, 32u}) {
+        description.depth_format = depth_format(bits);
+        SUNFLECK_ASSIGN(maps->hole_pipelines_[bits / 32], pipelines.graphics(description));
     }
     return maps;
 }
@@ -140,7 +153,7 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
         lights.push_back(request.light);
     }
     std::vector<shared::ShadowJob> jobs;
-    std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands;
+    std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands, hole_commands;
     std::vector<std::uint32_t> seen(requests.size());
     for (const scene::DrawItem& item : scene.draws()) {
         if (!item.casts_shadow ||
@@ -153,8 +166,10 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                 continue;
             const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
             seen[layer] |= faces;
-            const std::size_t level = (detail ? detail_level(requests[layer], item) : 0) * 2 +
-                                      (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
+            const bool has_holes = item.kind == scene::surface_kind_holes;
+            const std::size_t level = has_holes ? 0
+                                                : (detail ? detail_level(requests[layer], item) : 0) * 2 +
+                                                      (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
             for (std::uint32_t face = 0; faces >> face; ++face)
                 if ((faces >> face) & 1u)
                     by_level[level].push_back({layer | (face << 16) | (requests[layer].light_class << 20), item.row});
@@ -165,8 +180,11 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                 continue;
             const std::uint32_t first = std::uint32_t(jobs.size());
             jobs.insert(jobs.end(), by_level[level].begin(), by_level[level].end());
-            auto& list = level % 2 ? culled_commands : commands;
-            if (detail) {
+            const bool has_holes = item.kind == scene::surface_kind_holes;
+            auto& list = has_holes ? hole_commands : level % 2 ? culled_commands : commands;
+            if (has_holes)
+                chunk.hole_textures.push_back(item.textures[0]);
+            if (detail && !has_holes) {
                 const scene::DetailRange& range = item.details[level / 2];
                 list.push_back({range.index_count, count, range.first_index, item.vertex_offset, first});
                 counters.vertices += std::uint64_t(count) * range.vertex_count;
@@ -178,10 +196,11 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     }
     for (const std::uint32_t faces : seen)
         counters.faces += std::uint64_t(std::popcount(faces));
-    counters.draws += commands.empty() ? 0 : 1;
+    counters.draws += (commands.empty() ? 0 : 1) + hole_commands.size();
     chunk.command_count = std::uint32_t(commands.size() + culled_commands.size());
     chunk.culled_count = std::uint32_t(culled_commands.size());
     commands.insert(commands.end(), culled_commands.begin(), culled_commands.end());
+    commands.insert(commands.end(), hole_commands.begin(), hole_commands.end());
     SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
     SUNFLECK_ASSIGN(chunk.lights, resources.upload(std::span<const shared::LightRow>(lights)));
     SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(commands)));
@@ -271,7 +290,7 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
     const VolkDeviceTable& vk = context.device.vk;
     vk.vkCmdBeginRendering(context.commands, &rendering);
     Status status;
-    if (chunk.command_count > 0) {
+    if (chunk.command_count > 0 || !chunk.hole_textures.empty()) {
         const VkViewport viewport{0, 0, float(resolution_), float(resolution_), 0, 1};
         vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
         vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
@@ -294,9 +313,35 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
                 vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset + first,
                                             count, sizeof(VkDrawIndexedIndirectCommand));
         }
+        if (status)
+            status = draw_holes(context, scene, chunk);
     }
     vk.vkCmdEndRendering(context.commands);
     return status;
+}
+
+// Each surface with its texture bound.
+Status ShadowMaps::draw_holes(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const {
+    if (chunk.hole_textures.empty())
+        return {};
+    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::Pipeline& pipeline = *hole_pipelines_[bits_ == 16 ? 0 : 1];
+    const VkBuffer buffers[] = {scene.positions().handle(), scene.texture_coordinates().handle(),
+                                scene.colours().handle()};
+    const VkDeviceSize offsets[3] = {};
+    vk.vkCmdBindVertexBuffers(context.commands, 0, 3, buffers, offsets);
+    for (std::uint32_t i = 0; i < chunk.hole_textures.size(); ++i) {
+        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
+                                         gpu::Binding::slice(chunk.lights), gpu::Binding::slice(scene.materials()),
+                                         scene.textures().binding(chunk.hole_textures[i])};
+        SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings));
+        context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
+        vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer,
+                                    chunk.commands.offset +
+                                        (chunk.command_count + i) * sizeof(VkDrawIndexedIndirectCommand),
+                                    1, sizeof(VkDrawIndexedIndirectCommand));
+    }
+    return {};
 }
 
 Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer,

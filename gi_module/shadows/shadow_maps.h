@@ -83,11 +83,13 @@ private:
     Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
                        const gpu::Buffer& target, bool over_static);
     Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk, bool load) const;
+    Status draw_holes(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const;
     Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;
     const gpu::Pipeline* pipelines16_[2] = {}; // all faces; faces towards the light
     const gpu::Pipeline* pipelines32_[2] = {};
+    const gpu::Pipeline* hole_pipelines_[2] = {}; // 16 bits, 32 bits
     gpu::Buffer texels_, static_texels_;
     MapLayout layout_;
     gpu::Image staging_;

@@ -83,7 +83,11 @@ std::vector<Plane> planes_of_convex_body(const FlatMesh& mesh) {
     return planes;
 }
 
-MovingBlocker::MovingBlocker(const scene::Mesh& mesh) : local_bounds_(mesh.bounds()) {
+MovingBlocker::MovingBlocker(const scene::Mesh& mesh, bool solid) : local_bounds_(mesh.bounds()) {
+    if (!solid) {
+        place(mat4(1.0f));
+        return;
+    }
     const FlatMesh flat = find_planar_faces(mesh, mat4(1.0f));
     convex_ = !planes_of_convex_body(flat).empty();
     if (flat.faces.size() <= simple_polygons)
@@ -153,12 +157,15 @@ Blocking MovingBlocker::test(const OcclusionPyramid& pyramid) const {
     return any ? Blocking::partial : Blocking::none;
 }
 
-void StaticBlockers::add(const FlatMesh& mesh) {
+void StaticBlockers::add(const FlatMesh& mesh, bool porous) {
     std::uint32_t body = 0xffffffffu;
-    if (std::vector<Plane> planes = planes_of_convex_body(mesh); !planes.empty()) {
+    if (std::vector<Plane> planes = planes_of_convex_body(mesh); !planes.empty() && !porous) {
         body = std::uint32_t(bodies_.size());
         bodies_.push_back(std::move(planes));
     }
+    Bounds whole;
+    for (const dvec3& position : mesh.positions)
+        whole.add(vec3(position));
     for (const PlanarFace& face : mesh.faces)
         for (Polygon& polygon : convex_pieces(mesh, face)) {
             Bounds bounds;
@@ -168,6 +175,8 @@ void StaticBlockers::add(const FlatMesh& mesh) {
             normals_.push_back(area_vector(polygon));
             polygons_.push_back(std::move(polygon));
             body_of_.push_back(body);
+            porous_.push_back(porous ? 1 : 0);
+            sizes_.push_back(porous ? 0.0f : glm::length((body != 0xffffffffu ? whole : bounds).extent()));
         }
 }
 
@@ -186,6 +195,7 @@ std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t i = first; i < first + count; ++i) {
         bounds.add(bounds_[order_[i]]);
         centres.add(bounds_[order_[i]].centre());
+        nodes_[index].largest = std::max(nodes_[index].largest, sizes_[order_[i]]);
     }
     nodes_[index].bounds = bounds;
     if (count <= 4) {
@@ -217,7 +227,7 @@ bool StaticBlockers::visit_leaves(const Meets& meets, const Visit& visit) const 
     stack[depth++] = 0;
     while (depth > 0) {
         const Node& node = nodes_[stack[--depth]];
-        if (!meets(node.bounds))
+        if (!meets(node))
             continue;
         if (node.count == 0) {
             stack[depth++] = node.first;
@@ -231,13 +241,49 @@ bool StaticBlockers::visit_leaves(const Meets& meets, const Visit& visit) const 
     return false;
 }
 
+namespace {
+
+// How large something must be to hide the gate from the sample: as wide as the gate if the light is parallel, else a
+// multiple of its distance (the chord between the directions to the gate's points that are furthest apart).
+double least_cover(const OcclusionPyramid& pyramid) {
+    double largest = 0.0;
+    for (const dvec3& a : pyramid.gate_points())
+        for (const dvec3& b : pyramid.gate_points()) {
+            if (pyramid.parallel) {
+                const dvec3 apart = b - a;
+                largest = std::max(largest, glm::length(apart - glm::dot(apart, pyramid.apex) * pyramid.apex));
+                continue;
+            }
+            const dvec3 to_a = a - pyramid.apex, to_b = b - pyramid.apex;
+            const double lengths = glm::length(to_a) * glm::length(to_b);
+            if (lengths > 0.0) // half the angle's sine, from its cosine
+                largest = std::max(largest, std::sqrt(std::max(0.0, 2.0 - 2.0 * glm::dot(to_a, to_b) / lengths)));
+        }
+    return 0.999 * largest;
+}
+
+} // namespace
+
 Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
     bool any = false;
     std::uint32_t last_body = 0xffffffffu;
+    const double least = least_cover(pyramid);
+    const vec3 apex(pyramid.apex);
+    // Nothing of that size inside the bounds hides the gate. Two points of it, `size` apart and no nearer to the apex
+    // than `distance`, are seen under a chord of size / distance at most.
+    const auto too_small = [&](float size, const Bounds& bounds) {
+        if (pyramid.parallel)
+            return double(size) < least;
+        const double distance = double(glm::length(glm::clamp(apex, bounds.minimum, bounds.maximum) - apex));
+        return double(size) < least * distance * 0.999;
+    };
     const auto takes_all = [&](std::uint32_t polygon) {
-        if (!enters(pyramid, polygons_[polygon]))
+        const bool small = too_small(sizes_[polygon], bounds_[polygon]);
+        if ((any && small) || !enters(pyramid, polygons_[polygon]))
             return false;
         any = true;
+        if (small || porous_[polygon])
+            return false;
         if (covers_gate(pyramid, polygons_[polygon]))
             return true;
         const std::uint32_t body = body_of_[polygon];
@@ -246,7 +292,11 @@ Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
         last_body = body;
         return false;
     };
-    if (visit_leaves([&](const Bounds& bounds) { return may_enter(pyramid, bounds); }, takes_all))
+    // Once something takes part of the light, only what could take all of it matters.
+    const auto matters = [&](const Node& node) {
+        return !(any && too_small(node.largest, node.bounds)) && may_enter(pyramid, node.bounds);
+    };
+    if (visit_leaves(matters, takes_all))
         return Blocking::full;
     return any ? Blocking::partial : Blocking::none;
 }
@@ -260,7 +310,8 @@ bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Visit& visit)
     vec3 inverse;
     for (int axis = 0; axis < 3; ++axis)
         inverse[axis] = float(1.0 / (std::abs(along[axis]) > 1e-9 ? along[axis] : std::copysign(1e-9, along[axis])));
-    const auto meets = [&](const Bounds& bounds) {
+    const auto meets = [&](const Node& node) {
+        const Bounds& bounds = node.bounds;
         float enter = 0.0f, leave = 1.0f;
         for (int axis = 0; axis < 3; ++axis) {
             const float a = (bounds.minimum[axis] - wider - start[axis]) * inverse[axis];
@@ -301,7 +352,8 @@ bool StaticBlockers::covers(const OcclusionPyramid& pyramid) const {
     const dvec3 along = pyramid.parallel ? -1e4 * pyramid.apex : pyramid.apex - middle;
     return visit_crossing(middle, along, [&](std::uint32_t polygon) {
         const std::uint32_t body = body_of_[polygon];
-        return covers_gate(pyramid, polygons_[polygon]) || (body != 0xffffffffu && covers_gate(pyramid, bodies_[body]));
+        return !porous_[polygon] && (covers_gate(pyramid, polygons_[polygon]) ||
+                                     (body != 0xffffffffu && covers_gate(pyramid, bodies_[body])));
     });
 }
 

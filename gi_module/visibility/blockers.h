@@ -17,7 +17,8 @@ public:
     static constexpr std::size_t simple_polygons = 64;
 
     MovingBlocker() = default;
-    explicit MovingBlocker(const scene::Mesh& mesh);
+    // `solid`: it has no holes and keeps its shape; else it is taken as complex.
+    explicit MovingBlocker(const scene::Mesh& mesh, bool solid = true);
     // Brings it to where it is now.
     void place(const mat4& matrix);
 
@@ -44,8 +45,8 @@ private:
 // All static geometry: a tree of polygons.
 class StaticBlockers {
 public:
-    // Adds a mesh of static geometry; opaque on both sides.
-    void add(const FlatMesh& mesh);
+    // Adds a mesh of static geometry; opaque on both sides, or porous: with holes, never all that blocks.
+    void add(const FlatMesh& mesh, bool porous = false);
     // Builds the tree. Nothing can be tested before.
     void build();
 
@@ -59,11 +60,13 @@ public:
 private:
     struct Node {
         Bounds bounds;
+        float largest = 0.0f;               // size of the largest polygon or its body
         std::uint32_t first = 0, count = 0; // of polygons in a leaf; in an inner node count is 0, first the left child
         std::uint32_t right = 0;
     };
     std::uint32_t build(std::uint32_t first, std::uint32_t count);
-    // Calls `visit` with the polygons of all leaves whose bounds `meets` accepts, until it returns true.
+    // Calls `visit` with the polygons of all leaves that `meets` accepts, as all nodes above them, until it returns
+    // true.
     template <typename Meets, typename Visit>
     bool visit_leaves(const Meets& meets, const Visit& visit) const;
     // Calls `visit` with polygons that cross the segment until it returns true.
@@ -73,6 +76,8 @@ private:
     std::vector<Polygon> polygons_;
     std::vector<std::vector<Plane>> bodies_; // convex closed bodies, by their planes (inside is positive)
     std::vector<std::uint32_t> body_of_;     // of a polygon; 0xffffffff: none
+    std::vector<std::uint8_t> porous_;       // of polygons
+    std::vector<float> sizes_;               // of polygons, or of the body that they belong to: a bound of the diameter
     std::vector<Bounds> bounds_;
     std::vector<dvec3> normals_; // of polygons, as long as their area is large
     std::vector<std::uint32_t> order_;

@@ -71,7 +71,8 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
             const FlatMesh flat = find_planar_faces(meshes[instance.mesh], world.matrix);
             if (!(flat.area > 0.0))
                 return;
-            blockers.add(flat);
+            const scene::Material* material = registry.try_get<scene::Material>(entity);
+            blockers.add(flat, material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
             add_instance(entity, flat, options);
         });
     blockers.build();

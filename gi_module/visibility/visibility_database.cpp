@@ -291,7 +291,8 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             present[place.entity.bits()] = &place;
     for (auto it = movers_.begin(); it != movers_.end();) {
         const auto found = present.find(it->first);
-        if (found != present.end() && found->second->mesh == it->second.mesh) {
+        if (found != present.end() && found->second->mesh == it->second.mesh &&
+            found->second->solid == it->second.solid) {
             ++it;
             continue;
         }
@@ -307,12 +308,15 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         const auto found = movers_.find(bits);
         const bool added = found == movers_.end();
         Mover& mover = movers_[bits];
-        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks)
+        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks &&
+            mover.revision == place->revision)
             continue;
         if (added) {
             mover.entity = place->entity;
             mover.mesh = place->mesh;
-            mover.blocker = MovingBlocker(meshes[place->mesh]);
+            mover.solid = place->solid;
+            mover.revision = place->revision;
+            mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
             mover.footprint.resize(samples_.size());
             auto free = std::find(mover_slots_.begin(), mover_slots_.end(), ecs::null_entity);
             if (free == mover_slots_.end())
@@ -323,6 +327,9 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         } else if (mover.blocks) {
             mark_affected(mover_node(mover.entity));
         }
+        if (mover.revision != place->revision)
+            mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
+        mover.revision = place->revision;
         mover.blocks = place->blocks;
         mover.matrix = place->matrix;
         mover.blocker.place(place->matrix);

@@ -37,7 +37,9 @@ struct MoverPlace {
     ecs::Entity entity;
     std::uint32_t mesh = 0;
     mat4 matrix{1.0f};
-    bool blocks = true; // false: it is lit, but casts no shadow
+    bool blocks = true;         // false: it is lit, but casts no shadow
+    bool solid = true;          // false: it has holes, or changes its shape
+    std::uint32_t revision = 0; // of the mesh
 };
 
 struct PairChange {
@@ -110,6 +112,8 @@ private:
     struct Mover {
         ecs::Entity entity;
         std::uint32_t mesh = 0;
+        std::uint32_t revision = 0;
+        bool solid = true;
         std::uint32_t slot = 0;
         mat4 matrix{1.0f};
         bool blocks = true;

@@ -136,7 +136,7 @@ TEST(Bsdf, SamplingAgreesWithEvaluationAndEnergyIsConserved) {
                     material.roughness = roughness;
                     material.metallic = metallic;
                     material.specular = specular;
-                    const Bsdf bsdf(material, material.base_colour);
+                    const Bsdf bsdf(material);
                     const vec3 outgoing(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
                     double sampled = 0, uniform = 0, density = 0;
                     const int count = 1 << 16;

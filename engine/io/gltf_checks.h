@@ -1,0 +1,23 @@
+// Checks of a glTF file's JSON before anything else reads it.
+#pragma once
+
+#include "engine/core/result.h"
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+namespace sunfleck::io {
+
+inline constexpr std::size_t nesting_limit = 256; // of JSON, and of the node hierarchy
+
+// False: recursive parsers would run out of stack.
+bool nesting_is_sane(std::string_view json);
+
+// Version, types of sections, references between them, the node graph (a forest: each node has at most one parent),
+// overlapping buffer views, extensions that are required. The message names the place.
+Status check_gltf_json(const nlohmann::json& file);
+
+// Extensions that the import understands.
+bool is_known_extension(std::string_view name);
+
+} // namespace sunfleck::io

@@ -1,0 +1,218 @@
+#include "engine/io/gltf_document.h"
+
+#include "engine/core/file.h"
+#include "engine/io/gltf_checks.h"
+#include "engine/io/uri.h"
+
+#include <algorithm>
+#include <cstring>
+#include <meshoptimizer.h>
+
+namespace sunfleck::io {
+namespace {
+
+using nlohmann::json;
+
+struct Chunks {
+    std::string json;
+    std::string binary;
+    bool is_binary = false;
+};
+
+std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+// glTF 2.0, sec. 4: a header of 12 bytes, then chunks with length and type; JSON first, then at most one BIN.
+Result<Chunks> split_chunks(std::string bytes) {
+    Chunks chunks;
+    chunks.is_binary = bytes.compare(0, 4, "glTF") == 0;
+    if (!chunks.is_binary) {
+        chunks.json = std::move(bytes);
+        return chunks;
+    }
+    constexpr std::uint32_t json_type = 0x4e4f534au, binary_type = 0x004e4942u;
+    if (bytes.size() < 20 || word_at(bytes, 4) != 2)
+        return Error{"it is not a GLB file of version 2"};
+    const std::size_t end = word_at(bytes, 8);
+    if (end > bytes.size())
+        return Error{"it is cut off: " + std::to_string(end) + " bytes are announced, " + std::to_string(bytes.size()) +
+                     " are there"};
+    for (std::size_t at = 12; at + 8 <= end;) {
+        const std::size_t length = word_at(bytes, at);
+        const std::uint32_t type = word_at(bytes, at + 4);
+        if (length > end - at - 8)
+            return Error{"a chunk reaches past the end of the file"};
+        if (at == 12) {
+            if (type != json_type)
+                return Error{"its first chunk is not JSON"};
+            chunks.json = bytes.substr(at + 8, length);
+        } else if (type == binary_type && chunks.binary.empty()) {
+            chunks.binary = bytes.substr(at + 8, length);
+        }
+        at += 8 + (length + 3) / 4 * 4;
+    }
+    return chunks;
+}
+
+// Bytes of a buffer: a URI's, the binary chunk's, or none where compressed views stand in for it.
+Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& chunks,
+                                 const std::filesystem::path& folder) {
+    const std::string place = "buffer " + std::to_string(index);
+    const auto length_entry = buffer.find("byteLength");
+    if (length_entry == buffer.end() || !length_entry->is_number_integer() || length_entry->get<std::int64_t>() < 1)
+        return Error{place + " has no valid length"};
+    const std::uint64_t length = length_entry->get<std::uint64_t>();
+    const auto uri = buffer.find("uri");
+    std::string bytes;
+    if (uri != buffer.end()) {
+        if (!uri->is_string())
+            return Error{place + " has a URI that is not text"};
+        auto read = read_uri(uri->get_ref<const std::string&>(), folder);
+        if (!read)
+            return Error{place + ": " + read.error().message};
+        bytes = std::move(*read);
+    } else if (buffer.contains("extensions") && buffer["extensions"].contains("EXT_meshopt_compression")) {
+        return std::string(); // a stand-in for programs that cannot decompress
+    } else if (index == 0 && chunks.is_binary) {
+        bytes = std::move(chunks.binary);
+    } else {
+        return Error{place + " has no URI"};
+    }
+    if (bytes.size() < length)
+        return Error{place + " has " + std::to_string(bytes.size()) + " bytes; " + std::to_string(length) +
+                     " are announced"};
+    bytes.resize(length);
+    return bytes;
+}
+
+// Takes out of the JSON what tinygltf shall not touch: where bytes come from, and what it would refuse.
+json for_tinygltf(const json& file) {
+    json reduced = file;
+    reduced.erase("images");
+    if (reduced.contains("buffers"))
+        for (json& buffer : reduced["buffers"])
+            buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+    if (reduced.contains("meshes"))
+        for (json& mesh : reduced["meshes"])
+            if (mesh.contains("primitives"))
+                for (json& primitive : mesh["primitives"])
+                    if (primitive.is_object() && primitive.contains("extensions") &&
+                        primitive["extensions"].contains("KHR_draco_mesh_compression"))
+                        primitive.erase("indices"); // its accessor has no view
+    return reduced;
+}
+
+int number_of(const tinygltf::Value& object, const char* key, int fallback) {
+    return object.Has(key) && object.Get(key).IsNumber() ? object.Get(key).GetNumberAsInt() : fallback;
+}
+
+std::string text_of(const tinygltf::Value& object, const char* key) {
+    return object.Has(key) && object.Get(key).IsString() ? object.Get(key).Get<std::string>() : std::string();
+}
+
+// EXT_meshopt_compression: the view's bytes come from another buffer, compressed.
+Status decompress_view(tinygltf::Model& model, std::size_t index) {
+    tinygltf::BufferView& view = model.bufferViews[index];
+    const tinygltf::Value& source = view.extensions.at("EXT_meshopt_compression");
+    const Error invalid{"buffer view " + std::to_string(index) + " is not valid EXT_meshopt_compression"};
+    const int buffer = number_of(source, "buffer", -1), offset = number_of(source, "byteOffset", 0),
+              length = number_of(source, "byteLength", 0), stride = number_of(source, "byteStride", 0),
+              count = number_of(source, "count", 0);
+    if (!in_range(buffer, model.buffers) || offset < 0 || length <= 0 || stride <= 0 || stride > 256 || count <= 0 ||
+        std::size_t(count) > element_limit)
+        return invalid;
+    const std::vector<unsigned char>& data = model.buffers[std::size_t(buffer)].data;
+    if (std::size_t(offset) > data.size() || std::size_t(length) > data.size() - std::size_t(offset))
+        return invalid;
+    // Each block of 16 elements has a header of its own: more elements than this cannot come from so few bytes.
+    if (std::size_t(count) > std::size_t(length) * 256)
+        return invalid;
+    const unsigned char* bytes = data.data() + offset;
+    const std::size_t elements = std::size_t(count), size = std::size_t(stride);
+    std::vector<unsigned char> plain(elements * size);
+    const std::string mode = text_of(source, "mode"), filter = text_of(source, "filter");
+    int failed = 1;
+    if (mode == "ATTRIBUTES" && size % 4 == 0)
+        failed = meshopt_decodeVertexBuffer(plain.data(), elements, size, bytes, std::size_t(length));
+    else if (mode == "TRIANGLES" && elements % 3 == 0 && (size == 2 || size == 4))
+        failed = meshopt_decodeIndexBuffer(plain.data(), elements, size, bytes, std::size_t(length));
+    else if (mode == "INDICES" && (size == 2 || size == 4))
+        failed = meshopt_decodeIndexSequence(plain.data(), elements, size, bytes, std::size_t(length));
+    if (failed != 0)
+        return invalid;
+    if (filter == "OCTAHEDRAL" && (size == 4 || size == 8))
+        meshopt_decodeFilterOct(plain.data(), elements, size);
+    else if (filter == "QUATERNION" && size == 8)
+        meshopt_decodeFilterQuat(plain.data(), elements, size);
+    else if (filter == "EXPONENTIAL" && size % 4 == 0)
+        meshopt_decodeFilterExp(plain.data(), elements, size);
+    else if (!filter.empty() && filter != "NONE")
+        return invalid;
+    tinygltf::Buffer fresh;
+    fresh.data = std::move(plain);
+    view.buffer = int(model.buffers.size());
+    view.byteOffset = 0;
+    view.byteLength = fresh.data.size();
+    model.buffers.push_back(std::move(fresh));
+    return {};
+}
+
+Result<std::string> image_bytes(const json& image, const tinygltf::Model& model, const std::filesystem::path& folder) {
+    if (const auto uri = image.find("uri"); uri != image.end()) {
+        if (!uri->is_string())
+            return Error{"its URI is not text"};
+        return read_uri(uri->get_ref<const std::string&>(), folder);
+    }
+    if (!image.contains("bufferView"))
+        return Error{"it has neither a URI nor a buffer view"};
+    SUNFLECK_ASSIGN(const std::span<const unsigned char> bytes, view_bytes(model, image["bufferView"].get<int>()));
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+} // namespace
+
+Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder) {
+    if (bytes.empty())
+        return Error{"the file is empty"};
+    SUNFLECK_ASSIGN(Chunks chunks, split_chunks(std::move(bytes)));
+    if (!nesting_is_sane(chunks.json))
+        return Error{"its JSON is nested too deeply"};
+    const json file = json::parse(chunks.json, nullptr, false);
+    if (file.is_discarded())
+        return Error{"its JSON is not valid"};
+    SUNFLECK_TRY(check_gltf_json(file));
+    GltfDocument document;
+    tinygltf::TinyGLTF loader;
+    std::string error, warning;
+    const std::string reduced = for_tinygltf(file).dump(-1, ' ', false, json::error_handler_t::replace);
+    if (!loader.LoadASCIIFromString(&document.model, &error, &warning, reduced.data(), unsigned(reduced.size()), "")) {
+        error = error.substr(0, error.find('\n'));
+        return Error{error.empty() ? "it is not valid glTF" : error};
+    }
+    tinygltf::Model& model = document.model;
+    for (std::size_t i = 0; i < model.buffers.size(); ++i) {
+        SUNFLECK_ASSIGN(const std::string content, buffer_bytes(file["buffers"][i], i, chunks, folder));
+        model.buffers[i].data.assign(content.begin(), content.end());
+    }
+    for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
+        if (model.bufferViews[i].extensions.count("EXT_meshopt_compression"))
+            SUNFLECK_TRY(decompress_view(model, i));
+    if (const auto images = file.find("images"); images != file.end())
+        for (std::size_t i = 0; i < images->size(); ++i) {
+            auto content = image_bytes((*images)[i], model, folder);
+            if (!content)
+                return Error{"image " + std::to_string(i) + ": " + content.error().message};
+            document.images.push_back(std::move(*content));
+        }
+    return document;
+}
+
+Result<GltfDocument> read_gltf_document(const std::filesystem::path& path) {
+    SUNFLECK_ASSIGN(std::string bytes, read_file(path));
+    return parse_gltf_document(std::move(bytes), path.has_parent_path() ? path.parent_path() : ".");
+}
+
+} // namespace sunfleck::io

@@ -1,0 +1,38 @@
+// Images, samplers and materials of glTF (glTF 2.0, sec. 3.8 and 3.9) as textures and components.
+#pragma once
+
+#include "engine/io/gltf_document.h"
+#include "engine/scene/components.h"
+#include "engine/scene/texture_store.h"
+
+#include <functional>
+
+namespace sunfleck::io {
+
+struct ImportedMaterial {
+    scene::Material material;
+    scene::MaterialTextures textures;
+    bool has_textures = false;
+};
+
+// Decoded textures and materials, by the file's numbers.
+class MaterialImport {
+public:
+    // Decodes the images that materials use, on all cores. `progress` is called now and then with the share that is
+    // done and returns false to stop; it may be called by any thread, one at a time.
+    static Result<MaterialImport> read(const GltfDocument& document, const std::function<bool(float)>& progress);
+
+    // glTF's default material for -1.
+    const ImportedMaterial& material(int index) const;
+    // Moves the textures to the store; the textures of materials then are the store's.
+    void add_textures(scene::TextureStore& store);
+
+    std::vector<std::string> notes;
+
+private:
+    std::vector<scene::Texture> textures_;
+    std::vector<ImportedMaterial> materials_;
+    ImportedMaterial fallback_;
+};
+
+} // namespace sunfleck::io

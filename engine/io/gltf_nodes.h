@@ -1,0 +1,65 @@
+// Nodes of glTF as entities: transforms, instances, cameras, lights, skins (glTF 2.0, sec. 3.5, 3.7.3, 3.10).
+#pragma once
+
+#include "engine/io/gltf_materials.h"
+#include "engine/io/gltf_meshes.h"
+#include "engine/scene/animation.h"
+
+#include <map>
+#include <set>
+
+namespace sunfleck::io {
+
+struct ImportedSkin {
+    std::vector<int> joints; // nodes
+    std::vector<mat4> inverse_bind_matrices;
+};
+
+// What has been read of a file, by its numbers.
+struct GltfContent {
+    MaterialImport materials;
+    std::vector<std::vector<ImportedPrimitive>> meshes;
+    std::vector<ImportedSkin> skins;
+    std::map<int, scene::Animation> animations; // by node
+    int variant = -1;
+};
+
+class NodeImport {
+public:
+    // Checks all nodes; nothing can fail afterwards.
+    static Result<NodeImport> read(const tinygltf::Model& model, GltfContent content);
+    // Adds the trees under `roots`.
+    void add_to(ecs::Registry& registry, scene::MeshStore& meshes, scene::TextureStore& textures,
+                const std::vector<int>& roots);
+
+    const GltfContent& content() const { return content_; }
+    std::vector<std::string> notes;
+
+private:
+    NodeImport(const tinygltf::Model& model, GltfContent content) : model_(&model), content_(std::move(content)) {}
+    Status read_node(std::size_t index);
+    Status read_instances(std::size_t index);
+    void add_node(int index, ecs::Entity parent, bool visible);
+    void add_mesh(int index, ecs::Entity entity);
+    void add_primitive(int node, const ImportedPrimitive& primitive, std::size_t place, ecs::Entity entity);
+    void deform(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
+    void add_camera(const tinygltf::Camera& camera, ecs::Entity entity, const std::string& name);
+    void add_light(const tinygltf::Light& light, ecs::Entity entity);
+    void bind_skins();
+    std::string unique_name(const std::string& wanted);
+    ecs::Entity child_of(ecs::Entity parent, const std::string& name, const scene::Transform& transform);
+
+    const tinygltf::Model* model_;
+    GltfContent content_;
+    std::vector<scene::Transform> transforms_;
+    std::map<int, std::vector<scene::Transform>> instances_; // EXT_mesh_gpu_instancing, by node
+    // While adding.
+    ecs::Registry* registry_ = nullptr;
+    scene::MeshStore* meshes_ = nullptr;
+    std::vector<ecs::Entity> entities_; // by node
+    std::map<const ImportedPrimitive*, std::uint32_t> mesh_ids_;
+    std::vector<std::pair<ecs::Entity, int>> skinned_; // entity and skin
+    std::set<std::string> names_;
+};
+
+} // namespace sunfleck::io

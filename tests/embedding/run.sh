@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Installs the project from its build folder into a folder of its own, builds the foreign program against it as a user
+# would, and runs it. Usage: run.sh BUILD_FOLDER
+set -euo pipefail
+build=$1
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+work=$build/embedding
+rm -rf "$work/prefix"
+cmake --install "$build" --prefix "$work/prefix" >/dev/null
+cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" \
+    >"$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
+cmake --build "$work/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
+
+glue=$(sed -n '/\[sunfleck: begin\]/,/\[sunfleck: end\]/p' "$source/main.cpp" | sed '1d;$d')
+lines=$(grep -c . <<<"$glue")
+echo "$lines lines of glue"
+((lines <= 60)) || { echo "more than 60 lines of glue"; exit 1; }
+readme=$(sed -n '/<!-- embedding: begin -->/,/<!-- embedding: end -->/p' "$source/../../README.md" | sed '1,2d' | head -n -2)
+[[ "$readme" == "$glue" ]] || { echo "README.md does not show the glue of tests/embedding/main.cpp"; exit 1; }
+
+# The module needs Vulkan's loader, Embree, TBB and meshoptimizer, and nothing that draws windows or reads pictures.
+if ldd "$work/build/embedding" | grep -iE 'OpenImageIO|glfw|imgui|tinygltf|draco|libX11|libpng|libjpeg'; then
+    echo "the module links what an embedded library must not"
+    exit 1
+fi
+echo "links: $(readelf -d "$work/build/embedding" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | tr '\n' ' ')"
+"$work/build/embedding"
+"$work/prefix/bin/sunfleck" --help >/dev/null # installed programs find their libraries
+"$work/prefix/bin/sunfleck" info cornell >/dev/null # and their scenes

@@ -1,0 +1,314 @@
+// Damaged and hostile glTF files: one message that names the cause, soon, with little memory, and nothing half-loaded.
+#include "engine/core/random.h"
+#include "engine/io/image.h"
+#include "tests/support/gltf_files.h"
+
+#include <chrono>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+namespace sunfleck {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using tests::GltfBuilder;
+using tests::World;
+
+// The import fails, says why in one line, takes no long time and leaves nothing behind.
+std::string refused(const std::string& bytes) {
+    World world;
+    const auto start = std::chrono::steady_clock::now();
+    const auto report = world.import(bytes);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    EXPECT_LT(seconds.count(), 5.0);
+    EXPECT_FALSE(report);
+    EXPECT_EQ(world.registry.entity_count(), 0u);
+    EXPECT_EQ(world.meshes.size(), 0u);
+    EXPECT_EQ(world.textures.size(), 0u);
+    if (report)
+        return "accepted";
+    EXPECT_EQ(report.error().message.find('\n'), std::string::npos) << report.error().message;
+    EXPECT_LT(report.error().message.size(), 400u);
+    return report.error().message;
+}
+
+GltfBuilder good() {
+    GltfBuilder file;
+    file.add_square();
+    return file;
+}
+
+void expect_refused(const GltfBuilder& file, const std::string& cause) {
+    GltfBuilder copy = file;
+    EXPECT_NE(refused(copy.glb()).find(cause), std::string::npos) << refused(copy.glb()) << " should name: " << cause;
+}
+
+TEST(HostileFiles, GoodFileIsGood) {
+    EXPECT_TRUE(World().import(good().glb()));
+}
+
+TEST(HostileFiles, EveryPrefixOfAFile) {
+    const std::string bytes = good().glb();
+    for (std::size_t length = 0; length + 1 < bytes.size(); length += 7)
+        refused(bytes.substr(0, length));
+}
+
+TEST(HostileFiles, DeepJson) {
+    for (const std::string& open : {std::string("["), std::string("{\"a\":")}) {
+        std::string text;
+        for (int i = 0; i < 200000; ++i)
+            text += open;
+        EXPECT_NE(refused(text).find("nested"), std::string::npos);
+    }
+}
+
+TEST(HostileFiles, ReferencesOutOfRange) {
+    const auto with = [](const std::function<void(json&)>& change) {
+        GltfBuilder file = good();
+        change(file.file);
+        return file;
+    };
+    expect_refused(with([](json& f) { f["accessors"][0]["bufferView"] = 9; }), "accessors[0].bufferView");
+    expect_refused(with([](json& f) { f["bufferViews"][0]["buffer"] = 1; }), "bufferViews[0].buffer");
+    expect_refused(with([](json& f) { f["meshes"][0]["primitives"][0]["indices"] = -2; }), "indices");
+    expect_refused(with([](json& f) { f["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 77; }), "POSITION");
+    expect_refused(with([](json& f) { f["nodes"][0]["mesh"] = 1; }), "nodes[0].mesh");
+    expect_refused(with([](json& f) { f["nodes"][0]["children"] = {0}; }), "node 0");
+    expect_refused(with([](json& f) { f["scenes"][0]["nodes"] = {3}; }), "scenes[0].nodes[0]");
+    expect_refused(with([](json& f) { f["scene"] = 5; }), "default scene");
+    expect_refused(with([](json& f) { f["bufferViews"][0]["byteLength"] = 1000000; }), "outside its buffer");
+    expect_refused(with([](json& f) { f["bufferViews"][0]["byteLength"] = 40; }), "outside its buffer view");
+    expect_refused(with([](json& f) { f["bufferViews"][1]["byteOffset"] = 44; }), "overlap");
+    expect_refused(with([](json& f) { f["accessors"][1]["byteOffset"] = 1; }), "not aligned");
+}
+
+TEST(HostileFiles, CountsTypesAndVersions) {
+    const auto with = [](const std::function<void(json&)>& change) {
+        GltfBuilder file = good();
+        change(file.file);
+        return file;
+    };
+    expect_refused(with([](json& f) { f["accessors"][0]["count"] = std::int64_t(1) << 62; }), "elements");
+    expect_refused(with([](json& f) { f["accessors"][0]["count"] = 0; }), "elements");
+    expect_refused(with([](json& f) { f["accessors"][0]["count"] = "many"; }), "number");
+    expect_refused(with([](json& f) { f["accessors"][0]["type"] = "VEC9"; }), "");
+    expect_refused(with([](json& f) { f["accessors"][0]["type"] = "VEC2"; }), "type");
+    expect_refused(with([](json& f) { f["accessors"][0]["componentType"] = 5124; }), "");
+    expect_refused(with([](json& f) { f["accessors"][1]["componentType"] = 5126; }), "type");
+    expect_refused(with([](json& f) { f["nodes"] = 7; }), "nodes");
+    expect_refused(with([](json& f) { f["nodes"] = {1, 2}; }), "nodes");
+    expect_refused(with([](json& f) { f["nodes"][0]["rotation"] = {0, 0, 0, 0}; }), "rotation");
+    expect_refused(with([](json& f) { f["nodes"][0]["scale"] = {1e39, 1, 1}; }), "not finite");
+    expect_refused(with([](json& f) { f["nodes"][0]["translation"] = {"a", 1, 1}; }), "list of numbers");
+    expect_refused(with([](json& f) { f["asset"]["version"] = "1.0"; }), "glTF 1.0");
+    expect_refused(with([](json& f) { f.erase("asset"); }), "version");
+    expect_refused(with([](json& f) { f["extensionsRequired"] = {"VENDOR_secret"}; }), "VENDOR_secret");
+    expect_refused(with([](json& f) { f["meshes"][0]["primitives"][0]["mode"] = 9; }), "mode");
+}
+
+TEST(HostileFiles, NumbersThatAreNotFinite) {
+    for (const float value : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        GltfBuilder file = good();
+        std::memcpy(file.binary.data() + 8, &value, sizeof value);
+        expect_refused(file, "not finite");
+    }
+    GltfBuilder file = good();
+    const std::uint16_t index = 9;
+    std::memcpy(file.binary.data() + 48, &index, sizeof index);
+    expect_refused(file, "index 9");
+}
+
+TEST(HostileFiles, ZeroScalesAreNothingToSee) {
+    GltfBuilder file = good();
+    file.file["nodes"][0]["scale"] = {0, 0, 0};
+    World world;
+    EXPECT_TRUE(world.import(file.glb())); // valid, by the specification
+}
+
+TEST(HostileFiles, CyclesOfNodes) {
+    GltfBuilder file = good();
+    file.file["nodes"] = json::array({{{"children", {1}}}, {{"children", {2}}}, {{"children", {1}}}});
+    expect_refused(file, "two parents");
+    file.file["nodes"] = json::array({{{"mesh", 0}}, {{"children", {2}}}, {{"children", {1}}}});
+    expect_refused(file, "cycle");
+    json chain = json::array();
+    for (int i = 0; i < 1000; ++i)
+        chain.push_back({{"children", {i + 1}}});
+    chain.push_back({{"mesh", 0}});
+    file.file["nodes"] = chain;
+    expect_refused(file, "nested");
+}
+
+TEST(HostileFiles, Images) {
+    const auto with_image = [](const std::string& bytes) {
+        GltfBuilder file = good();
+        if (bytes.empty())
+            file.file["images"] = {{{"uri", "data:image/png;base64,"}}};
+        else
+            file.file["images"] = {{{"bufferView", file.view(bytes.data(), bytes.size())}}};
+        file.file["textures"] = {{{"source", 0}}};
+        file.file["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+        return file;
+    };
+    const std::string png = io::encode_png(2, 1, {1, 2, 3, 4, 5, 6, 7, 8}).value();
+    EXPECT_TRUE(World().import(with_image(png).glb()));
+    expect_refused(with_image(""), "image 0");
+    expect_refused(with_image("BM not one of ours"), "image 0");
+    expect_refused(with_image(png.substr(0, 30)), "image 0");
+    expect_refused(with_image(png.substr(0, png.size() - 20)), "image 0");
+    std::string huge = png; // claims 100,000 x 100,000
+    const unsigned char side[4] = {0, 1, 0x86, 0xa0};
+    std::memcpy(huge.data() + 16, side, 4);
+    std::memcpy(huge.data() + 20, side, 4);
+    expect_refused(with_image(huge), "image 0");
+    expect_refused(with_image("\xff\xd8\xff\xe0 not a JPEG"), "image 0");
+    expect_refused(with_image("#?RADIANCE\n\n-Y 100000 +X 100000\n"), "image 0");
+    expect_refused(with_image(std::string("\x76\x2f\x31\x01\x02\0\0\0junk", 12)), "image 0");
+}
+
+TEST(HostileFiles, UrisThatAreNotFilesBesideTheFile) {
+    const tests::Folder folder;
+    fs::create_directories(folder.path / "inner" / "directory.bin");
+    ASSERT_TRUE(write_file(folder.path / "secret.bin", std::string(64, 'x')));
+    ASSERT_TRUE(write_file(folder.path / "inner" / "odd n\xc3\xa4me.bin", std::string(64, '\0')));
+    ASSERT_EQ(mkfifo((folder.path / "inner" / "pipe.bin").c_str(), 0600), 0);
+    fs::create_symlink("../secret.bin", folder.path / "inner" / "link.bin");
+    const auto import = [&](const std::string& uri) {
+        GltfBuilder file = good();
+        file.file["buffers"] = {{{"byteLength", 60}, {"uri", uri}}};
+        EXPECT_TRUE(write_file(folder.path / "inner" / "file.gltf", file.file.dump()));
+        World world;
+        const auto start = std::chrono::steady_clock::now();
+        const auto report =
+            io::import_gltf(folder.path / "inner" / "file.gltf", world.registry, world.meshes, world.textures);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        EXPECT_LT(seconds.count(), 5.0) << uri;
+        return report ? std::string() : report.error().message;
+    };
+    EXPECT_EQ(import("odd%20n%C3%A4me.bin"), "");
+    EXPECT_EQ(import("./odd n\xc3\xa4me.bin"), "");
+    for (const std::string& uri :
+         std::vector<std::string>{"../secret.bin", "%2e%2e/secret.bin", "link.bin", "/etc/passwd",
+                                  "http://example.com/a.bin", "https://example.com/a.bin", "file:///etc/passwd",
+                                  "directory.bin", "pipe.bin", "missing.bin", "", "%zz.bin", "a\x01\x02.bin",
+                                  "data:application/octet-stream;base64,!!!!", "data:text/plain,hello", "/dev/zero"}) {
+        const std::string message = import(uri);
+        EXPECT_NE(message.find("file.gltf"), std::string::npos) << uri << ": " << message;
+        EXPECT_NE(message.find("buffer 0"), std::string::npos) << uri << ": " << message;
+    }
+    World world;
+    EXPECT_FALSE(io::import_gltf(folder.path, world.registry, world.meshes, world.textures)) << "a directory";
+    EXPECT_FALSE(io::import_gltf(folder.path / "none.glb", world.registry, world.meshes, world.textures));
+}
+
+// --- The mutation fuzzer -------------------------------------------------------------------------------------------
+
+// Whatever is accepted is sound: what draws and traces it may rely on this.
+void expect_sound(World& world, const std::string& what) {
+    for (std::uint32_t i = 0; i < world.meshes.size(); ++i) {
+        const scene::Mesh& mesh = world.meshes[i];
+        ASSERT_EQ(mesh.normals.size(), mesh.positions.size()) << what;
+        for (const std::uint32_t index : mesh.indices)
+            ASSERT_LT(index, mesh.positions.size()) << what;
+        for (const vec3 position : mesh.positions)
+            ASSERT_TRUE(is_finite(position)) << what;
+        for (const std::size_t optional : {mesh.texture_coordinates.size(), mesh.tangents.size(), mesh.colours.size()})
+            ASSERT_TRUE(optional == 0 || optional == mesh.positions.size()) << what;
+    }
+    world.registry.view<scene::Transform>().each([&](ecs::Entity, const scene::Transform& transform) {
+        ASSERT_TRUE(is_finite(transform.position) && is_finite(transform.scale)) << what;
+    });
+    world.registry.view<scene::MaterialTextures>().each([&](ecs::Entity, const scene::MaterialTextures& textures) {
+        ASSERT_LT(textures.base_colour.texture, std::int32_t(world.textures.size())) << what;
+        ASSERT_LT(textures.normal.texture, std::int32_t(world.textures.size())) << what;
+    });
+}
+
+// Files of all kinds that the importer reads; large ones are left out, so that many cases fit into the time.
+std::vector<std::string> seeds() {
+    std::vector<std::string> result = {good().glb(), good().file.dump()};
+    for (const char* folder : {SUNFLECK_SOURCE_DIR "/tests/corpus", "/usr/share/assimp/models/glTF2"}) {
+        std::error_code code;
+        std::vector<fs::path> paths;
+        for (const auto& entry : fs::recursive_directory_iterator(folder, code))
+            if (entry.is_regular_file() && entry.file_size() < 300000 &&
+                (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf"))
+                paths.push_back(entry.path());
+        std::sort(paths.begin(), paths.end());
+        for (const fs::path& path : paths)
+            if (const auto bytes = read_file(path); bytes && World().import(*bytes))
+                result.push_back(*bytes);
+    }
+    return result;
+}
+
+std::string mutated(std::string bytes, std::uint32_t seed) {
+    std::uint32_t counter = 0;
+    const auto random = [&](std::size_t limit) {
+        return std::size_t(pcg_hash(hash_combine(seed, ++counter))) % std::max<std::size_t>(limit, 1);
+    };
+    static const std::vector<std::string> words = {"-1",    "0",    "4294967296", "4611686018427387904",
+                                                   "1e39",  "-0.0", "[]",         "{}",
+                                                   "null",  "true", "\"\"",       "\"../x\"",
+                                                   "65535", "5126", "1e400"};
+    // Half of the cases keep the file's length: what frames the content stays whole, and more gets past it.
+    const std::size_t changes = 1 + random(3), kinds = random(2) == 0 ? 2 : 6;
+    for (std::size_t i = 0; i < changes && !bytes.empty(); ++i) {
+        const std::size_t at = random(bytes.size());
+        switch (random(kinds)) {
+        case 0:
+            bytes[at] = char(random(256));
+            break;
+        case 1:
+            bytes[at] = char(bytes[at] ^ (1 << random(8)));
+            break;
+        case 2:
+            bytes.erase(at, random(40));
+            break;
+        case 3:
+            bytes.insert(at, bytes.substr(random(bytes.size()), random(60)));
+            break;
+        case 4:
+            bytes.resize(at);
+            break;
+        default: { // a number of the JSON becomes something else
+            const std::size_t digit = bytes.find_first_of("0123456789", at);
+            if (digit == std::string::npos)
+                break;
+            const std::size_t end = bytes.find_first_not_of("0123456789.eE+-", digit);
+            bytes.replace(digit, (end == std::string::npos ? bytes.size() : end) - digit, words[random(words.size())]);
+        }
+        }
+    }
+    return bytes;
+}
+
+TEST(HostileFiles, TwoThousandMutations) {
+    const std::vector<std::string> files = seeds();
+    int accepted = 0, rejected = 0;
+    for (std::uint32_t i = 0; i < 2000; ++i) {
+        const std::string bytes = mutated(files[i % files.size()], i);
+        World world;
+        const auto start = std::chrono::steady_clock::now();
+        const auto report = world.import(bytes);
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        EXPECT_LT(seconds.count(), 5.0) << "case " << i;
+        if (report) {
+            ++accepted;
+            expect_sound(world, "case " + std::to_string(i));
+        } else {
+            ++rejected;
+            EXPECT_EQ(world.registry.entity_count(), 0u) << "case " << i;
+            EXPECT_FALSE(report.error().message.empty());
+        }
+    }
+    EXPECT_GT(accepted, 20) << "mutations that all fail early test little";
+    EXPECT_GT(rejected, 500);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    std::printf("%d accepted, %d rejected, %ld MB at most\n", accepted, rejected, usage.ru_maxrss / 1024);
+}
+
+} // namespace
+} // namespace sunfleck

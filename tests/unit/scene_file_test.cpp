@@ -1,0 +1,270 @@
+// Scene files: what is saved comes back, damage is told, and no interruption loses both the old and the new.
+#include "assets/test_rooms.h"
+#include "engine/core/random.h"
+#include "tests/support/gltf_files.h"
+
+#include <csignal>
+#include <filesystem>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+namespace sunfleck::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(SceneFiles, EverySceneComesBackAsItWas) {
+    const Folder folder;
+    for (const assets::BuiltInScene& built_in : assets::built_in_scenes()) {
+        ecs::Registry before, after;
+        scene::MeshStore meshes, read;
+        scene::TextureStore textures;
+        assets::SceneBuilder builder(before, meshes);
+        built_in.make(builder);
+        const fs::path file = folder.path / (std::string(built_in.name) + ".scene.json");
+        ASSERT_TRUE(io::save_scene(file, before, meshes, textures));
+        const auto report = io::load_scene(file, after, read, textures);
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_TRUE(report->notes.empty());
+        int compared = 0;
+        before.view<scene::Name>().each([&](ecs::Entity old_entity, const scene::Name& name) {
+            const ecs::Entity entity = scene::find_by_name(after, name.name);
+            ASSERT_FALSE(entity.is_null()) << name.name;
+            ++compared;
+            const auto near = [](vec3 a, vec3 b) { return glm::length(a - b) <= 1e-5f * (1.0f + glm::length(a)); };
+            if (const auto* t = before.try_get<scene::Transform>(old_entity)) {
+                const auto& u = after.get<scene::Transform>(entity);
+                EXPECT_TRUE(near(t->position, u.position) && near(t->scale, u.scale));
+                EXPECT_NEAR(std::abs(glm::dot(t->rotation, u.rotation)), 1.0f, 1e-5f);
+            }
+            if (const auto* m = before.try_get<scene::Material>(old_entity)) {
+                const auto& n = after.get<scene::Material>(entity);
+                EXPECT_TRUE(near(m->base_colour, n.base_colour) && near(m->emission, n.emission));
+                EXPECT_EQ(m->specular, n.specular);
+            }
+            if (const auto* m = before.try_get<scene::MeshInstance>(old_entity)) {
+                const scene::Mesh& a = meshes[m->mesh];
+                const scene::Mesh& b = read[after.get<scene::MeshInstance>(entity).mesh];
+                EXPECT_EQ(a.positions, b.positions);
+                EXPECT_EQ(a.normals, b.normals);
+                EXPECT_EQ(a.indices, b.indices);
+            }
+            if (const auto* c = before.try_get<scene::Camera>(old_entity)) {
+                EXPECT_NEAR(c->vertical_field_of_view, after.get<scene::Camera>(entity).vertical_field_of_view, 1e-6f);
+            }
+            if (const auto* m = before.try_get<scene::Mover>(old_entity)) {
+                { EXPECT_EQ(m->path, after.get<scene::Mover>(entity).path); }
+                EXPECT_EQ(m->period, after.get<scene::Mover>(entity).period);
+            }
+            if (const auto* l = before.try_get<scene::AreaLight>(old_entity)) {
+                EXPECT_EQ(l->radiance, after.get<scene::AreaLight>(entity).radiance);
+            }
+            if (const auto* l = before.try_get<scene::SpotLight>(old_entity)) {
+                EXPECT_TRUE(near(l->intensity, after.get<scene::SpotLight>(entity).intensity));
+            }
+        });
+        EXPECT_GT(compared, 2);
+    }
+}
+
+// Damaged files give an error or a scene, never a crash: every prefix, and bytes changed at random.
+TEST(SceneFiles, DamagedFilesAreErrors) {
+    const Folder folder;
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    scene::TextureStore textures;
+    assets::SceneBuilder builder(registry, meshes);
+    assets::make_gap_room(builder);
+    ASSERT_TRUE(io::save_scene(folder.path / "good.scene.json", registry, meshes, textures));
+    const std::string good = read_file(folder.path / "good.glb").value();
+    int errors = 0;
+    for (std::uint32_t i = 0; i < 300; ++i) {
+        std::string bad = good;
+        if (i < 100)
+            bad.resize(good.size() * i / 100);
+        else
+            for (std::uint32_t k = 0; k < 1 + i % 8; ++k)
+                bad[pcg_hash(i * 16 + k) % bad.size()] = char(pcg_hash(i * 31 + k));
+        ASSERT_TRUE(write_file(folder.path / "bad.glb", bad));
+        ecs::Registry target;
+        scene::MeshStore store;
+        const auto report = io::load_scene(folder.path / "bad.glb", target, store, textures);
+        if (!report) {
+            ++errors;
+            EXPECT_NE(report.error().message.find("bad.glb"), std::string::npos);
+            EXPECT_EQ(target.entity_count(), 0u) << "nothing half-loaded";
+        }
+    }
+    EXPECT_GT(errors, 100);
+    for (const std::string& text :
+         {std::string("{}"), std::string("[]"), std::string(200000, '['), std::string(),
+          std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"AreaLight":{"width":-1}}}})"),
+          std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"Nonsense":{}}}})"),
+          std::string(R"({"sunfleck_scene":1,"gltf":"../../etc/passwd"})")}) {
+        ASSERT_TRUE(write_file(folder.path / "bad.scene.json", text));
+        ecs::Registry target;
+        scene::MeshStore store;
+        EXPECT_FALSE(io::load_scene(folder.path / "bad.scene.json", target, store, textures)) << text.substr(0, 80);
+    }
+}
+
+// Every byte of a scene file and its .glb matters: one bit changed anywhere is told (or was in white space).
+TEST(SceneFiles, ChecksumsTellDamage) {
+    const Folder folder;
+    World world;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    assets::make_cornell(builder);
+    const fs::path path = folder.path / "box.scene.json";
+    ASSERT_TRUE(io::save_scene(path, world.registry, world.meshes, world.textures, {{}, {{"lights", "600"}}}));
+    const auto load = [&] {
+        World fresh;
+        return io::load_scene(path, fresh.registry, fresh.meshes, fresh.textures);
+    };
+    const auto report = load();
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->settings.at("lights"), "600");
+    for (const char* name : {"box.scene.json", "box.glb"}) {
+        const std::string good = read_file(folder.path / name).value();
+        for (std::uint32_t i = 0; i < 60; ++i) {
+            std::string bad = good;
+            const std::size_t at = pcg_hash(i) % bad.size();
+            if (std::isspace(static_cast<unsigned char>(bad[at])))
+                continue;
+            bad[at] = char(bad[at] ^ 1);
+            ASSERT_TRUE(write_file(folder.path / name, bad));
+            EXPECT_FALSE(load()) << name << ", byte " << at;
+        }
+        ASSERT_TRUE(write_file(folder.path / name, good));
+    }
+    EXPECT_TRUE(load());
+}
+
+// A scene that refers to a glTF file keeps what was changed, and leaves that file alone.
+TEST(SceneFiles, ReferencesKeepChanges) {
+    const Folder folder;
+    World world;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    assets::make_cornell(builder);
+    ASSERT_TRUE(io::export_gltf(folder.path / "artist.glb", world.registry, world.meshes, world.textures));
+    const std::string before = read_file(folder.path / "artist.glb").value();
+    World edited;
+    ASSERT_TRUE(io::load_scene(folder.path / "artist.glb", edited.registry, edited.meshes, edited.textures));
+    const ecs::Entity floor = scene::find_by_name(edited.registry, "floor");
+    edited.registry.patch<scene::Material>(floor,
+                                           [](scene::Material& m) { m.base_colour = vec3(0.123456789f, 0.2f, 0.3f); });
+    edited.registry.patch<scene::Transform>(floor, [](scene::Transform& t) { t.position.y = -0.1f; });
+    edited.registry.emplace<scene::PointLight>(edited.registry.create());
+    const ecs::Entity lamp = edited.registry.create();
+    edited.registry.emplace<scene::Name>(lamp, {"new lamp"});
+    edited.registry.emplace<scene::Transform>(lamp, {vec3(0.1f, 0.2f, 0.3f)});
+    edited.registry.emplace<scene::PointLight>(lamp, {vec3(1.0f / 3.0f)});
+    const fs::path path = folder.path / "edit.scene.json";
+    ASSERT_TRUE(io::save_scene(path, edited.registry, edited.meshes, edited.textures, {"artist.glb", {}}));
+    EXPECT_EQ(read_file(folder.path / "artist.glb").value(), before);
+    World after;
+    const auto report = io::load_scene(path, after.registry, after.meshes, after.textures);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(after.registry.get<scene::Material>(scene::find_by_name(after.registry, "floor")).base_colour,
+              vec3(0.123456789f, 0.2f, 0.3f))
+        << "to the last bit";
+    EXPECT_EQ(after.registry.get<scene::Transform>(scene::find_by_name(after.registry, "floor")).position.y, -0.1f);
+    EXPECT_EQ(after.registry.get<scene::PointLight>(scene::find_by_name(after.registry, "new lamp")).intensity,
+              vec3(1.0f / 3.0f));
+    // Saved again, the file is the same.
+    ASSERT_TRUE(io::save_scene(folder.path / "again.scene.json", after.registry, after.meshes, after.textures,
+                               {"artist.glb", {}}));
+    EXPECT_EQ(read_file(path).value(), read_file(folder.path / "again.scene.json").value());
+}
+
+// A scene of version `number`, told by its exposure.
+void fill(World& world, int number) {
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    assets::make_cornell(builder);
+    world.registry.patch<scene::Exposure>(scene::find_by_name(world.registry, "exposure"),
+                                          [&](scene::Exposure& e) { e.ev100 = float(number % 30); });
+    builder.box("box " + std::to_string(number), vec3(0.0f), vec3(1.0f), assets::diffuse(vec3(0.5f)));
+}
+
+// The number of the scene that the file holds; the .glb and the scene file must be of one version.
+int loaded_number(const fs::path& path) {
+    World world;
+    const auto report = io::load_scene(path, world.registry, world.meshes, world.textures);
+    EXPECT_TRUE(report) << report.error().message;
+    const ecs::Entity exposure = scene::find_by_name(world.registry, "exposure");
+    const int number = report ? int(world.registry.get<scene::Exposure>(exposure).ev100) : -1;
+    bool found = false;
+    world.registry.view<scene::Name>().each([&](ecs::Entity, const scene::Name& name) {
+        found = found || (name.name.compare(0, 4, "box ") == 0 && std::stoi(name.name.substr(4)) % 30 == number);
+    });
+    EXPECT_TRUE(found) << "geometry and scene file are of different saves";
+    return number;
+}
+
+TEST(SceneFiles, KillingASaveLosesNothing) {
+    const Folder folder;
+    const fs::path path = folder.path / "killed.scene.json";
+    {
+        World world;
+        fill(world, 0);
+        ASSERT_TRUE(io::save_scene(path, world.registry, world.meshes, world.textures));
+    }
+    int changed = 0, last = 0;
+    for (int attempt = 1; attempt <= 100; ++attempt) {
+        const pid_t child = fork();
+        if (child == 0) { // saves one version after the other until it is killed
+            for (int number = attempt * 100;; ++number) {
+                World world;
+                fill(world, number);
+                if (!io::save_scene(path, world.registry, world.meshes, world.textures))
+                    _exit(1);
+            }
+        }
+        usleep(1000 + pcg_hash(std::uint32_t(attempt)) % 25000);
+        kill(child, SIGKILL);
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status)) << "a save failed";
+        const int number = loaded_number(path);
+        changed += number != last;
+        last = number;
+    }
+    EXPECT_GT(changed, 20) << "the saves were too slow to be interrupted at different places";
+}
+
+// A file-size limit stands for a full disk: writes fail in the middle.
+TEST(SceneFiles, AFullDiskLosesNothing) {
+    const Folder folder;
+    const fs::path path = folder.path / "full.scene.json";
+    World world;
+    fill(world, 1);
+    ASSERT_TRUE(io::save_scene(path, world.registry, world.meshes, world.textures));
+    World next;
+    fill(next, 2);
+    for (const rlim_t limit : {0, 100, 1000, 3000, 6000, 9000}) {
+        const pid_t child = fork();
+        if (child == 0) {
+            std::signal(SIGXFSZ, SIG_IGN);
+            const rlimit size{limit, limit};
+            setrlimit(RLIMIT_FSIZE, &size);
+            const Status status = io::save_scene(path, next.registry, next.meshes, next.textures);
+            _exit(status ? 0 : 3);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        ASSERT_TRUE(WIFEXITED(status));
+        const int number = loaded_number(path);
+        EXPECT_EQ(number, WEXITSTATUS(status) == 0 ? 2 : 1) << limit;
+        if (WEXITSTATUS(status) == 0)
+            break;
+        for (const auto& entry : fs::directory_iterator(folder.path))
+            EXPECT_EQ(entry.path().filename().string().find(".tmp"), std::string::npos) << entry.path();
+    }
+}
+
+TEST(SceneFiles, TheSchemaInTheDocumentationIsCurrent) {
+    EXPECT_EQ(read_file(fs::path(SUNFLECK_SOURCE_DIR) / "docs/scene.schema.json").value(), io::scene_file_schema())
+        << "write it anew: sunfleck info --schema > docs/scene.schema.json";
+}
+
+} // namespace
+} // namespace sunfleck::tests
