@@ -6,7 +6,7 @@
 #endif
 // volk's globals bear the names of the loader's functions. In a program that links the loader, too, the program's own
 // calls would land in them; so ours have names of their own (made from volk.h when the project is configured).
-#include "sunfleck_vulkan_names.h"
+#include <sunfleck_vulkan_names.h>
 
 #include <volk.h>
 

@@ -2,7 +2,7 @@
 # Installs the project from its build folder into a folder of its own, builds the foreign program against it as a user
 # would, and runs it. Usage: run.sh BUILD_FOLDER
 set -euo pipefail
-build=$1
+build=$(cd "$1" && pwd)
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 work=$build/embedding
 rm -rf "$work/prefix"

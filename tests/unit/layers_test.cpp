@@ -39,7 +39,8 @@ const Layers& allowed() {
         {"gi_module/many_light", with(foundation, {"gi_module/transport", "gi_module/light_sampling",
                                                    "gi_module/shadows", "gi_module/visibility", "gi_module"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
-        {"gi_module", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
+        {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
                                         "gi_module/brute_force", "gi_module/visibility", "gi_module/many_light"})},
     };
     return layers;
