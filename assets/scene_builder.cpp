@@ -11,10 +11,34 @@ ecs::Entity SceneBuilder::named(const std::string& name, const scene::Transform&
 
 ecs::Entity SceneBuilder::add(const std::string& name, scene::Mesh mesh, const scene::Material& material,
                               const scene::Transform& transform) {
-    const ecs::Entity entity = named(name, transform);
+    return instance(name, this->mesh(name, std::move(mesh)), material, transform);
+}
+
+std::uint32_t SceneBuilder::mesh(const std::string& name, scene::Mesh mesh) {
     mesh.name = name;
-    registry_.emplace<scene::MeshInstance>(entity, {meshes_.add(std::move(mesh))});
+    return meshes_.add(std::move(mesh));
+}
+
+ecs::Entity SceneBuilder::instance(const std::string& name, std::uint32_t mesh, const scene::Material& material,
+                                   const scene::Transform& transform) {
+    const ecs::Entity entity = named(name, transform);
+    registry_.emplace<scene::MeshInstance>(entity, {mesh});
     registry_.emplace<scene::Material>(entity, material);
+    return entity;
+}
+
+ecs::Entity SceneBuilder::spot_light(const std::string& name, const scene::Transform& transform,
+                                     const scene::SpotLight& light) {
+    const ecs::Entity entity = named(name, transform);
+    registry_.emplace<scene::SpotLight>(entity, light);
+    return entity;
+}
+
+ecs::Entity SceneBuilder::point_light(const std::string& name, vec3 position, vec3 intensity) {
+    scene::Transform transform;
+    transform.position = position;
+    const ecs::Entity entity = named(name, transform);
+    registry_.emplace<scene::PointLight>(entity, {intensity});
     return entity;
 }
 

@@ -22,6 +22,10 @@ public:
 
     ecs::Entity add(const std::string& name, scene::Mesh mesh, const scene::Material& material,
                     const scene::Transform& transform = {});
+    // A mesh that several entities share, and an entity that has it.
+    std::uint32_t mesh(const std::string& name, scene::Mesh mesh);
+    ecs::Entity instance(const std::string& name, std::uint32_t mesh, const scene::Material& material,
+                         const scene::Transform& transform);
     // Box from its lowest to its highest corner.
     ecs::Entity box(const std::string& name, vec3 lowest, vec3 highest, const scene::Material& material);
     // Rectangle by its corner and two edges; its front is where the edges turn counter-clockwise.
@@ -40,6 +44,8 @@ public:
     // Faces downwards, centred on `centre`.
     ecs::Entity ceiling_light(const std::string& name, vec3 centre, float width, float depth, vec3 radiance);
     ecs::Entity area_light(const std::string& name, const scene::AreaLight& light, const scene::Transform& transform);
+    ecs::Entity spot_light(const std::string& name, const scene::Transform& transform, const scene::SpotLight& light);
+    ecs::Entity point_light(const std::string& name, vec3 position, vec3 intensity);
     void camera(const std::string& name, vec3 position, vec3 target, float vertical_degrees);
     void exposure(float ev100);
     void mover(ecs::Entity entity, const scene::Mover& mover) { registry_.emplace<scene::Mover>(entity, mover); }

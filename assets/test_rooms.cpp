@@ -187,6 +187,16 @@ const std::vector<BuiltInScene>& built_in_scenes() {
                                                    {"gap_room", make_gap_room},
                                                    {"near_occluder", make_near_occluder},
                                                    {"two_rooms", make_two_rooms},
+                                                   {"ring", make_ring},
+                                                   {"glass", make_glass},
+                                                   {"arena", make_arena},
+                                                   {"hall", make_hall},
+                                                   {"gallery", make_gallery},
+                                                   {"chamber", make_chamber},
+                                                   {"cave", make_cave},
+                                                   {"classroom", make_classroom},
+                                                   {"office", make_office},
+                                                   {"atrium", make_atrium},
                                                    {"lantern_house", make_lantern_house}};
     return list;
 }

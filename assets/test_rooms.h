@@ -17,6 +17,17 @@ void make_gap_room(SceneBuilder& scene);      // light through a narrow gap: sam
 void make_near_occluder(SceneBuilder& scene); // an occluder brushing light samples (fig. 6-2)
 void make_two_rooms(SceneBuilder& scene);     // a door, walls from 0 to 20 cm: leaks
 
+void make_ring(SceneBuilder& scene);      // caustics of a metal ring (splatting, fig. 4)
+void make_glass(SceneBuilder& scene);     // and of a glass bird
+void make_arena(SceneBuilder& scene);     // a level of a game with a moving lamp
+void make_hall(SceneBuilder& scene);      // arches and pillars, one spot light on the floor (8,000 triangles)
+void make_gallery(SceneBuilder& scene);   // sculptures over a yellow floor (80,000 triangles)
+void make_chamber(SceneBuilder& scene);   // marble, a moving spot light
+void make_cave(SceneBuilder& scene);      // curved walls, moving lights
+void make_classroom(SceneBuilder& scene); // many small occluders, four area lights
+void make_office(SceneBuilder& scene);    // and two
+void make_atrium(SceneBuilder& scene);    // 250,000 triangles, 60 materials
+
 void make_lantern_house(SceneBuilder& scene); // the demo's level
 
 // A furnace of another albedo and emission.

@@ -59,9 +59,10 @@ GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
         positions.insert(positions.end(), mesh.positions.begin(), mesh.positions.end());
         normals.insert(normals.end(), mesh.normals.begin(), mesh.normals.end());
         // Meshes without these take room for them all the same: one offset serves all buffers.
-        const auto append = [&](std::vector<vec4>& target, const std::vector<vec4>& values, vec4 missing) {
+        const std::size_t count = positions.size();
+        const auto append = [count](std::vector<vec4>& target, const std::vector<vec4>& values, vec4 missing) {
             target.insert(target.end(), values.begin(), values.end());
-            target.resize(positions.size(), missing);
+            target.resize(count, missing);
         };
         append(coordinates, mesh.texture_coordinates, vec4(0.0f));
         append(tangents, mesh.tangents, vec4(1.0f, 0.0f, 0.0f, 1.0f));

@@ -262,6 +262,19 @@ double least_cover(const OcclusionPyramid& pyramid) {
     return 0.999 * largest;
 }
 
+// The whole box is deeper in the region than what merely touches it.
+bool is_inside(const OcclusionPyramid& pyramid, const Bounds& bounds) {
+    for (int i = 0; i < pyramid.plane_count; ++i) {
+        const Plane& plane = pyramid.planes[std::size_t(i)];
+        dvec3 nearest;
+        for (int axis = 0; axis < 3; ++axis)
+            nearest[axis] = double(plane.normal[axis] > 0.0 ? bounds.minimum[axis] : bounds.maximum[axis]);
+        if (glm::dot(plane.normal, nearest) + plane.offset <= 2.0 * touching)
+            return false;
+    }
+    return pyramid.plane_count > 0;
+}
+
 } // namespace
 
 Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
@@ -294,7 +307,14 @@ Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
     };
     // Once something takes part of the light, only what could take all of it matters.
     const auto matters = [&](const Node& node) {
-        return !(any && too_small(node.largest, node.bounds)) && may_enter(pyramid, node.bounds);
+        if ((any && too_small(node.largest, node.bounds)) || !may_enter(pyramid, node.bounds))
+            return false;
+        // What lies inside the region altogether enters it, without a look at its polygons.
+        if (!any && is_inside(pyramid, node.bounds)) {
+            any = true;
+            return !too_small(node.largest, node.bounds);
+        }
+        return true;
     };
     if (visit_leaves(matters, takes_all))
         return Blocking::full;
