@@ -45,6 +45,9 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
         add(&emitter.area, sizeof emitter.area);
         add(&emitter.inner_cosine, sizeof emitter.inner_cosine);
         add(&emitter.outer_cosine, sizeof emitter.outer_cosine);
+        const scene::EnvironmentImage* image = emitter.map.image.get();
+        add(&image, sizeof image);
+        add(&emitter.map.rotation, sizeof emitter.map.rotation);
     }
     return hash;
 }

@@ -45,6 +45,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->lighting_, gi::System::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->g_buffer_pass_, render::GBufferPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->composition_, render::CompositionPass::create(device, *renderer->pipelines_));
+    renderer->sky_ = std::make_unique<render::SkyImage>(device);
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));
     renderer->debug_lines_ = std::make_unique<render::DebugLines>(std::move(lines));
@@ -56,8 +57,11 @@ SceneRenderer::~SceneRenderer() {
     composition_.destroy(device_);
 }
 
-Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options) {
+Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
+                                             const std::function<Status(ecs::Registry&)>& amend) {
     SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
+    if (amend)
+        SUNFLECK_TRY(amend(registry_));
     if (add_default_light(registry_))
         report.notes.push_back("the scene names no light: the default sky and sun light it");
     SUNFLECK_TRY(upload_meshes());
@@ -65,6 +69,10 @@ Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, 
 }
 
 Status SceneRenderer::upload_meshes() {
+    const scene::EnvironmentImage* picture = nullptr;
+    registry_.view<scene::EnvironmentMap>().each(
+        [&](ecs::Entity, const scene::EnvironmentMap& map) { picture = map.image.get(); });
+    SUNFLECK_TRY(sky_->update(picture, *submission_));
     SUNFLECK_TRY(gpu_scene_->update_textures(textures_, *submission_));
     return gpu_scene_->update_meshes(meshes_, *submission_);
 }
@@ -150,13 +158,17 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     composition.view = request.view;
     composition.tone_map = request.tone_map;
     composition.ev100 = request.ev100;
-    registry_.view<scene::Environment>().each(
-        [&](ecs::Entity, const scene::Environment& environment) { composition.sky += environment.radiance; });
+    registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
+        composition.sky += environment.radiance;
+        if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
+            composition.sky_rotation = map->rotation;
+    });
+    composition.sky_image = sky_.get();
     const gpu::ResourceId output = graph_->import_image(output_);
     const bool enlarged = is_enlarged(request);
     const gpu::ResourceId picture =
         enlarged ? graph_->create_image("small picture", display_format, request.width, request.height) : output;
-    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, picture);
+    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera_slice, picture);
     if (request.show_samples && request.tone_map) {
         draw_samples();
         debug_lines_->add(*graph_, g_buffer, camera_slice, picture);

@@ -53,8 +53,9 @@ public:
     const scene::GpuScene& gpu_scene() const { return *gpu_scene_; }
 
     // Loads a scene into the (empty) registry. A scene without any light gets the default light: a sky of
-    // 0.3 W/(sr m2) and a sun of 2 W/m2 from above.
-    Result<io::ImportReport> load(const std::filesystem::path& path, const io::ImportOptions& options = {});
+    // 0.3 W/(sr m2) and a sun of 2 W/m2 from above. `amend` may change it before that.
+    Result<io::ImportReport> load(const std::filesystem::path& path, const io::ImportOptions& options = {},
+                                  const std::function<Status(ecs::Registry&)>& amend = {});
     // Uploads meshes and textures that were added to the store. Waits for the GPU.
     Status upload_meshes();
 
@@ -100,6 +101,7 @@ private:
     std::unique_ptr<gi::System> lighting_;
     render::GBufferPass g_buffer_pass_;
     render::CompositionPass composition_;
+    std::unique_ptr<render::SkyImage> sky_;
     render::UpscalePass upscale_;
     std::unique_ptr<render::DebugLines> debug_lines_;
     gpu::Image output_;

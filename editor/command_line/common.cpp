@@ -55,12 +55,29 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         ->check(CLI::Range(0, 64))
         ->capture_default_str();
     app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
+    app.add_option("--environment", options.environment,
+                   "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)");
     app.add_option("--scene", options.import.scene, "Which scene of a glTF file, by number (default: the file's own)");
     app.add_option("--variant", options.import.variant, "Material variant of a glTF file, by name");
     app.add_option("--animation", options.import.animation, "Which animation of a glTF file plays; -1: none")
         ->capture_default_str();
     app.add_option("--device", options.device, "Vulkan device by number or part of its name");
     app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
+}
+
+Status apply_environment(const SceneOptions& options, ecs::Registry& registry) {
+    if (options.environment.empty())
+        return {};
+    SUNFLECK_ASSIGN(auto image, io::load_environment_image(options.environment));
+    std::vector<ecs::Entity> present;
+    registry.view<scene::Environment>().each(
+        [&](ecs::Entity entity, const scene::Environment&) { present.push_back(entity); });
+    for (const ecs::Entity entity : present)
+        registry.destroy(entity);
+    const ecs::Entity entity = registry.create();
+    registry.emplace<scene::Environment>(entity, {vec3(1.0f)});
+    registry.emplace<scene::EnvironmentMap>(entity, {options.environment, 0.0f, std::move(image)});
+    return {};
 }
 
 io::ImportOptions import_options(const SceneOptions& options) {

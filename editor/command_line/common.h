@@ -31,11 +31,14 @@ struct SceneOptions {
     std::uint32_t bounces = 5;
     float ev100 = -1000.0f; // the scene's own
     io::ImportOptions import;
+    std::string environment; // picture file
     std::string device;
     bool validation = false;
 };
 void add_scene_options(CLI::App& app, SceneOptions& options);
 // With a progress bar for what takes long, and Ctrl-C to stop.
+// --environment: the picture lights the scene in place of any environment that it has.
+Status apply_environment(const SceneOptions& options, ecs::Registry& registry);
 io::ImportOptions import_options(const SceneOptions& options);
 
 struct Size {

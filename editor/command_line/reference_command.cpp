@@ -67,6 +67,7 @@ Status run(const ReferenceOptions& options) {
     scene::MeshStore meshes;
     scene::TextureStore textures;
     SUNFLECK_TRY(io::load_scene(path, registry, meshes, textures, import_options(options.scene)));
+    SUNFLECK_TRY(apply_environment(options.scene, registry));
     viewer::add_default_light(registry);
     const std::uint32_t last_frame = options.scene.warmup + options.scene.frames - 1;
     simulation::set_movers_to_step(registry, step_of_frame(options.scene, last_frame));

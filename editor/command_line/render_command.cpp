@@ -68,7 +68,10 @@ Status run(const RenderOptions& options) {
     SUNFLECK_ASSIGN(const gi::Settings settings, make_settings(options));
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
-    SUNFLECK_ASSIGN(const io::ImportReport report, renderer->load(path, import_options(options.scene)));
+    SUNFLECK_ASSIGN(const io::ImportReport report,
+                    renderer->load(path, import_options(options.scene), [&](ecs::Registry& registry) {
+                        return apply_environment(options.scene, registry);
+                    }));
     for (const std::string& note : report.notes)
         log_warning(note);
     SUNFLECK_TRY(renderer->lighting().set_settings(settings));

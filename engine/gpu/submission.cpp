@@ -1,5 +1,7 @@
 #include "engine/gpu/submission.h"
 
+#include <algorithm>
+
 #include <cstring>
 
 namespace sunfleck::gpu {
@@ -114,6 +116,53 @@ Status upload_now(Device& device, Submission& submission, const Buffer& target, 
         device.vk.vkCmdCopyBuffer(commands, staging.handle(), target.handle(), 1, &region);
         return {};
     });
+}
+
+namespace {
+
+void move_image(const VolkDeviceTable& vk, VkCommandBuffer commands, VkImage image, VkImageLayout from,
+                VkImageLayout to) {
+    const bool before = from == VK_IMAGE_LAYOUT_UNDEFINED;
+    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+    barrier.srcStageMask = before ? VK_PIPELINE_STAGE_2_NONE : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+    barrier.srcAccessMask = before ? 0 : VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    barrier.dstStageMask = before ? VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    barrier.dstAccessMask = before ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vk.vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+} // namespace
+
+Result<Image> make_sampled_image(Device& device, Submission& submission, ImageDescription description,
+                                 std::span<const std::byte> bytes, std::span<const VkBufferImageCopy> regions) {
+    description.usage |= VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    SUNFLECK_ASSIGN(Image image, Image::create(device, description));
+    BufferDescription staging;
+    staging.name = "image upload";
+    staging.size = bytes.size();
+    staging.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    staging.memory = MemoryUse::upload;
+    SUNFLECK_ASSIGN(const Buffer source, Buffer::create(device, staging));
+    std::copy(bytes.begin(), bytes.end(), source.mapped());
+    SUNFLECK_TRY(submission.immediate([&](VkCommandBuffer commands) -> Status {
+        move_image(device.vk, commands, image.handle(), VK_IMAGE_LAYOUT_UNDEFINED,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+        device.vk.vkCmdCopyBufferToImage(commands, source.handle(), image.handle(),
+                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, std::uint32_t(regions.size()),
+                                         regions.data());
+        move_image(device.vk, commands, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+        return {};
+    }));
+    return image;
 }
 
 } // namespace sunfleck::gpu

@@ -49,4 +49,9 @@ private:
 Status upload_now(Device& device, Submission& submission, const Buffer& target, std::span<const std::byte> bytes,
                   VkDeviceSize offset = 0);
 
+// An image that shaders sample, filled at once (creation time only). `regions` place levels within `bytes`; usage is
+// added to the description.
+Result<Image> make_sampled_image(Device& device, Submission& submission, ImageDescription description,
+                                 std::span<const std::byte> bytes, std::span<const VkBufferImageCopy> regions);
+
 } // namespace sunfleck::gpu

@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 #include "engine/io/gltf_checks.h"
+#include "engine/io/image.h"
 #include "engine/scene/deformation.h"
 #include "engine/scene/simulation_components.h"
 
@@ -48,7 +49,7 @@ const std::vector<ComponentAccess>& saved_components() {
         access<scene::AreaLight>(),     access<scene::Mover>(),          access<scene::Exposure>(),
         access<scene::Environment>(),   access<scene::SurfacePattern>(), access<scene::SplinePath>(),
         access<scene::RigidBody>(),     access<scene::LightSwitch>(),    access<scene::PlayerStart>(),
-        access<scene::ShadowCasting>(), access<scene::Lantern>()};
+        access<scene::ShadowCasting>(), access<scene::Lantern>(),        access<scene::EnvironmentMap>()};
     return list;
 }
 
@@ -158,7 +159,8 @@ Status check_entity(const std::string& name, const json& components) {
         const ComponentAccess* access = find_component(component);
         if (access == nullptr)
             return Error{"entity '" + name + "': unknown component '" + component + "'"};
-        const Status status = access->check([&](void* object) { return fill_component(access->type, object, fields); });
+        const Status status =
+            access->check([&, &values = fields](void* object) { return fill_component(access->type, object, values); });
         if (!status)
             return Error{"entity '" + name + "': " + status.error().message};
     }
@@ -174,8 +176,9 @@ Status apply_entity(ecs::Registry& registry, const std::string& name, const json
     }
     for (const auto& [component, fields] : components.items()) {
         const ComponentAccess* access = find_component(component);
-        SUNFLECK_TRY(
-            access->set(registry, entity, [&](void* object) { return fill_component(access->type, object, fields); }));
+        SUNFLECK_TRY(access->set(registry, entity, [&, &values = fields](void* object) {
+            return fill_component(access->type, object, values);
+        }));
     }
     return {};
 }
@@ -220,6 +223,19 @@ Status check_gltf_file(const json& file, const std::filesystem::path& gltf) {
     return {};
 }
 
+Status load_environment_maps(const std::filesystem::path& folder, ecs::Registry& registry) {
+    std::vector<ecs::Entity> entities;
+    registry.view<scene::EnvironmentMap>().each(
+        [&](ecs::Entity entity, const scene::EnvironmentMap&) { entities.push_back(entity); });
+    for (const ecs::Entity entity : entities) {
+        const std::string file = registry.get<scene::EnvironmentMap>(entity).file;
+        SUNFLECK_ASSIGN(auto image, load_environment_image(folder / file));
+        registry.patch<scene::EnvironmentMap>(entity,
+                                              [&](scene::EnvironmentMap& map) { map.image = std::move(image); });
+    }
+    return {};
+}
+
 Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Registry& registry,
                                      scene::MeshStore& meshes, scene::TextureStore& textures,
                                      const ImportOptions& options) {
@@ -244,6 +260,8 @@ Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Reg
     for (const auto& [name, components] : entities.items())
         if (const Status status = apply_entity(registry, name, components); !status)
             return failure(status.error().message);
+    if (const Status status = load_environment_maps(path.parent_path(), registry); !status)
+        return failure(status.error().message);
     const json& settings = file.contains("settings") ? file["settings"] : nothing;
     for (const auto& [name, value] : settings.items())
         report->settings[name] = settings_text(value);
@@ -331,6 +349,20 @@ Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, co
     if (ours && previous.find('/') == std::string::npos)
         std::filesystem::remove(path.parent_path() / previous, code);
     return {};
+}
+
+Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path) {
+    SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
+    const auto kind = sniff_picture(bytes);
+    auto picture = decode_picture(bytes);
+    if (!picture)
+        return Error{"environment map '" + path.string() + "': " + picture.error().message};
+    std::vector<vec3> texels;
+    texels.reserve(picture->pixels.size());
+    const bool display = kind == PictureKind::png || kind == PictureKind::jpeg;
+    for (const vec4& pixel : picture->pixels)
+        texels.push_back(display ? glm::pow(vec3(pixel), vec3(2.2f)) : vec3(pixel));
+    return std::make_shared<const scene::EnvironmentImage>(picture->width, picture->height, std::move(texels));
 }
 
 std::string scene_file_schema() {

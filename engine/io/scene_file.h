@@ -7,6 +7,7 @@
 #pragma once
 
 #include "engine/io/gltf.h"
+#include "engine/scene/environment_map.h"
 
 namespace sunfleck::io {
 
@@ -27,6 +28,9 @@ struct SaveOptions {
 // is killed or the disk is full, the old scene or the new one can be loaded.
 Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore& textures, const SaveOptions& options = {});
+
+// Scene-linear for EXR and HDR; PNG and JPEG are taken for display values and made linear (exponent 2.2).
+Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path);
 
 // JSON schema of scene files, from the descriptions of components.
 std::string scene_file_schema();

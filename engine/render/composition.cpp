@@ -11,10 +11,13 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
     description.bindings.assign(7, gpu::BindingKind::sampled_image);
     description.bindings.push_back(gpu::BindingKind::storage_buffer);
     description.bindings.push_back(gpu::BindingKind::storage_image);
+    description.bindings.push_back(gpu::BindingKind::uniform_buffer);
+    description.bindings.push_back(gpu::BindingKind::sampled_image);
     description.push_constant_bytes = sizeof(shared::CompositionConstants);
-    for (std::uint32_t variant = 0; variant < 4; ++variant) {
-        description.specialization = {variant >> 1, variant & 1};
-        SUNFLECK_ASSIGN(pass.pipelines_[variant >> 1][variant & 1], pipelines.compute(description));
+    for (std::uint32_t variant = 0; variant < 8; ++variant) {
+        const std::uint32_t final = variant >> 2, emission = variant >> 1 & 1, sky = variant & 1;
+        description.specialization = {final, emission, sky};
+        SUNFLECK_ASSIGN(pass.pipelines_[final][emission][sky], pipelines.compute(description));
     }
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.sampler_), "creating a sampler");
@@ -27,7 +30,7 @@ void CompositionPass::destroy(gpu::Device& device) {
 }
 
 void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
-                          const CompositionInput& input, gpu::ResourceId output) const {
+                          const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const {
     const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
                                       g_buffer.albedo,
                                       // bound, but not read, where there is none
@@ -45,16 +48,21 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     constants.sky_red = input.sky.x;
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
+    constants.sky_rotation = input.sky_rotation;
     const bool final = input.view == shared::view_final && input.tone_map;
-    const gpu::Pipeline* kernel = pipelines_[final ? 1 : 0][g_buffer.emission.valid() ? 1 : 0];
+    const gpu::Pipeline* kernel = pipelines_[final ? 1 : 0][g_buffer.emission.valid() ? 1 : 0]
+                                            [input.sky_image != nullptr && *input.sky_image ? 1 : 0];
     pass.write(output, gpu::Usage::storage_write)
-        .execute([this, &scene, kernel, output, constants,
+        .execute([this, &scene, kernel, output, constants, camera, sky = input.sky_image,
                   inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {
             std::vector<gpu::Binding> bindings;
             for (const gpu::ResourceId id : inputs)
                 bindings.push_back(gpu::Binding::sampled_image(context.graph.view(id), sampler_));
             bindings.push_back(gpu::Binding::slice(scene.rows()));
             bindings.push_back(gpu::Binding::storage_image(context.graph.view(output)));
+            bindings.push_back(gpu::Binding::slice(camera));
+            // Without a picture something must be bound all the same.
+            bindings.push_back(sky != nullptr ? sky->binding() : bindings[4]);
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             context.device.vk.vkCmdDispatch(context.commands, (constants.width + 7) / 8, (constants.height + 7) / 8, 1);

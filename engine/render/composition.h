@@ -3,6 +3,7 @@
 
 #include "engine/render/composition_shared.h"
 #include "engine/render/g_buffer.h"
+#include "engine/render/sky.h"
 
 namespace sunfleck::render {
 
@@ -12,6 +13,9 @@ struct CompositionInput {
     bool tone_map = true;
     float ev100 = 8.0f;
     vec3 sky{0.0f}; // radiance where nothing is hit
+    // Its picture, which `sky` is multiplied by, if it has one.
+    const SkyImage* sky_image = nullptr;
+    float sky_rotation = 0.0f;
 };
 
 class CompositionPass {
@@ -19,12 +23,12 @@ public:
     static Result<CompositionPass> create(gpu::Device& device, gpu::PipelineStore& pipelines);
     // Writes all of `output`, a storage image with four channels.
     void add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
-             const CompositionInput& input, gpu::ResourceId output) const;
+             const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
     void destroy(gpu::Device& device);
 
 private:
-    // [the final tone-mapped picture only][emission has an image]
-    const gpu::Pipeline* pipelines_[2][2] = {};
+    // [the final tone-mapped picture only][emission has an image][the sky has a picture]
+    const gpu::Pipeline* pipelines_[2][2][2] = {};
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 

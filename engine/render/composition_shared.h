@@ -19,11 +19,13 @@ struct CompositionConstants {
     float exposure; // exposure_factor(EV100)
     uint width;
     uint height;
-    float sky_red, sky_green, sky_blue; // radiance where nothing is, W/(sr m2)
+    float sky_red, sky_green,
+        sky_blue;       // radiance where nothing is, W/(sr m2); times the sky's picture, if there is one
+    float sky_rotation; // rad, of that picture
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::CompositionConstants) == 32);
+static_assert(sizeof(sunfleck::shared::CompositionConstants) == 36);
 #endif
 #endif

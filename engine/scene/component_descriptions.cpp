@@ -1,5 +1,6 @@
 // The one description of each component's fields.
 #include "engine/scene/components.h"
+#include "engine/scene/environment_map.h"
 #include "engine/scene/simulation_components.h"
 
 namespace sunfleck::scene {
@@ -123,6 +124,17 @@ const TypeDescription& Environment::description() {
         "Light from all directions where nothing is hit.",
         {SUNFLECK_FIELD(Environment, radiance, "W/(sr m2)", 0, 1e9, "Uniform radiance of the surroundings"),
          SUNFLECK_FIELD(Environment, lights, "", 0, 1, "Off: is only seen; lamps stand for its light")}};
+    return type;
+}
+
+const TypeDescription& EnvironmentMap::description() {
+    static const TypeDescription type{
+        "EnvironmentMap",
+        1,
+        "A picture of all directions that the Environment's radiance is multiplied by.",
+        {SUNFLECK_FIELD(EnvironmentMap, file, "", 0, 0,
+                        "Equirectangular PNG, JPEG, EXR or HDR, relative to the scene file"),
+         SUNFLECK_FIELD(EnvironmentMap, rotation, "rad", -7, 7, "Turns the surroundings about the vertical")}};
     return type;
 }
 

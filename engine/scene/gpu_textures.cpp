@@ -17,25 +17,6 @@ VkSamplerAddressMode address_mode(TextureWrap wrap) {
     }
 }
 
-void move_image(const VolkDeviceTable& vk, VkCommandBuffer commands, VkImage image, VkImageLayout from,
-                VkImageLayout to) {
-    const bool before = from == VK_IMAGE_LAYOUT_UNDEFINED;
-    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = before ? VK_PIPELINE_STAGE_2_NONE : VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
-    barrier.srcAccessMask = before ? 0 : VK_ACCESS_2_TRANSFER_WRITE_BIT;
-    barrier.dstStageMask = before ? VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT : VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
-    barrier.dstAccessMask = before ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
-    barrier.oldLayout = from;
-    barrier.newLayout = to;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = image;
-    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
-    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    dependency.imageMemoryBarrierCount = 1;
-    dependency.pImageMemoryBarriers = &barrier;
-    vk.vkCmdPipelineBarrier2(commands, &dependency);
-}
-
 // All levels, one after the other, each half the size of the one before.
 std::vector<std::uint8_t> make_levels(const Texture& texture, std::vector<VkBufferImageCopy>& regions) {
     std::vector<std::uint8_t> all, level = texture.pixels;
@@ -90,25 +71,8 @@ Result<gpu::Image> GpuTextures::upload(const Texture& texture, gpu::Submission& 
     description.width = texture.width;
     description.height = texture.height;
     description.levels = std::uint32_t(regions.size());
-    description.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    SUNFLECK_ASSIGN(gpu::Image image, gpu::Image::create(device_, description));
-    gpu::BufferDescription staging;
-    staging.name = "texture upload";
-    staging.size = bytes.size();
-    staging.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    staging.memory = gpu::MemoryUse::upload;
-    SUNFLECK_ASSIGN(const gpu::Buffer source, gpu::Buffer::create(device_, staging));
-    std::copy(bytes.begin(), bytes.end(), reinterpret_cast<std::uint8_t*>(source.mapped()));
-    SUNFLECK_TRY(submission.immediate([&](VkCommandBuffer commands) -> Status {
-        move_image(device_.vk, commands, image.handle(), VK_IMAGE_LAYOUT_UNDEFINED,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        device_.vk.vkCmdCopyBufferToImage(commands, source.handle(), image.handle(),
-                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, std::uint32_t(regions.size()),
-                                          regions.data());
-        move_image(device_.vk, commands, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                   VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-        return {};
-    }));
+    SUNFLECK_ASSIGN(gpu::Image image, gpu::make_sampled_image(device_, submission, description,
+                                                              std::as_bytes(std::span(bytes)), regions));
     memory_bytes_ += bytes.size();
     return image;
 }

@@ -160,7 +160,12 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
         Emitter emitter;
         emitter.kind = EmitterKind::environment;
         emitter.radiance = environment.radiance;
-        emitter.flux = 4.0f * pi * pi * radius * radius * environment.radiance;
+        if (const auto* map = registry.try_get<scene::EnvironmentMap>(entity); map != nullptr && map->image) {
+            emitter.map = *map;
+            emitter.map_scale = environment.radiance;
+            emitter.radiance *= map->image->mean();
+        }
+        emitter.flux = 4.0f * pi * pi * radius * radius * emitter.radiance;
         add(entity, emitter, mat4(1.0f));
     });
     std::stable_sort(emitters.begin(), emitters.end(),
@@ -248,8 +253,19 @@ EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]) {
     }
     case EmitterKind::directional:
     case EmitterKind::environment: {
-        ray.direction = emitter.kind == EmitterKind::directional ? forward_of(emitter.matrix)
-                                                                 : sample_sphere_direction(numbers[2], numbers[3]);
+        if (emitter.kind == EmitterKind::directional) {
+            ray.direction = forward_of(emitter.matrix);
+        } else if (emitter.map.image) {
+            const scene::EnvironmentImage::Draw drawn = emitter.map.image->draw(numbers[2], numbers[3]);
+            ray.direction = -emitter.map.to_world(drawn.direction);
+            // Radiance over density, relative to the mean over the sphere that `flux` stands for.
+            const vec3 mean = 4.0f * pi * emitter.map.image->mean();
+            for (int c = 0; c < 3; ++c)
+                ray.tint[c] =
+                    mean[c] > 0.0f && drawn.density > 0.0f ? drawn.radiance[c] / (drawn.density * mean[c]) : 0.0f;
+        } else {
+            ray.direction = sample_sphere_direction(numbers[2], numbers[3]);
+        }
         // From a disc that covers the scene's bounding sphere.
         vec3 side, up;
         orthonormal_basis(ray.direction, side, up);

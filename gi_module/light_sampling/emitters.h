@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/scene/components.h"
+#include "engine/scene/environment_map.h"
 #include "engine/scene/mesh_store.h"
 #include "gi_module/transport/light_sample.h"
 
@@ -30,6 +31,13 @@ struct Emitter {
     std::vector<vec3> corners; // three a triangle
     std::vector<float> cumulative_area;
     bool textured = false; // `radiance` is a mean
+    // kind environment, with a picture: `radiance` is a mean, and what the picture is multiplied by is this.
+    scene::EnvironmentMap map;
+    vec3 map_scale{1.0f};
+
+    vec3 environment_radiance(vec3 direction) const {
+        return map.image ? map_scale * map.image->radiance(map.to_image(direction)) : radiance;
+    }
 
     // A point source or a direction: one sample carries all of it.
     bool is_delta() const {
@@ -66,6 +74,7 @@ struct EmittedRay {
     vec3 direction{0.0f};
     // Flux that the ray carries is emitter.flux * weight / number of rays (1 but for spot lights).
     float weight = 1.0f;
+    vec3 tint{1.0f}; // and this: environments drawn by their picture's luminance
 };
 EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]);
 

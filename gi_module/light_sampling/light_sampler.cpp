@@ -53,9 +53,16 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
     sample.emitter = emitter.entity;
     if (emitter.kind == EmitterKind::environment) {
         sample.kind = SampleKind::directional;
-        sample.normal = sample_sphere_direction(random.at(0), random.at(1));
+        if (emitter.map.image) {
+            const scene::EnvironmentImage::Draw drawn = emitter.map.image->draw(random.at(0), random.at(1));
+            sample.normal = -emitter.map.to_world(drawn.direction);
+            sample.flux =
+                drawn.density > 0.0f ? emitter.map_scale * drawn.radiance / (drawn.density * count) : vec3(0.0f);
+        } else {
+            sample.normal = sample_sphere_direction(random.at(0), random.at(1));
+            sample.flux = emitter.radiance * (4.0f * pi / count);
+        }
         sample.position = emitter.scene_centre - emitter.scene_radius * sample.normal;
-        sample.flux = emitter.radiance * (4.0f * pi / count);
         return sample;
     }
     const EmittedPoint point = sample_emitter_point(emitter, random.at(0), random.at(1));
@@ -111,7 +118,8 @@ std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::v
         emitters.size() - 1);
     const Emitter& emitter = emitters[chosen];
     const EmittedRay emitted = sample_emitter_ray(emitter, numbers);
-    vec3 flux = emitter.flux * emitted.weight * float(cumulative.back() / double(luminance(emitter.flux)));
+    vec3 flux =
+        emitter.flux * emitted.tint * emitted.weight * float(cumulative.back() / double(luminance(emitter.flux)));
     raytrace::Ray ray{emitted.origin + ray_offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
     for (std::uint32_t bounce = 1; bounce <= settings.bounces; ++bounce) {
         const auto hit = rays.closest_hit(ray, walk_scope(settings));

@@ -69,14 +69,35 @@ PathTracer::PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emit
     double total = 0;
     for (Emitter& emitter : emitters) {
         if (emitter.kind == EmitterKind::environment) {
-            environment_ += emitter.radiance; // found by scattered rays alone
-            continue;
+            environments_.push_back(emitter); // without a picture, found by scattered rays alone
+            if (!emitter.map.image)
+                continue;
         }
         cumulative_.push_back(total += double(luminance(emitter.flux)));
-        if (!emitter.is_delta())
+        if (!emitter.is_delta() && emitter.kind != EmitterKind::environment)
             area_emitters_[emitter.entity] = emitters_.size();
         emitters_.push_back(std::move(emitter));
     }
+}
+
+vec3 PathTracer::environment(vec3 direction) const {
+    vec3 sum(0.0f);
+    for (const Emitter& emitter : environments_)
+        sum += emitter.environment_radiance(direction);
+    return sum;
+}
+
+// What a scattered ray finds that hits nothing, weighted against direct_light's way of finding it. pdf: of the ray.
+vec3 PathTracer::environment_found(vec3 direction, float pdf, bool delta) const {
+    vec3 sum(0.0f);
+    for (const Emitter& emitter : environments_) {
+        float other = 0.0f;
+        if (emitter.map.image && !delta)
+            other = float(double(luminance(emitter.flux)) / cumulative_.back()) *
+                    emitter.map.image->density(emitter.map.to_image(direction));
+        sum += emitter.environment_radiance(direction) * (other > 0.0f ? power_heuristic(pdf, other) : 1.0f);
+    }
+    return sum;
 }
 
 vec3 PathTracer::emitted(const raytrace::SurfacePoint& point, vec3 direction) const {
@@ -108,7 +129,12 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     vec3 to_light = point.position - vertex.position;
     vec3 light(0.0f);     // radiance or its like, already over the density
     float density = 0.0f; // per solid angle, 0 for lights that scattering cannot hit
-    if (emitter.kind == EmitterKind::directional) {
+    if (emitter.kind == EmitterKind::environment) {
+        const scene::EnvironmentImage::Draw drawn = emitter.map.image->draw(u, v);
+        to_light = 2.1f * emitter.scene_radius * emitter.map.to_world(drawn.direction);
+        density = probability * drawn.density;
+        light = density > 0.0f ? emitter.map_scale * drawn.radiance / density : vec3(0.0f);
+    } else if (emitter.kind == EmitterKind::directional) {
         to_light = -2.1f * emitter.scene_radius * point.normal;
         light = emitter.intensity / probability;
     } else {
@@ -139,7 +165,8 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
         return vec3(0.0f);
     ++path.rays;
     const vec3 origin = vertex.position + offset_distance * vertex.geometric_normal;
-    const vec3 target_point = emitter.kind == EmitterKind::directional ? origin + to_light : point.position;
+    const bool far = emitter.kind == EmitterKind::directional || emitter.kind == EmitterKind::environment;
+    const vec3 target_point = far ? origin + to_light : point.position;
     if (rays_.occluded(raytrace::Ray{origin, target_point - origin, 0.0f, 1.0f - shadow_shortening, path.salt}))
         return vec3(0.0f);
     const float weight =
@@ -174,7 +201,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
         ++path.rays;
         const auto hit = rays_.closest_hit(ray);
         if (!hit) {
-            path.add(reflections, path.throughput * environment_);
+            path.add(reflections, path.throughput * environment_found(direction, scattered.pdf, scattered.delta));
             return;
         }
         const raytrace::SurfacePoint point = rays_.surface(ray, *hit);
@@ -220,7 +247,7 @@ vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sa
     const bool radiance = settings.view == ReferenceView::radiance;
     if (!hit) {
         covered = 0;
-        return radiance ? environment_ : vec3(0.0f);
+        return radiance ? environment(ray.direction) : vec3(0.0f);
     }
     const raytrace::SurfacePoint point = rays_.surface(ray, *hit);
     const auto emitter = area_emitters_.find(point.entity);

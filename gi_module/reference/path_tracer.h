@@ -53,6 +53,8 @@ private:
     struct Path;
     struct Vertex;
     vec3 direct_light(Path& path, const Vertex& vertex) const;
+    vec3 environment(vec3 direction) const;
+    vec3 environment_found(vec3 direction, float pdf, bool delta) const;
     vec3 emitted(const raytrace::SurfacePoint& point, vec3 direction) const;
     float emitter_density(const raytrace::SurfacePoint& point, vec3 direction, float distance) const;
     void trace(Path& path, Vertex vertex) const;
@@ -62,7 +64,7 @@ private:
     const raytrace::RayScene& rays_;
     std::vector<Emitter> emitters_;  // those that next-event estimation samples
     std::vector<double> cumulative_; // of their flux
-    vec3 environment_{0.0f};
+    std::vector<Emitter> environments_;
     std::unordered_map<ecs::Entity, std::size_t> area_emitters_;
 };
 

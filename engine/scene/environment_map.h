@@ -1,0 +1,65 @@
+// A picture of all directions: what an Environment's radiance is multiplied by, and how directions are drawn from it.
+#pragma once
+
+#include "engine/core/description.h"
+#include "engine/core/maths.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sunfleck::scene {
+
+// Equirectangular: the top row is +Y, the middle column -Z, and columns to its right turn towards +X. Texels are
+// constant: what is looked up is exactly what is drawn.
+class EnvironmentImage {
+public:
+    // `texels`: linear, rows from the top. Larger than 1024 x 512 it is made smaller. Values that are negative or not
+    // finite become 0.
+    EnvironmentImage(std::uint32_t width, std::uint32_t height, std::vector<vec3> texels);
+
+    std::uint32_t width() const { return width_; }
+    std::uint32_t height() const { return height_; }
+    const std::vector<vec3>& texels() const { return texels_; }
+
+    vec3 radiance(vec3 direction) const; // `direction`: unit, towards where the light comes from
+    vec3 mean() const { return mean_; }  // over the sphere
+
+    struct Draw {
+        vec3 direction{0.0f};
+        vec3 radiance{0.0f};
+        float density = 0.0f; // per solid angle
+    };
+    // Density in proportion to luminance. u, v in [0, 1).
+    Draw draw(float u, float v) const;
+    float density(vec3 direction) const;
+
+private:
+    std::size_t texel_at(vec3 direction) const;
+    float texel_solid_angle(std::uint32_t row) const;
+
+    std::uint32_t width_, height_;
+    std::vector<vec3> texels_;
+    std::vector<double> cumulative_; // of luminance times solid angle
+    vec3 mean_{0.0f};
+};
+
+// Beside an Environment.
+struct EnvironmentMap {
+    std::string file;                              // PNG, JPEG, EXR or HDR, relative to the scene file
+    float rotation = 0.0f;                         // rad, of the surroundings about +Y
+    std::shared_ptr<const EnvironmentImage> image; // made when the scene is loaded
+    static const TypeDescription& description();
+
+    // From the world's directions to the picture's, and back.
+    vec3 to_image(vec3 d) const { return turned(d, -rotation); }
+    vec3 to_world(vec3 d) const { return turned(d, rotation); }
+
+private:
+    static vec3 turned(vec3 d, float angle) {
+        const float c = std::cos(angle), s = std::sin(angle);
+        return {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
+    }
+};
+
+} // namespace sunfleck::scene
