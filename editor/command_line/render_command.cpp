@@ -4,6 +4,9 @@
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 
+#include <algorithm>
+#include <set>
+
 namespace sunfleck::command_line {
 namespace {
 
@@ -17,6 +20,7 @@ struct RenderOptions {
     std::vector<std::string> settings;
     std::string statistics;
     bool print_graph = false;
+    std::set<std::string> given; // settings that the command line names
 };
 
 // Views that the lighting itself draws, in false colours.
@@ -42,7 +46,8 @@ const std::map<std::string, std::uint32_t> views = {{"final", shared::view_final
                                                     {"staleness", shared::view_false_colours},
                                                     {"light_maps", shared::view_irradiance}};
 
-Result<gi::Settings> make_settings(const RenderOptions& options) {
+// The command line's options come before what the scene file says, that before their defaults.
+Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<std::string, std::string>& of_scene) {
     gi::Settings settings;
     SUNFLECK_TRY(apply_setting(settings, "direct=" + options.direct));
     SUNFLECK_TRY(apply_setting(settings, "indirect=" + options.indirect));
@@ -52,6 +57,9 @@ Result<gi::Settings> make_settings(const RenderOptions& options) {
     settings.bounces = options.scene.bounces;
     settings.seed = options.scene.seed;
     settings.count_clamped = !options.statistics.empty();
+    for (const auto& [name, value] : of_scene)
+        if (!options.given.count(name))
+            SUNFLECK_TRY(apply_setting(settings, name + "=" + value));
     for (const std::string& assignment : options.settings)
         SUNFLECK_TRY(apply_setting(settings, assignment));
     if (options.view == "direct")
@@ -65,7 +73,7 @@ Status run(const RenderOptions& options) {
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
     SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
-    SUNFLECK_ASSIGN(const gi::Settings settings, make_settings(options));
+    SUNFLECK_TRY(make_settings(options, {})); // what is wrong on the command line, before anything is loaded
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
     SUNFLECK_ASSIGN(const io::ImportReport report,
@@ -74,6 +82,7 @@ Status run(const RenderOptions& options) {
                     }));
     for (const std::string& note : report.notes)
         log_warning(note);
+    SUNFLECK_ASSIGN(const gi::Settings settings, make_settings(options, report.settings));
     SUNFLECK_TRY(renderer->lighting().set_settings(settings));
     const Bounds bounds = viewer::scene_bounds(renderer->registry(), renderer->meshes());
     SUNFLECK_ASSIGN(const scene::CameraView camera,
@@ -168,8 +177,14 @@ Command make_render_command(CLI::App& program) {
     app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
     app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
-    return {app, [options] {
+    return {app, [app, options] {
                 watch_interrupts();
+                for (const char* name : {"direct", "indirect", "movers", "lights", "direct-share", "bounces", "seed"})
+                    if (app->count(std::string("--") + name) > 0) {
+                        std::string setting = name;
+                        std::replace(setting.begin(), setting.end(), '-', '_');
+                        options->given.insert(setting);
+                    }
                 const Status status = run(*options);
                 return status ? 0 : fail(status.error());
             }};

@@ -6,6 +6,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <sys/wait.h>
 
 namespace sunfleck {
@@ -140,6 +141,72 @@ TEST_F(CommandLine, AnInterruptedReferenceGoesOn) {
     EXPECT_NE(resumed.output.find("going on from"), std::string::npos);
     EXPECT_FALSE(fs::exists(folder / "parts.exr.state"));
     EXPECT_EQ(read_file(folder / "whole.exr").value(), read_file(folder / "parts.exr").value());
+}
+
+// Files that glTF's own validator calls invalid, and what is wrong with them.
+const std::map<std::string, std::string> invalid_models = {
+    {"BoxTextured-glTF-techniqueWebGL/BoxTextured.gltf", "KHR_technique_webgl"}, // valid, but requires what none has
+    {"BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", "not finite"},
+    {"IndexOutOfRange/AllIndicesOutOfRange.gltf", "index"},
+    {"IndexOutOfRange/IndexOutOfRange.gltf", "index"},
+    {"MissingBin/BoxTextured.gltf", "BoxTextured0.bin"},
+    {"RecursiveNodes/RecursiveNodes.gltf", "cycle"},
+    {"SchemaFailures/sceneWrongType.gltf", ""},
+    {"TestNoRootNode/NoScene.gltf", "scene"},
+    {"wrongTypes/badArray.gltf", "primitives"},
+    {"wrongTypes/badExtension.gltf", "extensions"},
+    {"wrongTypes/badNumber.gltf", ""},
+    {"wrongTypes/badObject.gltf", "pbrMetallicRoughness"},
+    {"wrongTypes/badString.gltf", "text"},
+    {"wrongTypes/badUint.gltf", "index"}};
+
+TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
+    std::vector<fs::path> files;
+    for (const char* place : {"/usr/share/assimp/models/glTF2", SUNFLECK_SOURCE_DIR "/../shared/assets",
+                              SUNFLECK_SOURCE_DIR "/tests/corpus/gltf"}) {
+        std::error_code code;
+        for (const auto& entry : fs::recursive_directory_iterator(place, code))
+            if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+                files.push_back(entry.path());
+    }
+    if (files.size() < 20)
+        std::printf("only %zu models are here; assimp-testmodels has more\n", files.size());
+    int rendered = 0;
+    for (const fs::path& file : files) {
+        std::string problem;
+        bool invalid = false;
+        for (const auto& [name, what] : invalid_models)
+            if (file.string().ends_with(name)) {
+                invalid = true;
+                problem = what;
+            }
+        const Outcome outcome =
+            tool("render '" + file.string() + "' -o model.png --validation --set patch_levels=1" + small);
+        if (invalid) {
+            expect_clear_error(outcome, {file.filename().string(), problem});
+            continue;
+        }
+        EXPECT_EQ(outcome.status, 0) << file << ": " << outcome.output;
+        ++rendered;
+    }
+    EXPECT_GE(rendered, 2);
+}
+
+TEST_F(CommandLine, SceneFilesBringTheirSettings) {
+    fs::copy(SUNFLECK_SOURCE_DIR "/tests/corpus/gltf/square.gltf", folder / "square.gltf");
+    ASSERT_TRUE(write_file(folder / "a.scene.json",
+                           R"({"sunfleck_scene":2,"gltf":"square.gltf","settings":{"lights":12,"bounces":2}})"));
+    const auto lights = [&](const std::string& extra) {
+        const Outcome outcome = tool("render a.scene.json -o a.png --stats a.json --size 32x24 --warmup 0" + extra);
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        return nlohmann::json::parse(read_file(folder / "a.json").value())["settings"]["lights"].get<int>();
+    };
+    EXPECT_EQ(lights(""), 12);
+    EXPECT_EQ(lights(" --lights 8"), 8);
+    EXPECT_EQ(lights(" --set lights=9"), 9);
+    ASSERT_TRUE(
+        write_file(folder / "b.scene.json", R"({"sunfleck_scene":2,"gltf":"square.gltf","settings":{"lamps":1}})"));
+    expect_clear_error(tool("render b.scene.json -o b.png" + small), {"lamps"});
 }
 
 TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
