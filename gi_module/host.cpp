@@ -7,6 +7,7 @@
 #include "sunfleck/host.h"
 
 #include <cstring>
+#include <unordered_map>
 
 namespace sunfleck::host {
 namespace {
@@ -312,11 +313,13 @@ Status Context::update(const Frame& frame) {
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
     SUNFLECK_TRY(self.system->update(self.registry, self.meshes, *self.gpu_scene, *self.rays, input));
+    std::unordered_map<ecs::Entity, std::uint32_t> rows;
+    for (const scene::DrawItem& item : self.gpu_scene->draws())
+        rows[item.entity] = item.row;
     self.surface_ids.assign(self.instances.size(), 0);
     for (std::size_t i = 0; i < self.instances.size(); ++i)
-        for (const scene::DrawItem& item : self.gpu_scene->draws())
-            if (item.entity == self.instances[i])
-                self.surface_ids[i] = item.row + 1;
+        if (const auto found = rows.find(self.instances[i]); found != rows.end())
+            self.surface_ids[i] = found->second + 1;
     self.updated = true;
     return {};
 }

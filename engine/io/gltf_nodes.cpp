@@ -216,7 +216,7 @@ void NodeImport::add_mesh(int index, ecs::Entity entity) {
                              registry_->get<scene::Name>(entity).name + " part " + std::to_string(p + 1), {});
         else
             taken = true;
-        add_primitive(index, primitives[p], p, owner);
+        add_primitive(index, primitives[p], owner);
         if (registry_->has<scene::Deformation>(owner)) {
             registry_->patch<scene::Deformation>(owner, [&](scene::Deformation& d) { d.weights_of = entity; });
             if (skinned)
@@ -225,7 +225,7 @@ void NodeImport::add_mesh(int index, ecs::Entity entity) {
     }
 }
 
-void NodeImport::add_primitive(int node, const ImportedPrimitive& primitive, std::size_t, ecs::Entity entity) {
+void NodeImport::add_primitive(int node, const ImportedPrimitive& primitive, ecs::Entity entity) {
     int number = primitive.material;
     if (content_.variant >= 0 && primitive.material_of_variant[std::size_t(content_.variant)] >= 0)
         number = primitive.material_of_variant[std::size_t(content_.variant)];

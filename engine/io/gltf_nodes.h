@@ -41,7 +41,7 @@ private:
     Status read_instances(std::size_t index);
     void add_node(int index, ecs::Entity parent, bool visible);
     void add_mesh(int index, ecs::Entity entity);
-    void add_primitive(int node, const ImportedPrimitive& primitive, std::size_t place, ecs::Entity entity);
+    void add_primitive(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
     void deform(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
     void add_camera(const tinygltf::Camera& camera, ecs::Entity entity, const std::string& name);
     void add_light(const tinygltf::Light& light, ecs::Entity entity);
