@@ -1,5 +1,6 @@
 // SSIM and FLIP, written from their papers (see metrics.h).
 #include "editor/command_line/metrics.h"
+#include "engine/scene/texture_store.h"
 
 #include <algorithm>
 #include <array>
@@ -58,10 +59,6 @@ float mean_of_counted(const Plane& plane, const std::vector<std::uint8_t>& count
 }
 
 // --- Colour spaces of FLIP ------------------------------------------------------------------------------------------
-
-float linear_from_srgb(float x) {
-    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
-}
 
 const mat3 xyz_from_linear = glm::transpose(
     mat3(0.4124564f, 0.3575761f, 0.1804375f, 0.2126729f, 0.7151522f, 0.0721750f, 0.0193339f, 0.1191920f, 0.9503041f));
@@ -163,9 +160,9 @@ FlipPicture prepare(const io::Picture& source) {
     const Extent extent{int(source.width), int(source.height)};
     std::array<Plane, 3> channels;
     for (const vec4& pixel : source.pixels) {
-        const vec3 linear(linear_from_srgb(std::clamp(pixel.x, 0.0f, 1.0f)),
-                          linear_from_srgb(std::clamp(pixel.y, 0.0f, 1.0f)),
-                          linear_from_srgb(std::clamp(pixel.z, 0.0f, 1.0f)));
+        const vec3 linear(scene::linear_from_srgb(std::clamp(pixel.x, 0.0f, 1.0f)),
+                          scene::linear_from_srgb(std::clamp(pixel.y, 0.0f, 1.0f)),
+                          scene::linear_from_srgb(std::clamp(pixel.z, 0.0f, 1.0f)));
         const vec3 c = ycxcz_from_linear(linear);
         for (int k = 0; k < 3; ++k)
             channels[std::size_t(k)].push_back(c[k]);

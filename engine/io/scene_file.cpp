@@ -361,7 +361,9 @@ Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(co
     texels.reserve(picture->pixels.size());
     const bool display = kind == PictureKind::png || kind == PictureKind::jpeg;
     for (const vec4& pixel : picture->pixels)
-        texels.push_back(display ? glm::pow(vec3(pixel), vec3(2.2f)) : vec3(pixel));
+        texels.push_back(display ? vec3(scene::linear_from_srgb(pixel.x), scene::linear_from_srgb(pixel.y),
+                                        scene::linear_from_srgb(pixel.z))
+                                 : vec3(pixel));
     return std::make_shared<const scene::EnvironmentImage>(picture->width, picture->height, std::move(texels));
 }
 

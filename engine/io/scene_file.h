@@ -29,7 +29,7 @@ struct SaveOptions {
 Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore& textures, const SaveOptions& options = {});
 
-// Scene-linear for EXR and HDR; PNG and JPEG are taken for display values and made linear (exponent 2.2).
+// Scene-linear for EXR and HDR; PNG and JPEG are taken for sRGB and made linear.
 Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path);
 
 // JSON schema of scene files, from the descriptions of components.

@@ -7,14 +7,12 @@
 namespace sunfleck::scene {
 namespace {
 
-// IEC 61966-2-1, for all 256 codes.
-const std::array<float, 256>& linear_from_srgb() {
+// Of all 256 codes.
+const std::array<float, 256>& linear_values() {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> values{};
-        for (int i = 0; i < 256; ++i) {
-            const float s = float(i) / 255.0f;
-            values[std::size_t(i)] = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
-        }
+        for (int i = 0; i < 256; ++i)
+            values[std::size_t(i)] = linear_from_srgb(float(i) / 255.0f);
         return values;
     }();
     return table;
@@ -34,7 +32,7 @@ std::int64_t wrapped(std::int64_t at, std::int64_t size, TextureWrap wrap) {
 }
 
 vec4 decode(const std::uint8_t* p, bool srgb) {
-    const auto& table = linear_from_srgb();
+    const auto& table = linear_values();
     const auto colour = [&](std::uint8_t code) { return srgb ? table[code] : float(code) / 255.0f; };
     return {colour(p[0]), colour(p[1]), colour(p[2]), float(p[3]) / 255.0f};
 }

@@ -3,12 +3,18 @@
 
 #include "engine/core/maths.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace sunfleck::scene {
 
 enum class TextureWrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
+
+// IEC 61966-2-1: the linear value of an encoded one, 0 to 1.
+inline float linear_from_srgb(float s) {
+    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
 
 // One picture as a sampler reads it.
 struct Texture {
