@@ -37,26 +37,34 @@ struct ClippedPolygon {
     }
     std::span<const dvec3> span() const { return {points.data(), std::size_t(count)}; }
 
-    // Keeps what is farther than `margin` inside the plane (Sutherland and Hodgman). False if nothing is left.
-    bool clip(const Plane& plane, double margin) {
-        ClippedPolygon result;
+    // Into `result` what is farther than `margin` inside the plane (Sutherland and Hodgman). False if nothing is left.
+    bool clip_to(const Plane& plane, double margin, ClippedPolygon& result) const {
+        result.count = 0;
+        double da = count > 0 ? plane.distance(points[0]) - margin : 0.0;
+        const double first = da;
         for (int i = 0; i < count; ++i) {
-            const dvec3 a = points[i], b = points[i + 1 < count ? i + 1 : 0];
-            const double da = plane.distance(a) - margin, db = plane.distance(b) - margin;
-            if (result.count + 2 > capacity)
+            const bool last = i + 1 == count;
+            const dvec3 &a = points[i], &b = points[last ? 0 : i + 1];
+            const double db = last ? first : plane.distance(b) - margin;
+            if (result.count + 2 > capacity) {
+                result = *this;
                 return true;
+            }
             if (da > 0.0)
                 result.points[result.count++] = a;
             if ((da > 0.0) != (db > 0.0))
                 result.points[result.count++] = a + (b - a) * (da / (da - db));
+            da = db;
         }
-        if (result.count < 3) {
-            count = 0;
-            return false;
-        }
-        count = result.count;
+        return result.count >= 3;
+    }
+    // The same in place.
+    bool clip(const Plane& plane, double margin) {
+        ClippedPolygon result;
+        const bool left = clip_to(plane, margin, result);
+        count = left ? result.count : 0;
         std::copy_n(result.points.begin(), count, points.begin());
-        return true;
+        return left;
     }
 };
 

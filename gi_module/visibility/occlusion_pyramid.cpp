@@ -6,6 +6,17 @@ namespace {
 // Length of the prism of a directional light, m: longer than any scene that single precision can hold sensibly.
 constexpr double far_away = 1e5;
 
+void round_planes(OcclusionPyramid& pyramid) {
+    pyramid.offsets.fill(1.0f); // lanes without a plane accept everything
+    for (int i = 0; i < pyramid.plane_count; ++i) {
+        const Plane& plane = pyramid.planes[std::size_t(pyramid.plane_count - 1 - i)];
+        pyramid.normals_x[std::size_t(i)] = float(plane.normal.x);
+        pyramid.normals_y[std::size_t(i)] = float(plane.normal.y);
+        pyramid.normals_z[std::size_t(i)] = float(plane.normal.z);
+        pyramid.offsets[std::size_t(i)] = float(plane.offset);
+    }
+}
+
 void finish_bounds(OcclusionPyramid& pyramid) {
     for (const dvec3& point : pyramid.gate_points())
         pyramid.bounds.add(vec3(point));
@@ -19,6 +30,7 @@ void finish_bounds(OcclusionPyramid& pyramid) {
     const vec3 slack(1e-4f);
     pyramid.bounds.minimum -= slack;
     pyramid.bounds.maximum += slack;
+    round_planes(pyramid);
 }
 
 // Planes through the light and each edge of the gate.
@@ -90,6 +102,7 @@ OcclusionPyramid pyramid_around(const LightSample& sample, const OrientedBox& bo
         pyramid.add({-normal, double(bounds.maximum[axis]) + 1e-4});
     }
     pyramid.bounds = bounds;
+    round_planes(pyramid);
     return pyramid; // without a gate nothing can block all of it
 }
 
@@ -180,18 +193,29 @@ std::optional<OcclusionPyramid> pyramid_of_box(const LightSample& sample, const 
 }
 
 bool enters(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon) {
-    // Cheap first: the whole polygon outside one plane.
+    if (polygon.size() > ClippedPolygon::capacity)
+        return true; // errs on the side of yes
+    // Most polygons lie outside one plane, or have a corner within all; only planes that cut the rest need clipping.
+    std::array<int, OcclusionPyramid::max_planes> cutting;
+    int cuts = 0;
+    std::uint64_t within = ~std::uint64_t(0) >> (64 - polygon.size()); // corners, by bit
     for (int i = 0; i < pyramid.plane_count; ++i) {
-        double deepest = -1e300;
-        for (const dvec3& point : polygon)
-            deepest = std::max(deepest, pyramid.planes[std::size_t(i)].distance(point));
-        if (deepest <= touching)
+        const Plane& plane = pyramid.planes[std::size_t(i)];
+        std::uint64_t inside = 0;
+        for (std::size_t k = 0; k < polygon.size(); ++k)
+            inside |= std::uint64_t(plane.distance(polygon[k]) > touching) << k;
+        if (inside == 0)
             return false;
+        if (inside != ~std::uint64_t(0) >> (64 - polygon.size()))
+            cutting[std::size_t(cuts++)] = i;
+        within &= inside;
     }
-    ClippedPolygon rest;
-    rest.assign(polygon);
-    for (int i = 0; i < pyramid.plane_count; ++i)
-        if (!rest.clip(pyramid.planes[std::size_t(i)], touching))
+    if (within != 0)
+        return true;
+    ClippedPolygon parts[2];
+    parts[0].assign(polygon);
+    for (int i = 0; i < cuts; ++i)
+        if (!parts[i & 1].clip_to(pyramid.planes[std::size_t(cutting[std::size_t(i)])], touching, parts[~i & 1]))
             return false;
     return true;
 }
@@ -223,10 +247,9 @@ bool may_enter(const OcclusionPyramid& pyramid, const OrientedBox& box) {
     return true;
 }
 
-bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (bounds.minimum[axis] > pyramid.bounds.maximum[axis] || bounds.maximum[axis] < pyramid.bounds.minimum[axis])
-            return false;
+namespace {
+
+bool may_enter_exactly(const OcclusionPyramid& pyramid, const Bounds& bounds) {
     const dvec3 centre(bounds.centre()), half(0.5f * bounds.extent());
     for (int i = 0; i < pyramid.plane_count; ++i) {
         const Plane& plane = pyramid.planes[std::size_t(i)];
@@ -234,6 +257,36 @@ bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
             return false;
     }
     return true;
+}
+
+} // namespace
+
+bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (bounds.minimum[axis] > pyramid.bounds.maximum[axis] || bounds.maximum[axis] < pyramid.bounds.minimum[axis])
+            return false;
+    // Single precision decides, but where its error might.
+    constexpr float error = 1e-6f; // of sums of terms, relative to their size: more than seven roundings of 2^-24
+    const vec3 centre = bounds.centre(), half = 0.5f * bounds.extent();
+    const float size = std::abs(centre.x) + std::abs(centre.y) + std::abs(centre.z) + half.x + half.y + half.z;
+    constexpr int lanes = OcclusionPyramid::lanes;
+    bool close = false;
+    for (int first = 0; first < pyramid.plane_count; first += lanes) {
+        float reach[lanes], slack[lanes];
+        for (int lane = 0; lane < lanes; ++lane) {
+            const std::size_t i = std::size_t(first + lane);
+            const float x = pyramid.normals_x[i], y = pyramid.normals_y[i], z = pyramid.normals_z[i];
+            reach[lane] = x * centre.x + y * centre.y + z * centre.z + pyramid.offsets[i] + std::abs(x) * half.x +
+                          std::abs(y) * half.y + std::abs(z) * half.z;
+            slack[lane] = float(10.0 * touching) + error * (size + std::abs(pyramid.offsets[i]));
+        }
+        for (int lane = 0; lane < lanes; ++lane) {
+            if (reach[lane] < -slack[lane])
+                return false;
+            close |= reach[lane] <= slack[lane];
+        }
+    }
+    return !close || may_enter_exactly(pyramid, bounds);
 }
 
 bool may_enter_patch(const LightSample& sample, std::span<const dvec3, 4> corners, dvec3 normal,

@@ -29,6 +29,10 @@ struct OcclusionPyramid {
     bool parallel = false;     // the light is directional
     bool ends_at_gate = false; // the region is the hull of apex and gate
     Bounds bounds;
+    // The planes again in single precision, component by component and in reverse (the sides, which reject most, come
+    // last): four are tested at once.
+    static constexpr int lanes = 4;
+    std::array<float, max_planes> normals_x{}, normals_y{}, normals_z{}, offsets;
 
     void add(const Plane& plane) { planes[std::size_t(plane_count++)] = plane; }
     std::span<const dvec3> gate_points() const { return {gate.data(), std::size_t(gate_count)}; }

@@ -6,7 +6,7 @@
 
 #include "engine/ecs/registry.h"
 #include "engine/scene/components.h"
-#include "gi_module/visibility/blockers.h"
+#include "gi_module/visibility/static_blockers.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 #include <unordered_map>

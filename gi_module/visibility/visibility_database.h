@@ -20,6 +20,7 @@
 // "partial" they have no state "none".
 #pragma once
 
+#include "gi_module/visibility/moving_blocker.h"
 #include "gi_module/visibility/surface_patches.h"
 
 #include <map>

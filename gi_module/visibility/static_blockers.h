@@ -1,0 +1,53 @@
+// What of static geometry stands between a sample and a receiver: a tree of its polygons. Thesis sec. 4.3.1.
+#pragma once
+
+#include "gi_module/visibility/coverage.h"
+
+namespace sunfleck::gi {
+
+// All static geometry: a tree of polygons.
+class StaticBlockers {
+public:
+    // Adds a mesh of static geometry; opaque on both sides, or porous: with holes, never all that blocks.
+    void add(const FlatMesh& mesh, bool porous = false);
+    // Builds the tree. Nothing can be tested before.
+    void build();
+
+    Blocking test(const OcclusionPyramid& pyramid) const;
+    // Whether one polygon or body surely takes all light: what `test` calls full. It then takes the light to the middle
+    // of the gate, so that only what a single segment crosses has to be looked at.
+    bool covers(const OcclusionPyramid& pyramid) const;
+    // Whether anything crosses the segment from `from` to `from + along`.
+    bool crosses_segment(dvec3 from, dvec3 along) const;
+    std::size_t polygons() const { return polygons_.size(); }
+
+private:
+    struct Node {
+        Bounds bounds;
+        float largest = 0.0f;               // size of the largest polygon or its body
+        std::uint32_t first = 0, count = 0; // of polygons in a leaf; in an inner node count is 0, first the left child
+        std::uint32_t right = 0;
+    };
+    std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth);
+    std::uint32_t split(std::uint32_t first, std::uint32_t count, const Bounds& centres, std::uint32_t depth);
+    bool any_enters(const OcclusionPyramid& pyramid) const;
+    // Calls `visit` with the polygons of all leaves that `meets` accepts, as all nodes above them, until it returns
+    // true.
+    template <typename Meets, typename Visit>
+    bool visit_leaves(const Meets& meets, const Visit& visit) const;
+    // Calls `visit` with polygons that cross the segment, of nodes that matter, until it returns true.
+    template <typename Matters, typename Visit>
+    bool visit_crossing(dvec3 from, dvec3 along, const Matters& matters, const Visit& visit) const;
+
+    std::vector<Polygon> polygons_;
+    std::vector<std::vector<Plane>> bodies_; // convex closed bodies, by their planes (inside is positive)
+    std::vector<std::uint32_t> body_of_;     // of a polygon; 0xffffffff: none
+    std::vector<std::uint8_t> porous_;       // of polygons
+    std::vector<float> sizes_;               // of polygons, or of the body that they belong to: a bound of the diameter
+    std::vector<Bounds> bounds_;
+    std::vector<dvec3> normals_; // of polygons, as long as their area is large
+    std::vector<std::uint32_t> order_;
+    std::vector<Node> nodes_;
+};
+
+} // namespace sunfleck::gi
