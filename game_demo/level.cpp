@@ -1,6 +1,5 @@
 #include "game_demo/level.h"
 
-#include "engine/app/gui.h"
 #include "game_demo/presets.h"
 
 #include <algorithm>
@@ -22,12 +21,13 @@ std::filesystem::path built_in_scene(const std::string& name) {
 }
 
 Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::string& scene, const DemoSettings& settings,
-                                           std::uint32_t frames_in_flight) {
+                                           std::uint32_t frames_in_flight, const std::function<bool(float)>& progress) {
     std::unique_ptr<Level> level(new Level());
     SUNFLECK_ASSIGN(level->renderer_, viewer::SceneRenderer::create(device, frames_in_flight));
-    level->renderer_->shader_library().add(app::shaders());
     const bool is_path = scene.find('/') != std::string::npos || scene.find('.') != std::string::npos;
-    SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene)));
+    io::ImportOptions import;
+    import.progress = progress;
+    SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene), import));
     ecs::Registry& registry = level->renderer_->registry();
     level->ev100_ = viewer::scene_exposure(registry);
     registry.view<scene::Camera, scene::Name>().each(
@@ -38,6 +38,32 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::strin
     level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
     SUNFLECK_TRY(level->apply(settings));
     return level;
+}
+
+Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
+                      const std::function<bool(float)>& progress) {
+    constexpr float samples_until = 0.5f; // the rest are shadow maps
+    viewer::FrameRequest request = this->request(settings, width, height);
+    request.map_budget = 0;
+    request.progress = [&](float share) { return progress(samples_until * share); };
+    SUNFLECK_TRY(renderer_->render_and_wait(request));
+    request.progress = {};
+    // As many maps at a time as take about as long as a picture.
+    request.map_budget = 4;
+    for (bool more = true; more;) {
+        SUNFLECK_TRY(renderer_->render_and_wait(request));
+        const gi::Counters& counters = renderer_->statistics().counters;
+        more = counters.shadow_maps_stale > 0 && counters.shadow_map_updates > 0;
+        const float stale =
+            float(counters.shadow_maps_stale) / float(std::max<std::uint64_t>(counters.light_samples, 1));
+        if (!progress(samples_until + (1.0f - samples_until) * (1.0f - stale)))
+            return Error{"loading was stopped"};
+        const double milliseconds = renderer_->statistics().frame_ms;
+        request.map_budget = milliseconds < 80.0    ? request.map_budget * 2
+                             : milliseconds > 160.0 ? std::max(request.map_budget / 2, 1u)
+                                                    : request.map_budget;
+    }
+    return {};
 }
 
 void Level::step(const simulation::StepInput& input) {

@@ -13,8 +13,15 @@ std::filesystem::path built_in_scene(const std::string& name);
 class Level {
 public:
     // `scene`: a scene file, glTF file, or the name of a built-in scene.
+    // `progress`: io::ImportOptions::progress.
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const std::string& scene,
-                                               const DemoSettings& settings, std::uint32_t frames_in_flight);
+                                               const DemoSettings& settings, std::uint32_t frames_in_flight,
+                                               const std::function<bool(float)>& progress = {});
+    // Does what the first picture of a window of this size waits for: samples, visibility, all shadow maps. In
+    // portions, so that other threads' pictures get through. `progress` is told the share that is done; false stops it
+    // with an error.
+    Status prepare(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
+                   const std::function<bool(float)>& progress);
 
     viewer::SceneRenderer& renderer() { return *renderer_; }
     simulation::Simulation& simulation() { return *simulation_; }

@@ -120,7 +120,7 @@ void Menu::settings_and_help_buttons() {
 }
 
 // A window would take a frame to find its size; there is only one frame.
-void Menu::loading_screen() {
+void Menu::loading_screen(float share) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList* list = ImGui::GetForegroundDrawList();
     const auto line = [&](const char* text, float height, float scale, ImU32 colour) {
@@ -129,6 +129,12 @@ void Menu::loading_screen() {
     };
     line("Lantern House", 0.42f, 1.9f, IM_COL32(255, 214, 150, 255));
     line("sending light through the rooms ...", 0.52f, 1.0f, IM_COL32(220, 210, 195, 255));
+    const ImVec2 low(0.36f * size.x, 0.6f * size.y), high(0.64f * size.x, low.y + 0.25f * unit());
+    list->AddRectFilled(low, high, IM_COL32(56, 46, 36, 255), 0.1f * unit());
+    if (share > 0.0f)
+        list->AddRectFilled(low, ImVec2(low.x + share * (high.x - low.x), high.y), IM_COL32(234, 158, 61, 255),
+                            0.1f * unit());
+    line("Escape ends the game", 0.66f, 0.8f, IM_COL32(150, 142, 130, 255));
 }
 
 Decision Menu::title_screen(bool enter) {

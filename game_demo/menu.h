@@ -32,7 +32,8 @@ public:
     // Draws; changes `settings` at once. `changed`: something was changed.
     Decision draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed);
     // In place of draw, while a level loads.
-    static void loading_screen();
+    // `share`: what is done, 0 to 1.
+    static void loading_screen(float share);
     // A line at the top for a few seconds.
     void say(std::string message, double seconds = 3.5);
 

@@ -1,9 +1,9 @@
 // The demo in a window: real time, the simulation on its fixed step.
-#include "engine/app/gui.h"
+#include "engine/app/gui_screen.h"
 #include "engine/core/log.h"
 #include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
-#include "game_demo/level.h"
+#include "game_demo/level_loader.h"
 #include "game_demo/menu.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
@@ -44,6 +44,11 @@ public:
         SUNFLECK_TRY(start());
         for (std::uint32_t frame = 0; !window_->should_close() && (options_.frames == 0 || frame < options_.frames);) {
             const auto began = Clock::now();
+            if (loader_) {
+                SUNFLECK_TRY(loading_frame());
+                std::this_thread::sleep_until(began + std::chrono::milliseconds(33));
+                continue;
+            }
             SUNFLECK_ASSIGN(const bool shown, frame_once());
             if (!shown)
                 continue;
@@ -68,7 +73,8 @@ private:
         if (options_.preset || !loaded.found)
             settings_.preset = options_.preset.value_or(usual_preset(device_->traits().software));
         apply_preset(settings_);
-        SUNFLECK_TRY(load_level());
+        SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
+        start_loading();
         window_->set_full_screen(settings_.full_screen);
         if (!loaded.problem.empty()) {
             log_warning(loaded.problem);
@@ -78,45 +84,46 @@ private:
         return {};
     }
 
-    Status load_level() {
+    void start_loading() {
         window_->set_title("Lantern House - loading");
-        if (device_)
-            SUNFLECK_TRY(device_->wait_idle());
-        gui_.reset();
+        window_->capture_pointer(false);
         level_.reset();
-        blit_resources_ = std::make_unique<gpu::FrameResources>(*device_); // serials begin anew
-        SUNFLECK_ASSIGN(level_, Level::load(*device_, options_.scene, settings_, 2));
-        SUNFLECK_ASSIGN(gui_, app::Gui::create(*device_, level_->renderer().pipelines(), VK_FORMAT_R8G8B8A8_UNORM));
-        unsimulated_ = 0.0;
-        inputs_.clear();
-        SUNFLECK_TRY(show_loading());
-        window_->set_title("Lantern House");
-        last_ = Clock::now();
-        return {};
+        std::uint32_t width = 0, height = 0;
+        window_->size(width, height);
+        loader_ = std::make_unique<LevelLoader>(*device_, options_.scene, settings_, width, height);
     }
 
-    // The first frame of a level makes all samples and maps, which takes seconds without a GPU.
-    Status show_loading() {
+    // One picture of the loading screen. The device is idle when the level takes over: serials begin anew.
+    Status loading_frame() {
         const app::InputState& input = window_->poll();
-        viewer::SceneRenderer& renderer = level_->renderer();
-        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(renderer.submission().serial()));
-        if (!visible)
+        if (input.hit(app::key_escape))
+            window_->close();
+        if (loader_->finished()) {
+            SUNFLECK_ASSIGN(level_, loader_->take());
+            loader_.reset();
+            SUNFLECK_TRY(device_->wait_idle());
+            blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
+            unsimulated_ = 0.0;
+            inputs_.clear();
+            window_->set_title("Lantern House");
+            last_ = Clock::now();
             return {};
+        }
+        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(screen_->serial()));
+        if (!visible) {
+            window_->wait(0.05);
+            return {};
+        }
         const VkExtent2D extent = swapchain_->extent();
-        gui_->begin_frame(input, extent.width, extent.height, 0.016, letter_scale(extent));
-        Menu::loading_screen();
-        gui_->end_frame();
-        SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
-        SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
-        blit_resources_->begin_frame(renderer.submission().serial(), completed);
-        SUNFLECK_TRY(
-            renderer.record_overlay(commands, level_->request(settings_, extent.width, extent.height), overlay()));
-        return present(commands);
+        screen_->gui().begin_frame(input, extent.width, extent.height, 1.0 / 30.0, letter_scale(extent));
+        Menu::loading_screen(loader_->share());
+        screen_->gui().end_frame();
+        return screen_->present();
     }
 
     viewer::SceneRenderer::Overlay overlay() {
         return [this](gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
-            return gui_->add_pass(graph, target, resources);
+            return screen_->gui().add_pass(graph, target, resources);
         };
     }
 
@@ -198,10 +205,10 @@ private:
         fade_ += (float(indirect_) - fade_) * float(std::min(1.0, 12.0 * seconds));
         request.indirect_scale = std::abs(fade_ - float(indirect_)) < 0.02f ? float(indirect_) : fade_;
         renderer.collect_statistics();
-        gui_->begin_frame(input, extent.width, extent.height, seconds, letter_scale(extent));
+        screen_->gui().begin_frame(input, extent.width, extent.height, seconds, letter_scale(extent));
         bool changed = false;
         const Decision decision = menu_.draw(settings_, shown(request, seconds), input, changed);
-        gui_->end_frame();
+        screen_->gui().end_frame();
         SUNFLECK_TRY(renderer.update(request));
         SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
         SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
@@ -215,7 +222,8 @@ private:
             window_->set_full_screen(settings_.full_screen);
             keep_settings();
         }
-        return decide(decision);
+        decide(decision);
+        return {};
     }
 
     Shown shown(const viewer::FrameRequest& request, double seconds) {
@@ -239,25 +247,24 @@ private:
         return settings_.letter_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
     }
 
-    Status decide(Decision decision) {
+    void decide(Decision decision) {
         switch (decision) {
         case Decision::none:
             break;
         case Decision::play:
             menu_.show(Screen::playing);
             if (!started_)
-                SUNFLECK_TRY(load_level()); // the world as it was at first
+                start_loading(); // the world as it was at first
             started_ = true;
             break;
         case Decision::restart:
-            SUNFLECK_TRY(load_level());
+            start_loading();
             menu_.show(Screen::playing);
             break;
         case Decision::quit:
             window_->close();
             break;
         }
-        return {};
     }
 
     // A failure to save is said, and the game goes on.
@@ -278,6 +285,7 @@ private:
     }
 
     Status finish() {
+        loader_.reset();
         SUNFLECK_TRY(device_->wait_idle());
         keep_settings();
         if (!options_.record.empty())
@@ -295,7 +303,8 @@ private:
     std::unique_ptr<app::Swapchain> swapchain_;
     std::unique_ptr<gpu::FrameResources> blit_resources_;
     std::unique_ptr<Level> level_;
-    std::unique_ptr<app::Gui> gui_;
+    std::unique_ptr<LevelLoader> loader_;
+    std::unique_ptr<app::GuiScreen> screen_;
     Menu menu_;
     Controls controls_;
     Clock::time_point last_;

@@ -285,15 +285,17 @@ Status System::configure_maps() {
     return {};
 }
 
-void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes,
-                               const scene::GpuScene& gpu_scene, bool static_changed) {
+Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes,
+                                 const scene::GpuScene& gpu_scene, bool static_changed) {
     VisibilityOptions options;
     options.patches.levels = settings_.patch_levels;
     options.clustered = settings_.cluster_tests;
     const bool same_options =
         options.patches.levels == database_options_.patches.levels && options.clustered == database_options_.clustered;
     if (database_samples_ != sample_generation_ || static_changed || !same_options) {
-        database_.build(registry, meshes, samples_, options);
+        database_samples_ = 0; // should it be stopped
+        if (!database_.build(registry, meshes, samples_, options, input_.progress))
+            return Error{"the lighting's preparation was stopped"};
         database_options_ = options;
         database_samples_ = sample_generation_;
         changed_samples_.clear();
@@ -308,6 +310,7 @@ void System::update_visibility(ecs::Registry& registry, const scene::MeshStore& 
         if (!item.is_static)
             movers.push_back(place_of(registry, meshes, item));
     database_.update_movers(movers, meshes);
+    return {};
 }
 
 void System::mark_by_visibility() {
@@ -363,7 +366,8 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     }
     if (uses_many_light()) {
         const StageTimer timer(cpu_times_, "visibility");
-        update_visibility(registry, meshes, gpu_scene, static_changed);
+        SUNFLECK_TRY(update_visibility(registry, meshes, gpu_scene, static_changed));
+        input_.progress = {}; // what it refers to may end with this call
     } else {
         database_samples_ = 0;
     }

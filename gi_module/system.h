@@ -27,6 +27,7 @@
 #include "gi_module/transport/g_buffer.h"
 #include "gi_module/visibility/visibility_database.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -45,6 +46,10 @@ struct FrameInput {
     float indirect_scale = 1.0f;
     // False colours of the many-light system in place of the irradiance: shared::show_... (many_light_shared.h).
     std::uint32_t show = 0;
+    // Called with the share that is done, 0 to 1, while an update takes long because everything is decided anew (the
+    // first one of a level), from any thread but by one at a time. Returning false ends the update with an error; the
+    // next one begins again.
+    std::function<bool(float)> progress;
     // World to clip; only for Settings::count_passes.
     mat4 view_projection{1.0f};
 };
@@ -121,8 +126,8 @@ private:
     void mirror_samples(ecs::Registry& registry);
     Status configure_maps();
     void update_rows(const Bounds& bounds, const raytrace::RayScene& rays);
-    void update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                           bool static_changed);
+    Status update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
+                             bool static_changed);
     void count_passes();
     void mark_by_visibility();
     void mark_by_bounds(const scene::GpuScene& gpu_scene);

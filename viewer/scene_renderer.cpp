@@ -53,7 +53,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
 }
 
 SceneRenderer::~SceneRenderer() {
-    device_.vk.vkDeviceWaitIdle(device_.handle());
+    static_cast<void>(device_.wait_idle());
     composition_.destroy(device_);
 }
 
@@ -98,6 +98,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.show = request.show;
+    input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
     SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
@@ -182,27 +183,6 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
     statistics_.cpu_ms["recording"] = milliseconds_since(start);
     return {};
-}
-
-Status SceneRenderer::record_overlay(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
-    SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
-    resources_->begin_frame(submission_->serial(), completed);
-    SUNFLECK_TRY(make_output(request));
-    graph_->reset();
-    const gpu::ResourceId output = graph_->import_image(output_);
-    graph_->add_pass("clear")
-        .write(output, gpu::Usage::transfer_destination)
-        .execute([this](gpu::PassContext& context) -> Status {
-            const VkClearColorValue dark{{0.03f, 0.027f, 0.024f, 1.0f}};
-            const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-            context.device.vk.vkCmdClearColorImage(context.commands, output_.handle(),
-                                                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &dark, 1, &all);
-            return {};
-        });
-    SUNFLECK_TRY(overlay(*graph_, output, *resources_));
-    graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
-    SUNFLECK_TRY(graph_->compile());
-    return graph_->execute(commands, *resources_, nullptr);
 }
 
 Status SceneRenderer::render_and_wait(const FrameRequest& request) {

@@ -28,6 +28,8 @@ struct FrameRequest {
     std::uint64_t step = 0; // simulation step that the movers show
     std::uint32_t map_budget = 0xffffffffu;
     float indirect_scale = 1.0f; // of reflected light
+    // gi::FrameInput::progress
+    std::function<bool(float)> progress;
 };
 
 struct FrameStatistics {
@@ -65,8 +67,6 @@ public:
     // reads from. `overlay` may add passes that draw over it.
     using Overlay = std::function<Status(gpu::FrameGraph&, gpu::ResourceId target, gpu::FrameResources&)>;
     Status record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay = {});
-    // In place of update and record: a dark picture with only the overlay, for what is shown while a level loads.
-    Status record_overlay(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay);
     const gpu::Image& output() const { return output_; }
 
     // update, record, submit and wait; fills statistics.

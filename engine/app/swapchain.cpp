@@ -21,7 +21,7 @@ Result<std::unique_ptr<Swapchain>> Swapchain::create(gpu::Device& device, Window
 }
 
 Swapchain::~Swapchain() {
-    device_.vk.vkDeviceWaitIdle(device_.handle());
+    static_cast<void>(device_.wait_idle());
     destroy_chain();
     for (VkSemaphore semaphore : acquired_)
         device_.vk.vkDestroySemaphore(device_.handle(), semaphore, nullptr);
@@ -188,7 +188,10 @@ Status Swapchain::present() {
     info.swapchainCount = 1;
     info.pSwapchains = &chain_;
     info.pImageIndices = &image_;
-    const VkResult result = device_.vk.vkQueuePresentKHR(device_.queue(), &info);
+    const VkResult result = [&] {
+        const std::scoped_lock lock(device_.queue_mutex());
+        return device_.vk.vkQueuePresentKHR(device_.queue(), &info);
+    }();
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR || result == VK_ERROR_SURFACE_LOST_KHR) {
         stale_ = true;
         surface_lost_ = surface_lost_ || result == VK_ERROR_SURFACE_LOST_KHR;

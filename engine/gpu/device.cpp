@@ -339,6 +339,7 @@ void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string
 }
 
 Status Device::wait_idle() {
+    const std::scoped_lock lock(queue_mutex_);
     SUNFLECK_VK(vk.vkDeviceWaitIdle(device_), "waiting for the GPU");
     return {};
 }

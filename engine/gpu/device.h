@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,10 @@ public:
     // Messages of the validation layers so far (warnings and errors).
     int validation_messages() const { return validation_messages_.load(); }
 
+    // Held around every use of the queue, so that threads may have submissions of their own (a level that loads, say).
+    // Of an adopted device the host sees to that itself.
+    std::mutex& queue_mutex() { return queue_mutex_; }
+
     // Blocks until the queue is idle. For shutdown and resizing, never within a frame.
     Status wait_idle();
 
@@ -93,6 +98,7 @@ private:
     VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
+    std::mutex queue_mutex_;
     std::uint32_t queue_family_ = 0;
     DeviceTraits traits_;
     std::unique_ptr<Memory> memory_;

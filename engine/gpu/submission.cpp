@@ -32,7 +32,7 @@ Result<std::unique_ptr<Submission>> Submission::create(Device& device, std::uint
 }
 
 Submission::~Submission() {
-    device_.vk.vkDeviceWaitIdle(device_.handle());
+    static_cast<void>(device_.wait_idle());
     for (const Slot& slot : slots_)
         device_.vk.vkDestroyCommandPool(device_.handle(), slot.pool, nullptr);
     device_.vk.vkDestroySemaphore(device_.handle(), timeline_, nullptr);
@@ -72,6 +72,7 @@ Status Submission::submit(const PresentSemaphores* semaphores) {
     info.pCommandBufferInfos = &commands;
     info.signalSemaphoreInfoCount = std::uint32_t(signals.size());
     info.pSignalSemaphoreInfos = signals.data();
+    const std::scoped_lock lock(device_.queue_mutex());
     SUNFLECK_VK(device_.vk.vkQueueSubmit2(device_.queue(), 1, &info, VK_NULL_HANDLE), "submitting a frame");
     slot.serial = serial_++;
     return {};

@@ -4,6 +4,8 @@
 #include "engine/core/jobs.h"
 
 #include <algorithm>
+#include <atomic>
+#include <mutex>
 #include <numeric>
 #include <tuple>
 
@@ -39,8 +41,9 @@ PairState state_of(Blocking blocking) {
 
 } // namespace
 
-void VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& meshes,
-                               std::span<const LightSample> samples, const VisibilityOptions& options) {
+bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& meshes,
+                               std::span<const LightSample> samples, const VisibilityOptions& options,
+                               const std::function<bool(float)>& progress) {
     options_ = options;
     samples_.assign(samples.begin(), samples.end());
     static_blockers_ = {};
@@ -50,7 +53,12 @@ void VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     changes_.clear();
     affected_.assign(samples_.size(), 0);
     static_states_.clear();
-    split_and_decide();
+    if (!split_and_decide(progress)) {
+        const std::uint64_t generation = generation_;
+        *this = {};
+        generation_ = generation + 1;
+        return false;
+    }
     patches_.finish();
     full_counts_.assign(static_states_.size(), 0);
     partial_counts_.assign(static_states_.size(), 0);
@@ -71,19 +79,60 @@ void VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     grow_rows();
     recount();
     ++generation_;
+    return true;
 }
 
+namespace {
+
+// Calls the host's function with the share of all work, from whichever thread gets there, and keeps its answer.
+class Reporter {
+public:
+    Reporter(const std::function<bool(float)>& progress, std::uint32_t levels) : progress_(progress), levels_(levels) {}
+    void begin_level(std::size_t nodes) {
+        nodes_ = nodes;
+        done_ = 0;
+    }
+    void end_level() { ++level_; }
+    void add(std::size_t nodes) {
+        done_ += nodes;
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        if (!progress_ || !lock.owns_lock() || stopped_)
+            return;
+        const float share = float(done_) / float(std::max<std::size_t>(nodes_, 1));
+        stopped_ = !progress_((float(level_) + share) / float(levels_ + 1));
+    }
+    bool stopped() const { return stopped_; }
+
+private:
+    const std::function<bool(float)>& progress_;
+    std::uint32_t levels_, level_ = 0;
+    std::size_t nodes_ = 0;
+    std::atomic<std::size_t> done_{0};
+    std::atomic<bool> stopped_{false};
+    std::mutex mutex_;
+};
+
+} // namespace
+
 // Level by level: decide all pairs of the level's nodes, then split those with enough partial pairs.
-void VisibilityDatabase::split_and_decide() {
+bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& progress) {
+    Reporter reporter(progress, options_.patches.levels);
     std::uint32_t first = 0;
     while (first < patches_.nodes().size()) {
         const std::uint32_t end = std::uint32_t(patches_.nodes().size());
         static_states_.resize(at(end, 0));
+        reporter.begin_level(end - first);
         parallel_for_chunks(end - first, 4, [&](std::size_t begin, std::size_t stop) {
+            if (reporter.stopped())
+                return;
             for (std::uint32_t node = first + std::uint32_t(begin); node < first + stop; ++node)
                 for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
                     static_states_[at(node, sample)] = std::uint8_t(decide_static(node, sample));
+            reporter.add(stop - begin);
         });
+        if (reporter.stopped())
+            return false;
+        reporter.end_level();
         for (std::uint32_t node = first; node < end; ++node) {
             if (!patches_.can_split(node) ||
                 (patches_.nodes().size() + 4) * std::uint64_t(samples_.size()) > options_.most_pairs)
@@ -101,6 +150,7 @@ void VisibilityDatabase::split_and_decide() {
         }
         first = end;
     }
+    return true;
 }
 
 PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sample) const {

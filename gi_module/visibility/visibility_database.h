@@ -23,6 +23,7 @@
 #include "gi_module/visibility/moving_blocker.h"
 #include "gi_module/visibility/surface_patches.h"
 
+#include <functional>
 #include <map>
 
 namespace sunfleck::gi {
@@ -63,8 +64,10 @@ struct VisibilityCounters {
 class VisibilityDatabase {
 public:
     // Starts anew: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
-    void build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
-               const VisibilityOptions& options);
+    // `progress` is called with the share that is done, from any thread but by one at a time; if it returns false,
+    // build stops and returns false, and the database is empty.
+    bool build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
+               const VisibilityOptions& options, const std::function<bool(float)>& progress = {});
     // Forgets the changes of the last frame. Once a frame, before the two below.
     void begin_frame();
     // Samples with these indices have changed; their number and which are dynamic have not. The patches stay.
@@ -134,7 +137,7 @@ private:
     };
     using Footprint = std::vector<std::uint32_t>;
 
-    void split_and_decide();
+    bool split_and_decide(const std::function<bool(float)>& progress);
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
     PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;
     std::vector<PairState> decide_all_static(std::uint32_t sample) const;

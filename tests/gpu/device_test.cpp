@@ -6,6 +6,7 @@
 #include "engine/shader_compiler/shader_compiler.h"
 
 #include <fstream>
+#include <thread>
 
 namespace sunfleck::tests {
 namespace {
@@ -150,6 +151,28 @@ TEST_F(DeviceTest, TwoRunsAndOneAndTwoThreadsGiveTheSameBits) {
     const io::Picture one = run(1), two = run(2), again = run(2);
     EXPECT_EQ(std::memcmp(one.pixels.data(), two.pixels.data(), one.pixels.size() * sizeof(vec4)), 0);
     EXPECT_EQ(std::memcmp(two.pixels.data(), again.pixels.data(), one.pixels.size() * sizeof(vec4)), 0);
+}
+
+// A level that loads on one thread while another shows pictures.
+TEST_F(DeviceTest, ThreadsWithSubmissionsOfTheirOwnShareTheDevice) {
+    const auto render = [] {
+        GpuWorld world(assets::make_four_pillars, "bench_1");
+        std::vector<io::Picture> pictures;
+        for (std::uint64_t step = 0; step < 4; ++step) {
+            world.request.step = step;
+            pictures.push_back(world.picture());
+        }
+        return pictures;
+    };
+    const std::vector<io::Picture> alone = render();
+    std::vector<io::Picture> first, second;
+    std::thread other([&] { second = render(); });
+    first = render();
+    other.join();
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+        EXPECT_EQ(first[i].pixels, alone[i].pixels) << "picture " << i;
+        EXPECT_EQ(second[i].pixels, alone[i].pixels) << "picture " << i;
+    }
 }
 
 TEST_F(DeviceTest, OddPictureSizes) {

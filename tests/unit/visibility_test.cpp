@@ -251,6 +251,33 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
     EXPECT_GT(database.counters().full, 0u);
 }
 
+TEST(VisibilityDatabase, ABuildThatIsStoppedLeavesNothingAndTheNextIsWhole) {
+    World world(assets::make_two_rooms, 60);
+    VisibilityDatabase whole, stopped;
+    float last = 0.0f;
+    int reports = 0;
+    EXPECT_TRUE(whole.build(world.registry, world.meshes, world.samples, {}, [&](float share) {
+        EXPECT_LE(share, 1.0f);
+        last = std::max(last, share);
+        return ++reports > 0;
+    }));
+    EXPECT_GT(reports, 5);
+    EXPECT_GT(last, 0.5f);
+    for (int stop_at = 1; stop_at < reports; stop_at += 1 + reports / 4) {
+        int calls = 0;
+        const std::uint64_t before = stopped.generation();
+        EXPECT_FALSE(
+            stopped.build(world.registry, world.meshes, world.samples, {}, [&](float) { return ++calls < stop_at; }));
+        EXPECT_EQ(calls, stop_at) << "called again after it said stop";
+        EXPECT_EQ(stopped.node_count(), 0u);
+        EXPECT_GT(stopped.generation(), before);
+    }
+    EXPECT_TRUE(stopped.build(world.registry, world.meshes, world.samples, {}));
+    stopped.update_movers(world.places, world.meshes);
+    whole.update_movers(world.places, world.meshes);
+    expect_equal(stopped, whole, world.places);
+}
+
 TEST(VisibilityDatabase, ChangedSamplesAreDecidedAnew) {
     World world(assets::make_two_rooms, 120);
     VisibilityOptions options;

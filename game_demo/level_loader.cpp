@@ -1,0 +1,46 @@
+#include "game_demo/level_loader.h"
+
+#include <algorithm>
+
+namespace sunfleck::demo {
+namespace {
+
+// Shares of the whole at which reading, and then preparing, end.
+constexpr float read_until = 0.3f;
+
+} // namespace
+
+LevelLoader::LevelLoader(gpu::Device& device, std::string scene, const DemoSettings& settings, std::uint32_t width,
+                         std::uint32_t height)
+    : device_(device), scene_(std::move(scene)), settings_(settings) {
+    thread_ = std::thread([this, width, height] {
+        result_ = load(width, height);
+        finished_ = true;
+    });
+}
+
+LevelLoader::~LevelLoader() {
+    stop_ = true;
+    if (thread_.joinable())
+        thread_.join();
+}
+
+bool LevelLoader::report(float share) {
+    share_ = std::max(share_.load(), std::min(share, 1.0f));
+    return !stop_;
+}
+
+Result<std::unique_ptr<Level>> LevelLoader::load(std::uint32_t width, std::uint32_t height) {
+    const auto reading = [&](float share) { return report(read_until * share); };
+    const auto preparing = [&](float share) { return report(read_until + (1.0f - read_until) * share); };
+    SUNFLECK_ASSIGN(std::unique_ptr<Level> level, Level::load(device_, scene_, settings_, 2, reading));
+    SUNFLECK_TRY(level->prepare(settings_, width, height, preparing));
+    return level;
+}
+
+Result<std::unique_ptr<Level>> LevelLoader::take() {
+    thread_.join();
+    return std::move(*result_);
+}
+
+} // namespace sunfleck::demo
