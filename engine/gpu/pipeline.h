@@ -38,6 +38,7 @@ struct GraphicsDescription {
     VkFormat depth_format = VK_FORMAT_UNDEFINED;
     VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
     VkCullModeFlags cull = VK_CULL_MODE_NONE;
+    bool dynamic_cull = false;                         // vkCmdSetCullMode and vkCmdSetFrontFace say, in place of `cull`
     VkCompareOp depth_compare = VK_COMPARE_OP_GREATER; // reverse Z
     bool depth_write = true;
     bool depth_clamp = false;

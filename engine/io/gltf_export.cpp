@@ -20,8 +20,6 @@ public:
         model_.asset.version = "2.0";
         model_.asset.generator = "sunfleck";
         model_.buffers.emplace_back();
-        model_.scenes.emplace_back();
-        model_.defaultScene = 0;
     }
 
     Result<tinygltf::Model> run() {
@@ -29,6 +27,10 @@ public:
         for (const ecs::Entity entity : registry_.entities())
             if (registry_.has<scene::Name>(entity))
                 node_of_[entity] = add_node(entity);
+        if (!node_of_.empty()) { // glTF has no empty scenes
+            model_.scenes.emplace_back();
+            model_.defaultScene = 0;
+        }
         for (const auto& [entity, node] : node_of_) {
             const scene::Parent* parent = registry_.try_get<scene::Parent>(entity);
             const auto found = parent != nullptr ? node_of_.find(parent->parent) : node_of_.end();
@@ -39,6 +41,8 @@ public:
         }
         for (const std::string& name : used_extensions_)
             model_.extensionsUsed.push_back(name);
+        if (model_.buffers[0].data.empty())
+            model_.buffers.clear(); // nor empty buffers
         return std::move(model_);
     }
 
@@ -178,6 +182,7 @@ private:
         material.name = name;
         material.pbrMetallicRoughness.baseColorFactor = {double(source.base_colour.x), double(source.base_colour.y),
                                                          double(source.base_colour.z), double(source.alpha)};
+        material.doubleSided = source.double_sided;
         if (source.alpha_mode != scene::AlphaMode::opaque)
             material.alphaMode = source.alpha_mode == scene::AlphaMode::mask ? "MASK" : "BLEND";
         material.alphaCutoff = double(source.alpha_cutoff);

@@ -69,7 +69,8 @@ Status read_meshes(const tinygltf::Model& model, GltfContent& content, ImportRep
                              ": " + primitive.error().message};
             primitive->mesh.rest.name = mesh.name.empty() ? "mesh " + std::to_string(m) : mesh.name;
             if (!primitive->drawn)
-                report.notes.push_back("mesh '" + primitive->mesh.rest.name + "': points and lines are not drawn");
+                report.notes.push_back("mesh '" + primitive->mesh.rest.name +
+                                       "': has more points or lines than are drawn");
             content.meshes.back().push_back(std::move(*primitive));
         }
     }

@@ -137,6 +137,7 @@ ImportedMaterial read_material(const tinygltf::Material& source, TextureTable& t
         clamped(number_of(extension_of(source.extensions, "KHR_materials_ior"), "ior", 1.5), 1.0, 4.0);
     const tinygltf::Value* transmission = extension_of(source.extensions, "KHR_materials_transmission");
     material.transmission = clamped(number_of(transmission, "transmissionFactor", 0.0), 0.0, 1.0);
+    material.double_sided = source.doubleSided;
     material.unlit = source.extensions.count("KHR_materials_unlit") != 0;
     material.alpha_mode = source.alphaMode == "MASK"    ? scene::AlphaMode::mask
                           : source.alphaMode == "BLEND" ? scene::AlphaMode::blend

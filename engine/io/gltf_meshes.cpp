@@ -1,5 +1,7 @@
 #include "engine/io/gltf_meshes.h"
 
+#include "engine/io/gltf_mesh_shapes.h"
+
 #include "engine/io/draco_mesh.h"
 #include "engine/scene/procedural.h"
 
@@ -100,35 +102,6 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& indice
     else
         result.assign(indices.begin(), indices.begin() + std::ptrdiff_t(indices.size() / 3 * 3));
     return result;
-}
-
-template <typename T>
-void gather(std::vector<T>& values, const std::vector<std::uint32_t>& order, std::size_t width = 1) {
-    if (values.empty())
-        return;
-    std::vector<T> result;
-    result.reserve(order.size() * width);
-    for (const std::uint32_t index : order)
-        result.insert(result.end(), values.begin() + std::ptrdiff_t(index * width),
-                      values.begin() + std::ptrdiff_t((index + 1) * width));
-    values = std::move(result);
-}
-
-// Without normals, faces are flat (glTF 2.0, sec. 3.7.2.1): every triangle gets vertices of its own.
-void make_flat(scene::DeformableMesh& mesh) {
-    const std::vector<std::uint32_t> order = mesh.rest.indices;
-    gather(mesh.rest.positions, order);
-    gather(mesh.rest.texture_coordinates, order);
-    gather(mesh.rest.tangents, order);
-    gather(mesh.rest.colours, order);
-    for (scene::MorphTarget& target : mesh.targets) {
-        gather(target.positions, order);
-        target.normals.clear();
-    }
-    gather(mesh.joints, order, mesh.influences);
-    gather(mesh.weights, order, mesh.influences);
-    std::iota(mesh.rest.indices.begin(), mesh.rest.indices.end(), 0u);
-    scene::compute_normals(mesh.rest);
 }
 
 // Unit length; those that have none take that of the faces around.
@@ -294,18 +267,19 @@ Result<ImportedPrimitive> read_primitive(const tinygltf::Model& model, const tin
     const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
     if (mode > TINYGLTF_MODE_TRIANGLE_FAN)
         return Error{"mode " + std::to_string(mode) + " does not exist"};
-    result.drawn = mode >= TINYGLTF_MODE_TRIANGLES;
-    if (!result.drawn)
-        return result;
     scene::DeformableMesh& mesh = result.mesh;
     Attributes attributes(model, primitive);
     SUNFLECK_TRY(attributes.decompress());
     SUNFLECK_TRY(read_vertices(attributes, mesh.rest));
     SUNFLECK_ASSIGN(const std::vector<std::uint32_t> indices, attributes.indices(mesh.rest.positions.size()));
-    mesh.rest.indices = as_triangles(indices, attributes.compressed() ? TINYGLTF_MODE_TRIANGLES : mode);
+    const bool thin = mode < TINYGLTF_MODE_TRIANGLES && !attributes.compressed();
+    if (!thin)
+        mesh.rest.indices = as_triangles(indices, attributes.compressed() ? TINYGLTF_MODE_TRIANGLES : mode);
     SUNFLECK_TRY(read_targets(model, primitive, mesh));
     SUNFLECK_TRY(read_influences(model, primitive, attributes, mesh));
-    if (mesh.rest.normals.empty())
+    if (thin)
+        result.drawn = make_solid(mesh, indices, mode);
+    else if (mesh.rest.normals.empty())
         make_flat(mesh);
     else
         repair_normals(mesh.rest);

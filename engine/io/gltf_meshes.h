@@ -10,7 +10,7 @@ struct ImportedPrimitive {
     scene::DeformableMesh mesh; // `rest` is the mesh; the remainder is empty unless it deforms
     int material = -1;          // of the file
     std::vector<int> material_of_variant;
-    bool drawn = true; // false: points and lines
+    bool drawn = true; // false: too many points or lines
     bool deforms() const { return !mesh.targets.empty() || mesh.influences > 0; }
 };
 

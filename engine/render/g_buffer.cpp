@@ -33,6 +33,7 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     GBufferPass pass;
     gpu::GraphicsDescription description;
     description.depth_format = depth_format;
+    description.dynamic_cull = true;
     for (std::uint32_t kind = 0; kind < scene::surface_kinds; ++kind) {
         describe_kind(kind, description);
         description.colour_formats = {normals_format, surface_format, albedo_format};
@@ -152,6 +153,10 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         shared::CameraRow row;
         std::memcpy(&row, camera.data, sizeof row);
         const scene::DrawItem* bound = nullptr;
+        VkCullModeFlags cull = VK_CULL_MODE_NONE;
+        VkFrontFace front = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+        vk.vkCmdSetCullMode(context.commands, cull);
+        vk.vkCmdSetFrontFace(context.commands, front);
         for (const scene::DrawItem* item : visible_from(row, scene.draws())) {
             if ((bound == nullptr || !same_bindings(*bound, *item)) && status) {
                 std::vector<gpu::Binding> bindings = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
@@ -163,6 +168,12 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
                 status = context.resources.bind(context.commands, *pipelines[item->kind], bindings);
             }
             bound = item;
+            const VkCullModeFlags wanted = item->single_sided ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+            if (wanted != cull)
+                vk.vkCmdSetCullMode(context.commands, cull = wanted);
+            const VkFrontFace side = item->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
+            if (side != front)
+                vk.vkCmdSetFrontFace(context.commands, front = side);
             vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset,
                                 item->row);
         }

@@ -54,6 +54,7 @@ const TypeDescription& Material::description() {
                          "mask", "blend"),
          SUNFLECK_FIELD(Material, alpha, "", 0, 1, "Share of light that the surface stops, times its texture's alpha"),
          SUNFLECK_FIELD(Material, alpha_cutoff, "", 0, 1, "Below it, a masked surface has holes"),
+         SUNFLECK_FIELD(Material, double_sided, "", 0, 1, "Pictures show it from behind, too"),
          SUNFLECK_FIELD(Material, unlit, "", 0, 1, "Shows its base colour whatever the light")}};
     return type;
 }

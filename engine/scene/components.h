@@ -54,6 +54,7 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha = 1.0f;
     float alpha_cutoff = 0.5f; // of mask
+    bool double_sided = true;  // false: pictures do not show it from behind; to light it is solid from both sides
     bool unlit = false;        // pictures show its base colour as it is; in light transport it is Lambertian
     static const TypeDescription& description();
 };

@@ -146,7 +146,9 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             item.vertex_count = range.vertex_count;
             item.row = std::uint32_t(rows.size());
             item.details = range.details;
+            item.mirrored = glm::determinant(mat3(transform.matrix)) < 0.0f;
             item.closed = range.closed && glm::determinant(mat3(transform.matrix)) > 0.0f;
+            item.single_sided = !surface.double_sided;
             item.scale = std::sqrt(std::max({glm::dot(transform.matrix[0], transform.matrix[0]),
                                              glm::dot(transform.matrix[1], transform.matrix[1]),
                                              glm::dot(transform.matrix[2], transform.matrix[2])}));

@@ -35,6 +35,8 @@ struct DrawItem {
     std::uint32_t vertex_count = 0;
     std::span<const DetailRange> details;    // from fine to coarse; the first is the whole mesh
     bool closed = false;                     // and not mirrored: seen from outside, only front faces show
+    bool single_sided = false;               // pictures do not show it from behind
+    bool mirrored = false;                   // the model matrix turns triangles round
     float scale = 1.0f;                      // greatest length of the model matrix's axes
     Bounds bounds;                           // world space
     std::uint32_t kind = 0;                  // of its surface

@@ -233,6 +233,26 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
     }
 }
 
+namespace {
+
+// What the camera sees along the ray: single-sided surfaces not from behind.
+std::optional<raytrace::Hit> visible_hit(const raytrace::RayScene& rays, raytrace::Ray& ray, std::uint64_t& count) {
+    constexpr int most_layers = 64;
+    for (int layer = 0; layer < most_layers; ++layer) {
+        ++count;
+        const auto hit = rays.closest_hit(ray);
+        if (!hit)
+            return std::nullopt;
+        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        if (point.material.double_sided || glm::dot(point.geometric_normal, ray.direction) < 0.0f)
+            return hit;
+        ray.origin = point.position + offset_distance * ray.direction;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
 vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sample, const shared::CameraRow& camera,
                               const ReferenceSettings& settings, std::uint64_t& rays, std::uint8_t& covered) const {
     const std::uint32_t pixel_seed = hash_combine(settings.seed, y * 65536u + x);
@@ -240,10 +260,8 @@ vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sa
     vec2 centre(float(x) + 0.5f, float(y) + 0.5f);
     if (settings.antialiasing)
         centre += vec2(path.random.at(0), path.random.at(1)) - 0.5f;
-    const raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f,
-                            sample};
-    ++rays;
-    const auto hit = rays_.closest_hit(ray);
+    raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f, sample};
+    const auto hit = visible_hit(rays_, ray, rays);
     const bool radiance = settings.view == ReferenceView::radiance;
     if (!hit) {
         covered = 0;

@@ -137,6 +137,36 @@ TEST_F(Imported, HolesAreHolesForPicturesShadowsAndRays) {
 }
 
 // Half transparent: half of the rays pass, half of the pixels show what is behind.
+// glTF's double-sided flag: what is not, pictures show from the front only, also where a mirror turns triangles round.
+TEST_F(Imported, SingleSidedSurfacesAreSeenFromTheFrontOnly) {
+    Stage stage;
+    stage.renderer->registry().patch<scene::Material>(
+        stage.square, [](scene::Material& material) { material.base_colour = vec3(0.8f, 0.1f, 0.1f); });
+    viewer::add_default_light(stage.renderer->registry());
+    stage.finish("view");
+    stage.request.view = shared::view_albedo;
+    for (const bool double_sided : {true, false})
+        for (const bool from_behind : {false, true})
+            for (const bool mirror : {false, true}) {
+                stage.renderer->registry().patch<scene::Material>(
+                    stage.square, [&](scene::Material& material) { material.double_sided = double_sided; });
+                scene::Transform place;
+                if (from_behind)
+                    place.rotation = glm::angleAxis(glm::pi<float>(), vec3(0, 1, 0));
+                place.scale.x = mirror ? -1.0f : 1.0f;
+                stage.renderer->registry().emplace_or_replace<scene::Transform>(stage.square, place);
+                scene::update_world_transforms(stage.renderer->registry());
+                const io::Picture picture = stage.picture();
+                const vec4 pixel = picture.pixels[(side / 2) * side + side / 2];
+                const bool seen = double_sided || !from_behind;
+                EXPECT_EQ(pixel.x > pixel.y, seen) << double_sided << from_behind << mirror;
+                const auto reference = stage.reference(gi::reference::ReferenceView::radiance, 16);
+                const double* traced = &reference.sums[3 * ((side / 2) * side + side / 2)];
+                EXPECT_GT(traced[0] + traced[1], 0.0);
+                EXPECT_EQ(traced[0] > traced[1], seen) << double_sided << from_behind << mirror;
+            }
+}
+
 TEST_F(Imported, BlendingStopsItsShareOfLight) {
     Stage stage;
     stage.renderer->registry().patch<scene::Material>(stage.square, [](scene::Material& material) {

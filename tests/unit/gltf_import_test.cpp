@@ -103,6 +103,39 @@ TEST(GltfImport, StripsAndFansWindAsTheSpecificationSays) {
     }
 }
 
+// Volume within a closed surface of outward triangles (divergence theorem).
+double volume_of(const scene::Mesh& mesh) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+        sum += double(glm::dot(mesh.positions[mesh.indices[i]],
+                               glm::cross(mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]])));
+    return sum / 6.0;
+}
+
+TEST(GltfImport, PointsAndLinesAreThinBodies) {
+    const double radius = 1e-3 * std::sqrt(2.0); // a thousandth of the square's diagonal
+    const double octahedron = 4.0 / 3.0 * radius * radius * radius;
+    const double prism = 0.75 * std::sqrt(3.0) * radius * radius; // its section: a triangle of that circumradius
+    const std::pair<int, double> modes[] = {
+        {0, 4.0 * octahedron}, {1, 2.0 * prism}, {2, 4.0 * prism}, {3, 3.0 * prism}};
+    for (const auto& [mode, volume] : modes) {
+        GltfBuilder file;
+        file.add_square();
+        file.primitive()["mode"] = mode;
+        file.primitive()["indices"] = file.accessor(std::vector<std::uint16_t>{0, 1, 2, 3}, 5123, "SCALAR", 4);
+        World world;
+        const auto report = world.import(file.glb());
+        ASSERT_TRUE(report) << report.error().message;
+        const scene::Mesh& mesh = world.mesh_of("square");
+        EXPECT_NEAR(volume_of(mesh), volume, 1e-3 * volume) << "mode " << mode;
+        ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            const vec3 corner = glm::round(mesh.positions[i]);
+            EXPECT_LT(glm::length(mesh.positions[i] - corner - float(radius) * mesh.normals[i]), 1e-6f);
+        }
+    }
+}
+
 TEST(GltfImport, QuantizedAttributesAndVertexColours) {
     GltfBuilder file;
     file.file["extensionsUsed"] = file.file["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -207,7 +240,8 @@ TEST(GltfImport, TexturesByContentWithTransformAndColourSpace) {
                                 {{"baseColorTexture", {{"index", 0}, {"extensions", transform}}},
                                  {"metallicRoughnessTexture", {{"index", 0}}}}},
                                {"alphaMode", "MASK"},
-                               {"alphaCutoff", 0.3}}};
+                               {"alphaCutoff", 0.3},
+                               {"doubleSided", true}}};
     const int coordinates = file.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
     file.primitive()["attributes"]["TEXCOORD_0"] = coordinates;
     file.primitive()["material"] = 0;
@@ -235,6 +269,7 @@ TEST(GltfImport, TexturesByContentWithTransformAndColourSpace) {
     const auto& material = world.registry.get<scene::Material>(square);
     EXPECT_EQ(material.alpha_mode, scene::AlphaMode::mask);
     EXPECT_FLOAT_EQ(material.alpha_cutoff, 0.3f);
+    EXPECT_TRUE(material.double_sided);
 }
 
 TEST(GltfImport, MaterialExtensions) {
@@ -403,6 +438,82 @@ TEST(GltfImport, CamerasAndLights) {
     const auto& lamp = world.registry.get<scene::SpotLight>(scene::find_by_name(world.registry, "lamp"));
     EXPECT_NEAR(lamp.intensity.x, 1.0f, 1e-6f);
     EXPECT_NEAR(lamp.intensity.y, 0.5f, 1e-6f);
+}
+
+void expect_same_texture(const scene::TextureUse& a, const World& from, const scene::TextureUse& b, const World& to) {
+    ASSERT_EQ(bool(a), bool(b));
+    if (!a)
+        return;
+    EXPECT_EQ(a.set, b.set);
+    const vec4 place(0.2f, 0.7f, 0.4f, 0.9f);
+    EXPECT_LT(glm::length(a.coordinates(place) - b.coordinates(place)), 1e-5f);
+    const scene::Texture &before = from.textures[std::uint32_t(a.texture)],
+                         &after = to.textures[std::uint32_t(b.texture)];
+    EXPECT_EQ(before.pixels, after.pixels);
+    EXPECT_EQ(before.srgb, after.srgb);
+    EXPECT_EQ(before.nearest, after.nearest);
+    EXPECT_EQ(before.wrap_u, after.wrap_u);
+    EXPECT_EQ(before.wrap_v, after.wrap_v);
+}
+
+void expect_same_entity(World& from, ecs::Entity before, World& to, ecs::Entity after) {
+    using Use = scene::TextureUse scene::MaterialTextures::*;
+    const auto& a = from.registry.get<scene::Material>(before);
+    const auto& b = to.registry.get<scene::Material>(after);
+    for (const Field& field : scene::Material::description().fields)
+        if (std::string(field.name) != "emission") { // through another unit
+            EXPECT_EQ(field_to_text(field, &a), field_to_text(field, &b)) << field.name;
+        }
+    EXPECT_LT(glm::length(a.emission - b.emission), 1e-5f * (1.0f + glm::length(a.emission)));
+    const scene::MaterialTextures none;
+    const auto* textures = from.registry.try_get<scene::MaterialTextures>(before);
+    const auto* again = to.registry.try_get<scene::MaterialTextures>(after);
+    for (const Use use : {&scene::MaterialTextures::base_colour, &scene::MaterialTextures::metallic_roughness,
+                          &scene::MaterialTextures::normal, &scene::MaterialTextures::emission})
+        expect_same_texture((textures ? *textures : none).*use, from, (again ? *again : none).*use, to);
+    const scene::Mesh& mesh = from.meshes[from.registry.get<scene::MeshInstance>(before).mesh];
+    const scene::Mesh& read = to.meshes[to.registry.get<scene::MeshInstance>(after).mesh];
+    EXPECT_EQ(mesh.positions, read.positions);
+    EXPECT_EQ(mesh.indices, read.indices);
+    EXPECT_EQ(mesh.texture_coordinates, read.texture_coordinates);
+}
+
+// Every sample model that is valid, and a file with all of a texture's properties. With SUNFLECK_EXPORTS what is
+// exported stays in that folder (for the Khronos validator).
+TEST(GltfExport, WhatIsWrittenReadsAsItWas) {
+    namespace fs = std::filesystem;
+    const tests::Folder folder;
+    const char* keep = std::getenv("SUNFLECK_EXPORTS");
+    const fs::path place = keep != nullptr ? fs::path(keep) : folder.path;
+    std::vector<fs::path> files;
+    for (const char* models : {"/usr/share/assimp/models/glTF2", SUNFLECK_SOURCE_DIR "/tests/corpus/gltf"}) {
+        std::error_code code;
+        for (const auto& entry : fs::recursive_directory_iterator(models, code))
+            if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+                files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    int written = 0, compared = 0;
+    for (const fs::path& file : files) {
+        World before, after;
+        if (!io::import_gltf(file, before.registry, before.meshes, before.textures))
+            continue;
+        scene::update_world_transforms(before.registry);
+        const fs::path copy = place / (std::to_string(written++) + "_" + file.stem().string() + ".glb");
+        ASSERT_TRUE(io::export_gltf(copy, before.registry, before.meshes, before.textures)) << file;
+        const auto report = io::import_gltf(copy, after.registry, after.meshes, after.textures);
+        ASSERT_TRUE(report) << file << ": " << report.error().message;
+        SCOPED_TRACE(file);
+        before.registry.view<scene::Name, scene::MeshInstance, scene::Material>().each(
+            [&](ecs::Entity entity, const scene::Name& name, const scene::MeshInstance&, const scene::Material&) {
+                const ecs::Entity found = scene::find_by_name(after.registry, name.name);
+                ASSERT_FALSE(found.is_null()) << name.name;
+                expect_same_entity(before, entity, after, found);
+                ++compared;
+            });
+    }
+    EXPECT_GT(written, 0);
+    EXPECT_GT(compared, 0);
 }
 
 TEST(GltfImport, ProgressCanStopIt) {
