@@ -15,7 +15,8 @@ enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
 // side, so their shadows fall on each other, and so do the errors of their stale maps; reflected light comes from all
 // over, and its errors thin out. flux_and_age: thesis sec. 4.5.3. age: in turns.
 enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
-enum class MoverHandling : std::uint32_t { per_pixel, as_static };
+// as_static: as static geometry, in random walks, too. transfer: complex ones by precomputed radiance transfer.
+enum class MoverHandling : std::uint32_t { per_pixel, as_static, transfer };
 
 struct Settings {
     DirectTechnique direct = DirectTechnique::light_samples;
@@ -26,8 +27,10 @@ struct Settings {
     float direct_share = 0.25f; // of the samples, for light from area emitters
     // Of the samples, for emitters that move or vary, if there are any; they divide it by flux.
     float dynamic_share = 0.15f;
-    bool mover_paths = true;   // large boxes that move, as doors do, block the light that samples reflect
-    std::uint32_t bounces = 5; // reflections before the surface that is shown
+    bool mover_paths = true;                // large boxes that move, as doors do, block the light that samples reflect
+    std::uint32_t transfer_points = 4;      // along each side of a mover, where its light is known
+    std::uint32_t transfer_reflections = 2; // of a mover's light onto itself
+    std::uint32_t bounces = 5;              // reflections before the surface that is shown
     std::uint32_t seed = 1;
     Sequence sequence = Sequence::sobol;
     Termination termination = Termination::russian_roulette;

@@ -55,10 +55,10 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
 bool same_sampling(const Settings& a, const Settings& b) {
     const auto without = [](auto technique) { return technique == std::remove_cvref_t<decltype(technique)>::none; };
     return without(a.direct) == without(b.direct) && without(a.indirect) == without(b.indirect) &&
-           a.movers == b.movers && a.lights == b.lights && a.direct_share == b.direct_share &&
-           a.dynamic_share == b.dynamic_share && a.bounces == b.bounces && a.seed == b.seed &&
-           a.sequence == b.sequence && a.termination == b.termination && a.candidates == b.candidates &&
-           a.spread == b.spread;
+           (a.movers == MoverHandling::as_static) == (b.movers == MoverHandling::as_static) && a.lights == b.lights &&
+           a.direct_share == b.direct_share && a.dynamic_share == b.dynamic_share && a.bounces == b.bounces &&
+           a.seed == b.seed && a.sequence == b.sequence && a.termination == b.termination &&
+           a.candidates == b.candidates && a.spread == b.spread;
 }
 
 MoverPlace place_of(const ecs::Registry& registry, const scene::MeshStore& meshes, const scene::DrawItem& item) {
@@ -83,6 +83,7 @@ Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::Pipelin
     SUNFLECK_ASSIGN(system->shadow_maps_, ShadowMaps::create(device, pipelines));
     SUNFLECK_ASSIGN(system->brute_force_, BruteForce::create(device, pipelines));
     SUNFLECK_ASSIGN(system->many_light_, ManyLight::create(device, pipelines));
+    SUNFLECK_ASSIGN(system->transfer_pass_, TransferPass::create(device, pipelines));
     return system;
 }
 
@@ -307,9 +308,30 @@ Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore
     }
     std::vector<MoverPlace> movers;
     for (const scene::DrawItem& item : gpu_scene.draws())
-        if (!item.is_static)
+        if (!item.is_static) {
             movers.push_back(place_of(registry, meshes, item));
+            MoverPlace& place = movers.back();
+            place.lit = settings_.movers != MoverHandling::transfer ||
+                        !TransferLighting::takes(item, place.matrix, meshes, place.mesh);
+        }
     database_.update_movers(movers, meshes);
+    return {};
+}
+
+Status System::update_transfer(const ecs::Registry& registry, const scene::MeshStore& meshes,
+                               const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays) {
+    transfer_.clear();
+    if (settings_.movers != MoverHandling::transfer)
+        return {};
+    const StageTimer timer(cpu_times_, "transfer");
+    TransferLightingOptions options;
+    options.points = settings_.transfer_points;
+    options.reflections = settings_.transfer_reflections;
+    options.cache = cache_folder_;
+    options.progress = input_.progress;
+    const ProbeScene scene{rays, samples_, rows_, gpu_scene.draws(), uses_many_light() ? &database_ : nullptr};
+    SUNFLECK_TRY(transfer_.update(registry, meshes, scene, options, resources_));
+    counters_.transfer_vertices = transfer_.vertices();
     return {};
 }
 
@@ -358,7 +380,7 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         if (static_changed)
             scheduler_.reset(samples_.size());
         SUNFLECK_TRY(configure_maps());
-        if (settings_.mover_paths && settings_.movers == MoverHandling::per_pixel)
+        if (settings_.mover_paths && settings_.movers != MoverHandling::as_static)
             blocked_paths_.update(registry, meshes, gpu_scene, samples_, sample_generation_);
         else
             blocked_paths_ = {};
@@ -367,10 +389,11 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     if (uses_many_light()) {
         const StageTimer timer(cpu_times_, "visibility");
         SUNFLECK_TRY(update_visibility(registry, meshes, gpu_scene, static_changed));
-        input_.progress = {}; // what it refers to may end with this call
     } else {
         database_samples_ = 0;
     }
+    SUNFLECK_TRY(update_transfer(registry, meshes, gpu_scene, rays));
+    input_.progress = {}; // what it refers to may end with this call
     const StageTimer timer(cpu_times_, "shadow scheduling");
     scheduler_.advance();
     if (uses_many_light())

@@ -24,6 +24,7 @@
 #include "gi_module/many_light/pass_optimisation.h"
 #include "gi_module/settings.h"
 #include "gi_module/shadows/map_scheduler.h"
+#include "gi_module/transfer/transfer_pass.h"
 #include "gi_module/transport/g_buffer.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -72,6 +73,7 @@ struct Counters {
     std::uint64_t light_map_texels = 0;
     ManyLightCounters pixels;
     std::uint64_t render_passes = 0, render_passes_unoptimised = 0; // with Settings::count_passes
+    std::uint64_t transfer_vertices = 0;                            // lit by precomputed transfer
     double pass_fill = 1.0;        // pairs of node and light in the passes, over those needed
     double clamped_flux = 0;       // W over the visible surface, luminance; needs settings.count_clamped
     double clamped_irradiance = 0; // W/m2, mean over pixels
@@ -102,6 +104,9 @@ public:
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
                       const gpu::UploadSlice& camera, gpu::ResourceId output);
 
+    // Where precomputed transfer is kept from run to run; empty (the default): it is computed in every run.
+    void set_cache_folder(std::filesystem::path folder) { cache_folder_ = std::move(folder); }
+
     const Counters& counters() const { return counters_; }
     // Milliseconds on the CPU of the last update, by stage.
     const std::map<std::string, double>& cpu_times() const { return cpu_times_; }
@@ -128,6 +133,8 @@ private:
     void update_rows(const Bounds& bounds, const raytrace::RayScene& rays);
     Status update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
                              bool static_changed);
+    Status update_transfer(const ecs::Registry& registry, const scene::MeshStore& meshes,
+                           const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays);
     void count_passes();
     void mark_by_visibility();
     void mark_by_bounds(const scene::GpuScene& gpu_scene);
@@ -143,6 +150,9 @@ private:
     std::unique_ptr<ShadowMaps> shadow_maps_;
     std::unique_ptr<BruteForce> brute_force_;
     std::unique_ptr<ManyLight> many_light_;
+    std::unique_ptr<TransferPass> transfer_pass_;
+    TransferLighting transfer_;
+    std::filesystem::path cache_folder_;
     Settings settings_, sampled_settings_;
     std::vector<Emitter> emitters_;         // whose samples stay
     std::vector<Emitter> dynamic_emitters_; // that move or vary

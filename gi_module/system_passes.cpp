@@ -66,6 +66,8 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
         SUNFLECK_TRY(add_many_light(graph, gpu_scene, g_buffer, camera, output));
     else
         SUNFLECK_TRY(add_brute_force(graph, gpu_scene, g_buffer, camera, output));
+    if (input_.show == shared::show_nothing)
+        SUNFLECK_TRY(transfer_pass_->add_passes(graph, gpu_scene, g_buffer, camera, transfer_.draws(), output));
     counters_.shadow_maps_stale = scheduler_.stale();
     return {};
 }

@@ -34,8 +34,11 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         ->required();
     app.add_option("--size", options.size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (degrees)");
-    app.add_option("--movers", options.movers, "per_pixel: movers receive light; static: they also reflect it")
-        ->check(CLI::IsMember({"per_pixel", "static"}))
+    app.add_option("--movers", options.movers,
+                   "per_pixel: movers receive light; static: they also reflect it; prt: complex ones are lit at their "
+                   "vertices, "
+                   "by precomputed radiance transfer")
+        ->check(CLI::IsMember({"per_pixel", "static", "prt"}))
         ->capture_default_str();
     app.add_option_function<std::string>(
            "--motion", [&options](const std::string& text) { options.motion = text == "on"; },
@@ -213,6 +216,7 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
                         {"shadow_maps_stale", counters.shadow_maps_stale},
                         {"light_batches", counters.light_batches},
                         {"render_passes", counters.render_passes},
+                        {"transfer_vertices", counters.transfer_vertices},
                         {"pass_fill", counters.pass_fill},
                         {"render_passes_unoptimised", counters.render_passes_unoptimised},
                         {"clamped_flux", counters.clamped_flux},
@@ -267,6 +271,14 @@ void watch_interrupts() {
         if (interrupt_count > 1) // pressed again: at once
             std::_Exit(130);
     });
+}
+
+std::filesystem::path user_cache_folder() {
+    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder != nullptr && folder[0] == '/')
+        return std::filesystem::path(folder) / "sunfleck";
+    const char* home = std::getenv("HOME");
+    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".cache/sunfleck"
+                                             : std::filesystem::path();
 }
 
 } // namespace sunfleck::command_line

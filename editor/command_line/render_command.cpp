@@ -76,6 +76,7 @@ Status run(const RenderOptions& options) {
     SUNFLECK_TRY(make_settings(options, {})); // what is wrong on the command line, before anything is loaded
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
+    renderer->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_ASSIGN(const io::ImportReport report,
                     renderer->load(path, import_options(options.scene), [&](ecs::Registry& registry) {
                         return apply_environment(options.scene, registry);

@@ -50,6 +50,7 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     patches_.build(registry, meshes, options.patches, static_blockers_);
     movers_.clear();
     mover_slots_.clear();
+    unlit_slots_.clear();
     changes_.clear();
     affected_.assign(samples_.size(), 0);
     static_states_.clear();

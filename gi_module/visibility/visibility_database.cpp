@@ -74,6 +74,8 @@ PairState VisibilityDatabase::state(std::uint32_t node, std::uint32_t sample) co
     const PairState fixed = static_state(node, sample);
     if (fixed == PairState::unlit || fixed == PairState::full)
         return fixed;
+    if (node >= patches_.nodes().size() && unlit_slots_[node - patches_.nodes().size()])
+        return PairState::unlit;
     if (full_counts_[at(node, sample)] > 0)
         return PairState::full;
     const bool mover = node >= patches_.nodes().size();
@@ -308,7 +310,7 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         const auto found = movers_.find(bits);
         const bool added = found == movers_.end();
         Mover& mover = movers_[bits];
-        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks &&
+        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks && mover.lit == place->lit &&
             mover.revision == place->revision)
             continue;
         if (added) {
@@ -323,6 +325,7 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
                 free = mover_slots_.insert(free, ecs::null_entity);
             *free = place->entity;
             mover.slot = std::uint32_t(free - mover_slots_.begin());
+            unlit_slots_.resize(mover_slots_.size(), 0);
             grow_rows();
         } else if (mover.blocks) {
             mark_affected(mover_node(mover.entity));
@@ -331,6 +334,8 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
         mover.revision = place->revision;
         mover.blocks = place->blocks;
+        mover.lit = place->lit;
+        unlit_slots_[mover.slot] = !place->lit;
         mover.matrix = place->matrix;
         mover.blocker.place(place->matrix);
         const std::uint32_t node = mover_node(mover.entity);

@@ -40,6 +40,7 @@ struct MoverPlace {
     std::uint32_t mesh = 0;
     mat4 matrix{1.0f};
     bool blocks = true;         // false: it is lit, but casts no shadow
+    bool lit = true;            // false: its pixels get no light from here, so that all its pairs read "unlit"
     bool solid = true;          // false: it has holes, or changes its shape
     std::uint32_t revision = 0; // of the mesh
 };
@@ -121,6 +122,7 @@ private:
         std::uint32_t slot = 0;
         mat4 matrix{1.0f};
         bool blocks = true;
+        bool lit = true;
         MovingBlocker blocker;
         // By sample: node * 2 + (full ? 1 : 0), sorted.
         std::vector<std::vector<std::uint32_t>> footprint;
@@ -178,8 +180,9 @@ private:
     std::vector<Cluster> clusters_;
     std::vector<std::uint32_t> cluster_of_; // by sample
     std::vector<Group> groups_;
-    std::map<EntityBits, Mover> movers_;   // ordered: results never depend on insertion
-    std::vector<ecs::Entity> mover_slots_; // node = static nodes + slot; null entity: free
+    std::map<EntityBits, Mover> movers_;    // ordered: results never depend on insertion
+    std::vector<ecs::Entity> mover_slots_;  // node = static nodes + slot; null entity: free
+    std::vector<std::uint8_t> unlit_slots_; // by slot: MoverPlace::lit is false
     std::vector<std::uint8_t> static_states_;
     std::vector<std::uint16_t> full_counts_, partial_counts_;
     std::vector<PairChange> changes_;

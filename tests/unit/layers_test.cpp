@@ -38,10 +38,12 @@ const Layers& allowed() {
         {"gi_module/brute_force", with(foundation, {"gi_module/transport", "gi_module/shadows", "gi_module"})},
         {"gi_module/many_light", with(foundation, {"gi_module/transport", "gi_module/light_sampling",
                                                    "gi_module/shadows", "gi_module/visibility", "gi_module"})},
+        {"gi_module/transfer", with(foundation, {"gi_module/transport", "gi_module/visibility"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
-                                        "gi_module/brute_force", "gi_module/visibility", "gi_module/many_light"})},
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
+                                        "gi_module/shadows", "gi_module/brute_force", "gi_module/visibility",
+                                        "gi_module/many_light", "gi_module/transfer"})},
     };
     return layers;
 }

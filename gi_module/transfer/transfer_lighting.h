@@ -1,0 +1,51 @@
+// Complex movers lit by precomputed transfer in place of light samples at each pixel: irradiance at their vertices.
+#pragma once
+
+#include "engine/gpu/frame_resources.h"
+#include "gi_module/transfer/environment_probe.h"
+#include "gi_module/transfer/transfer_data.h"
+
+#include <map>
+
+namespace sunfleck::gi {
+
+// A mover to draw, with the irradiance of its vertices.
+struct TransferDraw {
+    scene::DrawItem item;
+    gpu::UploadSlice irradiance; // vec4 a vertex, W/m2 without albedo
+};
+
+struct TransferLightingOptions {
+    std::uint32_t points = 4;            // of the grid, along each axis
+    std::uint32_t reflections = 2;       // of the mover's light onto itself, at most transfer_orders - 1
+    std::filesystem::path cache;         // folder for precomputed transfer; empty: none
+    std::function<bool(float)> progress; // of precomputation
+};
+
+class TransferLighting {
+public:
+    // Triangles from which a mesh is lit this way, and vertices up to which.
+    static constexpr std::uint32_t least_triangles = 128, most_vertices = 65536;
+
+    // Whether a mover can be lit this way: rigid, opaque, scaled alike in all directions, and complex enough.
+    static bool takes(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
+                      std::uint32_t mesh);
+
+    // Once a frame: the draws of all movers that `takes` says yes to. Meshes are precomputed when first met.
+    Status update(const ecs::Registry& registry, const scene::MeshStore& meshes, const ProbeScene& scene,
+                  const TransferLightingOptions& options, gpu::FrameResources& resources);
+    const std::vector<TransferDraw>& draws() const { return draws_; }
+    void clear() { draws_.clear(); }
+    std::uint64_t vertices() const;
+    // Of the stored transfer.
+    std::uint64_t memory_bytes() const;
+
+private:
+    Result<const TransferData*> transfer_of(const scene::MeshStore& meshes, std::uint32_t mesh,
+                                            const TransferLightingOptions& options);
+
+    std::map<std::uint32_t, TransferData> transfers_; // by mesh
+    std::vector<TransferDraw> draws_;
+};
+
+} // namespace sunfleck::gi

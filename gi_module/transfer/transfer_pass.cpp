@@ -1,0 +1,136 @@
+#include "gi_module/transfer/transfer_pass.h"
+
+#include "engine/gpu/rendering.h"
+#include "engine/scene/camera_shared.h"
+#include "gi_module/transfer/transfer_shared.h"
+
+#include <cstring>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr VkFormat drawn_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+// The pixels that the boxes of all draws may cover; the whole picture if one reaches behind the camera.
+shared::TransferMergeConstants covered(const std::vector<TransferDraw>& draws, const gpu::UploadSlice& camera,
+                                       const GBufferInput& g_buffer) {
+    shared::CameraRow row;
+    std::memcpy(&row, camera.data, sizeof row);
+    vec2 low(1e9f), high(-1e9f);
+    for (const TransferDraw& draw : draws)
+        for (int i = 0; i < 8; ++i) {
+            const Bounds& b = draw.item.bounds;
+            const vec3 corner(i & 1 ? b.maximum.x : b.minimum.x, i & 2 ? b.maximum.y : b.minimum.y,
+                              i & 4 ? b.maximum.z : b.minimum.z);
+            const vec4 clip = row.view_projection * vec4(corner, 1.0f);
+            if (clip.w <= 1e-4f)
+                return {0, 0, g_buffer.width, g_buffer.height};
+            const vec2 place(clip.x / clip.w, clip.y / clip.w);
+            low = glm::min(low, place);
+            high = glm::max(high, place);
+        }
+    const vec2 size(float(g_buffer.width), float(g_buffer.height));
+    const vec2 first = glm::clamp(glm::floor((low * 0.5f + 0.5f) * size) - 1.0f, vec2(0.0f), size);
+    const vec2 end = glm::clamp(glm::ceil((high * 0.5f + 0.5f) * size) + 1.0f, first, size);
+    return {std::uint32_t(first.x), std::uint32_t(first.y), std::uint32_t(end.x - first.x),
+            std::uint32_t(end.y - first.y)};
+}
+
+} // namespace
+
+Result<std::unique_ptr<TransferPass>> TransferPass::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+    std::unique_ptr<TransferPass> pass(new TransferPass(device));
+    VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
+    SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass->sampler_), "creating a sampler");
+    using enum gpu::BindingKind;
+    gpu::GraphicsDescription drawing;
+    drawing.vertex_shader = "gi_module/transfer/transfer.vert";
+    drawing.fragment_shader = "gi_module/transfer/transfer.frag";
+    drawing.bindings = {uniform_buffer, storage_buffer, storage_buffer, sampled_image, sampled_image};
+    drawing.push_constant_bytes = sizeof(shared::TransferConstants);
+    drawing.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
+    drawing.colour_formats = {drawn_format};
+    SUNFLECK_ASSIGN(pass->draw_, pipelines.graphics(drawing));
+    gpu::ComputeDescription merging;
+    merging.shader = "gi_module/transfer/transfer_merge.comp";
+    merging.bindings = {sampled_image, storage_image};
+    merging.push_constant_bytes = sizeof(shared::TransferMergeConstants);
+    SUNFLECK_ASSIGN(pass->merge_, pipelines.compute(merging));
+    return pass;
+}
+
+TransferPass::~TransferPass() {
+    device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr);
+}
+
+Status TransferPass::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferInput& g_buffer,
+                                const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws,
+                                gpu::ResourceId output) {
+    const shared::TransferMergeConstants area = covered(draws, camera, g_buffer);
+    if (draws.empty() || area.width == 0 || area.height == 0)
+        return {};
+    const gpu::ResourceId drawn =
+        graph.create_image("transferred light", drawn_format, g_buffer.width, g_buffer.height);
+    graph.add_pass("transfer")
+        .read(g_buffer.depth, gpu::Usage::sampled)
+        .read(g_buffer.surface, gpu::Usage::sampled)
+        .write(drawn, gpu::Usage::colour_attachment)
+        .execute([this, &scene, g_buffer, camera, &draws, drawn, area](gpu::PassContext& context) {
+            const VkRect2D rectangle{{int(area.x), int(area.y)}, {area.width, area.height}};
+            return draw(context, scene, g_buffer, camera, draws, drawn, rectangle);
+        });
+    graph.add_pass("transfer merge")
+        .read(drawn, gpu::Usage::sampled)
+        .write(output, gpu::Usage::storage_write)
+        .execute([this, drawn, output, area](gpu::PassContext& context) -> Status {
+            const gpu::Binding bindings[] = {gpu::Binding::sampled_image(context.graph.view(drawn), sampler_),
+                                             gpu::Binding::storage_image(context.graph.view(output))};
+            SUNFLECK_TRY(context.resources.bind(context.commands, *merge_, bindings));
+            context.resources.push(context.commands, *merge_, area);
+            const auto groups = [](std::uint32_t pixels) {
+                return (pixels + shared::transfer_merge_side - 1) / shared::transfer_merge_side;
+            };
+            context.device.vk.vkCmdDispatch(context.commands, groups(area.width), groups(area.height), 1);
+            return {};
+        });
+    return {};
+}
+
+Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene, const GBufferInput& g_buffer,
+                          const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws,
+                          gpu::ResourceId target, const VkRect2D& area) const {
+    const VkRenderingAttachmentInfo colour =
+        gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea = area;
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachments = &colour;
+    const VolkDeviceTable& vk = context.device.vk;
+    vk.vkCmdBeginRendering(context.commands, &rendering);
+    const VkViewport viewport{0, 0, float(g_buffer.width), float(g_buffer.height), 0, 1};
+    vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
+    vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+    const VkBuffer vertices = scene.positions().handle();
+    const VkDeviceSize offset = 0;
+    vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);
+    vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+    Status status;
+    for (const TransferDraw& draw : draws) {
+        const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows()),
+                                         gpu::Binding::slice(draw.irradiance),
+                                         gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
+                                         gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_)};
+        status = context.resources.bind(context.commands, *draw_, bindings);
+        if (!status)
+            break;
+        context.resources.push(context.commands, *draw_,
+                               shared::TransferConstants{draw.item.row, draw.item.vertex_offset});
+        vk.vkCmdDrawIndexed(context.commands, draw.item.index_count, 1, draw.item.first_index, draw.item.vertex_offset,
+                            0);
+    }
+    vk.vkCmdEndRendering(context.commands);
+    return status;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,23 @@
+// Constants of the passes that draw movers lit by precomputed transfer.
+#ifndef SUNFLECK_GI_TRANSFER_TRANSFER_SHARED_H
+#define SUNFLECK_GI_TRANSFER_TRANSFER_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+struct TransferConstants {
+    uint row;         // of the instance
+    int first_vertex; // of the mesh, in the vertex buffers
+};
+
+// A rectangle of pixels.
+struct TransferMergeConstants {
+    uint x, y, width, height;
+};
+
+SHARED_CONSTANT uint transfer_merge_side = 8u; // pixels of a group
+
+// Of the reverse depth, relative: what differs by more is another layer of the mover.
+SHARED_CONSTANT float transfer_depth_tolerance = 5e-4f;
+
+SHARED_END
+#endif
