@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds and subtracts unshadowed samples in light maps, a work group for each patch. Each contribution is rounded to a
+// Adds and subtracts unshadowed samples in light maps, a work group for each job. Each contribution is rounded to a
 // fixed point by itself, so what was added can be taken away to the last bit.
 #include "gi_module/many_light/light_maps_shared.h"
 #include "gi_module/transport/light_row_shared.h"
@@ -25,7 +25,7 @@ void main() {
     if (number >= constants.jobs)
         return;
     const LightMapJob job = jobs[number];
-    for (uint i = gl_LocalInvocationID.x; i < job.columns * job.rows; i += 64u) {
+    for (uint i = job.first + gl_LocalInvocationID.x; i < job.first + job.count; i += 64u) {
         const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
         const vec3 position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
         ivec4 sum = job.clear != 0u ? ivec4(0) : texels[job.first_texel + i];

@@ -8,7 +8,11 @@ namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
-constexpr std::uint32_t most_texels = 256; // along a patch's side
+// Of an invocation's loops in all: llvmpipe ends a shader's loops, silently, after 65,535.
+constexpr std::uint32_t most_iterations = 40000;
+constexpr std::uint32_t most_samples = 60000; // with more, a single texel would take too many
+constexpr std::uint32_t invocations = 64;     // of a work group: light_maps.comp
+constexpr std::uint32_t most_texels = 256;    // along a patch's side
 constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;
 constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
 constexpr float highest_sum = 1073741824.0f;   // of all samples at once: 2^30 leaves room in 32 bits
@@ -57,7 +61,7 @@ std::uint64_t LightMaps::place_maps(const VisibilityDatabase& database, float te
         const SurfacePatch& patch = database.patches().nodes()[i];
         shared::NodeRow& row = node_rows_[i];
         row.first_texel = shared::no_light_map;
-        if (!patch.planar || !patch.is_leaf())
+        if (!patch.planar || !patch.is_leaf() || database.sample_count() > most_samples)
             continue;
         const auto texels = [&](const dvec3& a, const dvec3& b) {
             return std::clamp(std::uint32_t(std::ceil(float(glm::length(b - a)) / texel_side)) + 1u, 2u, most_texels);
@@ -86,6 +90,20 @@ void LightMaps::add_job(const VisibilityDatabase& database, std::uint32_t node, 
     job.clear = clear;
     job.first_change = std::uint32_t(changes_.size());
     jobs_.push_back(job);
+}
+
+// A job's invocations take turns at its texels; each goes through all changes at every texel.
+void LightMaps::split_jobs() {
+    std::vector<shared::LightMapJob> parts;
+    for (shared::LightMapJob job : jobs_) {
+        const std::uint32_t turns = std::max(most_iterations / (job.change_count + 1), 1u);
+        const std::uint32_t all = job.columns * job.rows;
+        for (job.first = 0; job.first < all; job.first += job.count) {
+            job.count = std::min(turns * invocations, all - job.first);
+            parts.push_back(job);
+        }
+    }
+    jobs_ = std::move(parts);
 }
 
 // False if more than strengths changed, or too many of them.
@@ -138,6 +156,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
         for (const std::uint32_t sample : changed)
             job_rows_.push_back(rows[sample]);
         follow_changes(database, samples, changed);
+        split_jobs();
         summed_rows_.assign(rows.begin(), rows.end());
         counters_.updates = changes_.size();
         return {};
@@ -167,6 +186,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
                 ++jobs_.back().change_count;
             }
     }
+    split_jobs();
     counters_.updates = changes_.size();
     return {};
 }

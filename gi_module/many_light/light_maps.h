@@ -48,6 +48,7 @@ private:
     explicit LightMaps(gpu::Device& device) : device_(device) {}
     std::uint64_t place_maps(const VisibilityDatabase& database, float texel_side);
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
+    void split_jobs();
     void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
     bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
                             std::vector<std::uint32_t>& changed) const;

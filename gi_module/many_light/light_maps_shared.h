@@ -3,7 +3,8 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// What happens to one patch's light map: its texels are cleared or kept, then samples are added and subtracted.
+// What happens to a part of one patch's light map: its texels are cleared or kept, then samples are added and
+// subtracted.
 struct LightMapJob {
     vec4 corner; // world space
     vec4 u_edge;
@@ -15,8 +16,8 @@ struct LightMapJob {
     uint clear;
     uint first_change;
     uint change_count;
-    uint unused0;
-    uint unused1;
+    uint first; // which of its texels: large maps with many changes are several jobs
+    uint count;
 };
 
 SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // in a change: subtract the sample instead of adding it

@@ -316,6 +316,36 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
     EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
 }
 
+// Large patches with fine maps and many samples are many turns of a kernel's loops. Maps interpolate between texels, so
+// that pixels differ a little; none may stay dark.
+TEST_F(ManyLightTest, LargeLightMapsAreFilledToTheEnd) {
+    GpuWorld world(assets::make_near_occluder, "view");
+    world.request.width = 96;
+    world.request.height = 72;
+    gi::Settings settings;
+    settings.lights = 600;
+    settings.clamp_scale = 8.0f; // small radius, fine texels
+    settings.patch_levels = 0;
+    settings.shadow_map_resolution = 32;
+    settings.low_resolution = 1;
+    world.set(settings);
+    const io::Picture with = world.picture();
+    EXPECT_GT(world.renderer->lighting().counters().light_map_texels, 100000u);
+    settings.light_maps = false;
+    world.set(settings);
+    const io::Picture without = world.picture();
+    std::size_t dark = 0;
+    double difference = 0, brightness = 0;
+    for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+        const double a = double(luminance(vec3(with.pixels[i]))), b = double(luminance(vec3(without.pixels[i])));
+        dark += b > 0.05 && a < 0.5 * b;
+        difference += std::abs(a - b);
+        brightness += b;
+    }
+    EXPECT_LT(dark, with.pixels.size() / 500);
+    EXPECT_LT(difference, 0.03 * brightness);
+}
+
 TEST_F(ManyLightTest, AnyNumberOfSamplesAndAnyMovers) {
     GpuWorld world(assets::make_two_rooms, "bench_1");
     world.request.width = 48;
