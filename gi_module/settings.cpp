@@ -66,6 +66,9 @@ const TypeDescription& Settings::description() {
          SUNFLECK_FIELD(
              Settings, map_budget, "maps", 0, 65536,
              "Shadow maps that movers changed, redrawn in a frame at most; fewer is faster, and shadows lag behind"),
+         SUNFLECK_FIELD(Settings, map_milliseconds, "ms", 0, 1000,
+                        "GPU time for such maps in a frame, in place of their number; for interactive use, since the "
+                        "picture then depends on the machine; 0: their number"),
          SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "contribution",
                          "flux_and_age", "age"),
          SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,

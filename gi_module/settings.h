@@ -57,6 +57,7 @@ struct Settings {
     bool static_maps = true;
     bool map_detail = true;
     std::uint32_t map_budget = 100; // shadow maps a frame
+    float map_milliseconds = 0.0f;  // GPU time for them; 0: map_budget counts
     MapPriority map_priority = MapPriority::flux_and_age;
     bool cluster_tests = true;
     bool count_passes = false;

@@ -401,10 +401,15 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     else
         mark_by_bounds(gpu_scene);
     // The host's budget is a limit; the setting's is exceeded for maps that could not be used otherwise.
-    const std::uint32_t wanted = std::max(settings_.map_budget, std::uint32_t(scheduler_.unusable()));
+    map_budget_.took(input.measured_serial, input.measured_map_milliseconds);
+    const std::uint32_t usual = settings_.map_milliseconds > 0.0f
+                                    ? map_budget_.maps_in(double(settings_.map_milliseconds), settings_.map_budget)
+                                    : settings_.map_budget;
+    const std::uint32_t wanted = std::max(usual, std::uint32_t(scheduler_.unusable()));
     const std::uint32_t budget = uses_many_light() ? std::min(input.map_budget, wanted) : input.map_budget;
     to_draw_ =
         settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
+    map_budget_.drew(input.serial, to_draw_.size());
     counters_.light_samples = samples_.size();
     counters_.light_samples_dynamic = dynamic_samples_.size();
     counters_.light_samples_blocked = blocked_paths_.count();

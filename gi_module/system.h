@@ -23,6 +23,7 @@
 #include "gi_module/many_light/many_light.h"
 #include "gi_module/many_light/pass_optimisation.h"
 #include "gi_module/settings.h"
+#include "gi_module/shadows/map_budget.h"
 #include "gi_module/shadows/map_scheduler.h"
 #include "gi_module/transfer/transfer_pass.h"
 #include "gi_module/transport/g_buffer.h"
@@ -43,6 +44,10 @@ struct FrameInput {
     // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; Settings::map_priority says which
     // go first.
     std::uint32_t map_budget = 0xffffffffu;
+    // What the GPU took for the passes called "shadow maps" and "shadow map copies" of an earlier frame, if the host
+    // measures it; only for Settings::map_milliseconds.
+    std::uint64_t measured_serial = 0;
+    double measured_map_milliseconds = 0.0;
     // Reflected light is multiplied by this: 0 shows direct light alone, from the same samples.
     float indirect_scale = 1.0f;
     // False colours of the many-light system in place of the irradiance: shared::show_... (many_light_shared.h).
@@ -166,6 +171,7 @@ private:
     std::vector<shared::LightRow> rows_;         // of the samples
     std::vector<ecs::Entity> entities_;          // of the samples
     MapScheduler scheduler_;
+    MapBudget map_budget_;
     std::vector<std::uint32_t> to_draw_;
     VisibilityDatabase database_;
     VisibilityOptions database_options_;

@@ -98,6 +98,11 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.show = request.show;
+    const gpu::FrameTimes& times = timers_->latest();
+    input.measured_serial = times.serial;
+    for (const char* pass : {"shadow maps", "shadow map copies"})
+        if (const auto found = times.milliseconds.find(pass); found != times.milliseconds.end())
+            input.measured_map_milliseconds += found->second;
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;

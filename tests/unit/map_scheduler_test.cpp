@@ -1,9 +1,11 @@
 // The order in which shadow maps are redrawn.
+#include "gi_module/shadows/map_budget.h"
 #include "gi_module/shadows/map_scheduler.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <random>
 
 namespace sunfleck::gi {
@@ -16,6 +18,38 @@ std::vector<LightSample> samples_of(std::size_t count, std::mt19937& random) {
         sample.bounce = random() % 4;
     }
     return samples;
+}
+
+// A machine that takes 0.1 ms a map, and then, under load, 0.4 ms; times arrive three frames late.
+TEST(MapBudget, KeepsToTheTimeThatItIsGiven) {
+    MapBudget budget;
+    EXPECT_EQ(budget.maps_in(5.0, 77), 77u);
+    std::deque<std::pair<std::uint64_t, double>> late;
+    double a_map = 0.1;
+    std::uint32_t maps = 0;
+    for (std::uint64_t serial = 1; serial <= 80; ++serial) {
+        if (late.size() == 3) {
+            budget.took(late.front().first, late.front().second);
+            late.pop_front();
+        }
+        maps = budget.maps_in(5.0, 77);
+        budget.drew(serial, maps);
+        late.emplace_back(serial, a_map * double(maps));
+        if (serial == 30) {
+            EXPECT_NEAR(maps, 50, 1);
+            a_map = 0.4;
+        }
+    }
+    EXPECT_NEAR(maps, 12, 1);
+    EXPECT_EQ(budget.maps_in(0.001, 77), 1u) << "some progress is always made";
+    MapBudget other;
+    other.drew(5, 10);
+    other.took(4, 100.0); // not known
+    other.took(6, 100.0);
+    EXPECT_EQ(other.maps_in(5.0, 77), 77u);
+    other.drew(7, 0); // nothing was drawn
+    other.took(7, 3.0);
+    EXPECT_EQ(other.maps_in(5.0, 77), 77u);
 }
 
 // Every frame all maps become stale again; whatever its flux, none waits longer than 8 * ceil(stale / budget) frames.

@@ -1,0 +1,39 @@
+#include "gi_module/shadows/map_budget.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr std::size_t most_frames = 16; // that wait for their times
+constexpr double newest_share = 0.25;   // of the running mean
+
+} // namespace
+
+void MapBudget::drew(std::uint64_t serial, std::uint64_t maps) {
+    frames_.push_back({serial, maps});
+    if (frames_.size() > most_frames)
+        frames_.pop_front();
+}
+
+void MapBudget::took(std::uint64_t serial, double milliseconds) {
+    while (!frames_.empty() && frames_.front().serial < serial)
+        frames_.pop_front();
+    if (frames_.empty() || frames_.front().serial != serial)
+        return;
+    const std::uint64_t maps = frames_.front().maps;
+    frames_.pop_front();
+    if (maps == 0 || !(milliseconds > 0.0))
+        return;
+    const double a_map = milliseconds / double(maps);
+    milliseconds_a_map_ =
+        milliseconds_a_map_ > 0.0 ? milliseconds_a_map_ + newest_share * (a_map - milliseconds_a_map_) : a_map;
+}
+
+std::uint32_t MapBudget::maps_in(double milliseconds, std::uint32_t unknown) const {
+    if (!(milliseconds_a_map_ > 0.0))
+        return unknown;
+    return std::uint32_t(std::clamp(milliseconds / milliseconds_a_map_, 1.0, 65536.0));
+}
+
+} // namespace sunfleck::gi
