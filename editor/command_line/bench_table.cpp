@@ -54,6 +54,20 @@ Json BenchTable::json(const gpu::Device* device) const {
     return json;
 }
 
+namespace {
+
+// RFC 4180: text with commas or quotes stands in quotes.
+std::string csv_field(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
+} // namespace
+
 std::string BenchTable::csv() const {
     std::ostringstream text;
     const char* separator = "";
@@ -66,7 +80,7 @@ std::string BenchTable::csv() const {
     for (const Json& row : rows) {
         separator = "";
         for (const auto& [key, value] : row.items()) {
-            text << separator << (value.is_string() ? value.get<std::string>() : value.dump());
+            text << separator << (value.is_string() ? csv_field(value.get<std::string>()) : value.dump());
             separator = ",";
         }
         text << '\n';
