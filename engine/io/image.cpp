@@ -20,9 +20,16 @@ std::vector<unsigned char> to_bytes(const Picture& picture) {
     return bytes;
 }
 
+// Pictures are read and written side by side, each by one thread. Pools of threads of OpenImageIO's and OpenEXR's own
+// would end after main, in the order in which static objects happen to.
+void use_no_pools() {
+    [[maybe_unused]] static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
+}
+
 // Encoded in memory: the encoders do not report every failed write, our own file writing does.
 Result<std::string> encode(const std::filesystem::path& path, const Picture& picture, PictureKind kind) {
     const auto failure = [&](const std::string& why) { return Error{"cannot write '" + path.string() + "': " + why}; };
+    use_no_pools();
     const std::unique_ptr<OIIO::ImageOutput> output =
         OIIO::ImageOutput::create(kind == PictureKind::png ? "png" : "openexr");
     if (!output)
@@ -68,6 +75,7 @@ struct OpenPicture {
 Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes) {
     if (bytes.empty())
         return Error{"the picture is empty"};
+    use_no_pools();
     const std::optional<PictureKind> kind = sniff_picture(bytes);
     if (!kind)
         return Error{"it is not a PNG, JPEG, EXR or HDR picture"};
@@ -169,6 +177,7 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
 }
 
 Result<std::string> encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& pixels) {
+    use_no_pools();
     const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
     OIIO::ImageSpec spec(int(width), int(height), 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:UnassociatedAlpha", 1);
