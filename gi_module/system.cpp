@@ -1,5 +1,6 @@
 #include "gi_module/system.h"
 
+#include "engine/core/hash.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/transport/clamping.h"
 
@@ -31,12 +32,8 @@ private:
 
 // Tells whether anything about the emitters changed.
 std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
-    const auto add = [&](const void* data, std::size_t size) {
-        const auto* bytes = static_cast<const unsigned char*>(data);
-        for (std::size_t i = 0; i < size; ++i)
-            hash = (hash ^ bytes[i]) * 0x100000001b3ull;
-    };
+    std::uint64_t hash = hash_start;
+    const auto add = [&](const void* data, std::size_t size) { hash = hash_bytes(hash, data, size); };
     for (const Emitter& emitter : emitters) {
         add(&emitter.kind, sizeof emitter.kind);
         add(&emitter.entity, sizeof emitter.entity);

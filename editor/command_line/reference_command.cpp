@@ -2,6 +2,7 @@
 #include "editor/command_line/common.h"
 
 #include "engine/core/file.h"
+#include "engine/core/hash.h"
 #include "engine/render/tone_map.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
@@ -26,10 +27,7 @@ struct ReferenceOptions {
 };
 
 std::uint64_t hash_text(const std::string& text) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
-    for (const char c : text)
-        hash = (hash ^ std::uint8_t(c)) * 0x100000001b3ull;
-    return hash;
+    return hash_bytes(hash_start, text.data(), text.size());
 }
 
 io::Picture to_picture(const Accumulation& accumulation, bool display, bool irradiance, float ev100) {

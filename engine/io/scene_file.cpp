@@ -1,6 +1,7 @@
 #include "engine/io/scene_file.h"
 
 #include "engine/core/file.h"
+#include "engine/core/hash.h"
 #include "engine/io/gltf_checks.h"
 #include "engine/io/image.h"
 #include "engine/scene/deformation.h"
@@ -61,12 +62,9 @@ const std::vector<ComponentAccess>& overridden_components() {
     return list;
 }
 
-// FNV-1a, 64 bits, as hexadecimal digits: tells damage, not forgery.
+// As hexadecimal digits.
 std::string checksum_of(std::string_view bytes) {
-    std::uint64_t hash = 0xcbf29ce484222325ull;
-    for (const char c : bytes)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-    return fmt::format("{:016x}", hash);
+    return fmt::format("{:016x}", hash_bytes(hash_start, bytes.data(), bytes.size()));
 }
 
 json field_to_json(const Field& field, const void* object) {

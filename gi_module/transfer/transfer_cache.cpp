@@ -1,5 +1,6 @@
 // Transfer on the disk: computed once for each content of a mesh.
 #include "engine/core/file.h"
+#include "engine/core/hash.h"
 #include "gi_module/transfer/transfer_data.h"
 
 #include <cstring>
@@ -16,14 +17,6 @@ struct Header {
     std::uint32_t vertices, orders, coefficients, unused;
 };
 
-// FNV-1a.
-std::uint64_t add_bytes(std::uint64_t hash, const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i)
-        hash = (hash ^ bytes[i]) * 0x100000001b3ull;
-    return hash;
-}
-
 std::filesystem::path file_of(const std::filesystem::path& folder, std::uint64_t hash) {
     char name[40];
     std::snprintf(name, sizeof name, "%016llx.transfer", static_cast<unsigned long long>(hash));
@@ -34,7 +27,7 @@ Header header_of(std::uint64_t hash, const TransferData& data) {
     Header header{};
     std::memcpy(header.magic, magic, sizeof magic);
     header.hash = hash;
-    header.checksum = add_bytes(0xcbf29ce484222325ull, data.rows.data(), data.rows.size() * sizeof(Harmonics));
+    header.checksum = hash_bytes(hash_start, data.rows.data(), data.rows.size() * sizeof(Harmonics));
     header.vertices = data.vertices;
     header.orders = std::uint32_t(transfer_orders);
     header.coefficients = std::uint32_t(harmonics_padded);
@@ -44,10 +37,10 @@ Header header_of(std::uint64_t hash, const TransferData& data) {
 } // namespace
 
 std::uint64_t transfer_hash(const scene::Mesh& mesh, const TransferPrecision& precision) {
-    std::uint64_t hash = add_bytes(0xcbf29ce484222325ull, &precision.rays, sizeof precision.rays);
-    hash = add_bytes(hash, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
-    hash = add_bytes(hash, mesh.normals.data(), mesh.normals.size() * sizeof(vec3));
-    return add_bytes(hash, mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t));
+    std::uint64_t hash = hash_bytes(hash_start, &precision.rays, sizeof precision.rays);
+    hash = hash_bytes(hash, mesh.positions.data(), mesh.positions.size() * sizeof(vec3));
+    hash = hash_bytes(hash, mesh.normals.data(), mesh.normals.size() * sizeof(vec3));
+    return hash_bytes(hash, mesh.indices.data(), mesh.indices.size() * sizeof(std::uint32_t));
 }
 
 std::optional<TransferData> read_transfer(const std::filesystem::path& folder, std::uint64_t hash,

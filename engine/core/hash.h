@@ -1,0 +1,19 @@
+// FNV-1a, 64 bits: tells contents apart and damage, not forgery.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sunfleck {
+
+inline constexpr std::uint64_t hash_start = 0xcbf29ce484222325ull;
+
+// Goes on from `hash` with more bytes.
+inline std::uint64_t hash_bytes(std::uint64_t hash, const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < size; ++i)
+        hash = (hash ^ bytes[i]) * 0x100000001b3ull;
+    return hash;
+}
+
+} // namespace sunfleck
