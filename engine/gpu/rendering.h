@@ -15,4 +15,13 @@ inline VkRenderingAttachmentInfo rendering_attachment(VkImageView view, VkImageL
     return info;
 }
 
+// Begins rendering onto attachments of this size; draws change only the rendering's area of them.
+inline void begin_rendering(const VolkDeviceTable& vk, VkCommandBuffer commands, const VkRenderingInfo& rendering,
+                            std::uint32_t width, std::uint32_t height) {
+    vk.vkCmdBeginRendering(commands, &rendering);
+    const VkViewport viewport{0, 0, float(width), float(height), 0, 1};
+    vk.vkCmdSetViewport(commands, 0, 1, &viewport);
+    vk.vkCmdSetScissor(commands, 0, 1, &rendering.renderArea);
+}
+
 } // namespace sunfleck::gpu

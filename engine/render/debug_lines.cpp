@@ -59,10 +59,7 @@ void DebugLines::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const gpu:
             rendering.pColorAttachments = &colour;
             rendering.pDepthAttachment = &depth;
             const VolkDeviceTable& vk = context.device.vk;
-            vk.vkCmdBeginRendering(context.commands, &rendering);
-            const VkViewport viewport{0, 0, float(g_buffer.width), float(g_buffer.height), 0, 1};
-            vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-            vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+            gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
             const gpu::Binding binding = gpu::Binding::slice(camera);
             const Status status = context.resources.bind(context.commands, *pipeline_, {&binding, 1});
             vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &slice.buffer, &slice.offset);

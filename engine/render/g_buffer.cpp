@@ -138,10 +138,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     rendering.pColorAttachments = colours.data();
     rendering.pDepthAttachment = &depth;
     const VolkDeviceTable& vk = context.device.vk;
-    vk.vkCmdBeginRendering(context.commands, &rendering);
-    const VkViewport viewport{0, 0, float(target.width), float(target.height), 0, 1};
-    vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-    vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+    gpu::begin_rendering(vk, context.commands, rendering, target.width, target.height);
     Status status;
     if (!scene.draws().empty()) {
         const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle(),

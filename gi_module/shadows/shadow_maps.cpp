@@ -288,12 +288,9 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
     rendering.layerCount = std::uint32_t(chunk.slots.size());
     rendering.pDepthAttachment = &depth;
     const VolkDeviceTable& vk = context.device.vk;
-    vk.vkCmdBeginRendering(context.commands, &rendering);
+    gpu::begin_rendering(vk, context.commands, rendering, resolution_, resolution_);
     Status status;
     if (chunk.command_count > 0 || !chunk.hole_textures.empty()) {
-        const VkViewport viewport{0, 0, float(resolution_), float(resolution_), 0, 1};
-        vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-        vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
         const VkBuffer vertices = scene.positions().handle();
         const VkDeviceSize offset = 0;
         vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);

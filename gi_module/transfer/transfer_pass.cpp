@@ -107,10 +107,7 @@ Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scen
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &colour;
     const VolkDeviceTable& vk = context.device.vk;
-    vk.vkCmdBeginRendering(context.commands, &rendering);
-    const VkViewport viewport{0, 0, float(g_buffer.width), float(g_buffer.height), 0, 1};
-    vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-    vk.vkCmdSetScissor(context.commands, 0, 1, &rendering.renderArea);
+    gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
     const VkBuffer vertices = scene.positions().handle();
     const VkDeviceSize offset = 0;
     vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);
