@@ -1,0 +1,88 @@
+// What is exported reads as it was.
+#include "tests/support/gltf_files.h"
+
+#include <algorithm>
+
+namespace sunfleck {
+namespace {
+
+using tests::World;
+
+void expect_same_texture(const scene::TextureUse& a, const World& from, const scene::TextureUse& b, const World& to) {
+    ASSERT_EQ(bool(a), bool(b));
+    if (!a)
+        return;
+    EXPECT_EQ(a.set, b.set);
+    const vec4 place(0.2f, 0.7f, 0.4f, 0.9f);
+    EXPECT_LT(glm::length(a.coordinates(place) - b.coordinates(place)), 1e-5f);
+    const scene::Texture &before = from.textures[std::uint32_t(a.texture)],
+                         &after = to.textures[std::uint32_t(b.texture)];
+    EXPECT_EQ(before.pixels, after.pixels);
+    EXPECT_EQ(before.srgb, after.srgb);
+    EXPECT_EQ(before.nearest, after.nearest);
+    EXPECT_EQ(before.wrap_u, after.wrap_u);
+    EXPECT_EQ(before.wrap_v, after.wrap_v);
+}
+
+void expect_same_entity(World& from, ecs::Entity before, World& to, ecs::Entity after) {
+    using Use = scene::TextureUse scene::MaterialTextures::*;
+    const auto& a = from.registry.get<scene::Material>(before);
+    const auto& b = to.registry.get<scene::Material>(after);
+    for (const Field& field : scene::Material::description().fields)
+        if (std::string(field.name) != "emission") { // through another unit
+            EXPECT_EQ(field_to_text(field, &a), field_to_text(field, &b)) << field.name;
+        }
+    EXPECT_LT(glm::length(a.emission - b.emission), 1e-5f * (1.0f + glm::length(a.emission)));
+    const scene::MaterialTextures none;
+    const auto* textures = from.registry.try_get<scene::MaterialTextures>(before);
+    const auto* again = to.registry.try_get<scene::MaterialTextures>(after);
+    for (const Use use : {&scene::MaterialTextures::base_colour, &scene::MaterialTextures::metallic_roughness,
+                          &scene::MaterialTextures::normal, &scene::MaterialTextures::emission})
+        expect_same_texture((textures ? *textures : none).*use, from, (again ? *again : none).*use, to);
+    const scene::Mesh& mesh = from.meshes[from.registry.get<scene::MeshInstance>(before).mesh];
+    const scene::Mesh& read = to.meshes[to.registry.get<scene::MeshInstance>(after).mesh];
+    EXPECT_EQ(mesh.positions, read.positions);
+    EXPECT_EQ(mesh.indices, read.indices);
+    EXPECT_EQ(mesh.texture_coordinates, read.texture_coordinates);
+}
+
+// Every sample model that is valid, and the corpus. With SUNFLECK_EXPORTS what is
+// exported stays in that folder (for the Khronos validator).
+TEST(GltfExport, WhatIsWrittenReadsAsItWas) {
+    namespace fs = std::filesystem;
+    const tests::Folder folder;
+    const char* keep = std::getenv("SUNFLECK_EXPORTS");
+    const fs::path place = keep != nullptr ? fs::path(keep) : folder.path;
+    std::vector<fs::path> files;
+    for (const char* models : {"/usr/share/assimp/models/glTF2", SUNFLECK_SOURCE_DIR "/tests/corpus/gltf"}) {
+        std::error_code code;
+        for (const auto& entry : fs::recursive_directory_iterator(models, code))
+            if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
+                files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    int written = 0, compared = 0;
+    for (const fs::path& file : files) {
+        World before, after;
+        if (!io::import_gltf(file, before.registry, before.meshes, before.textures))
+            continue;
+        scene::update_world_transforms(before.registry);
+        const fs::path copy = place / (std::to_string(written++) + "_" + file.stem().string() + ".glb");
+        ASSERT_TRUE(io::export_gltf(copy, before.registry, before.meshes, before.textures)) << file;
+        const auto report = io::import_gltf(copy, after.registry, after.meshes, after.textures);
+        ASSERT_TRUE(report) << file << ": " << report.error().message;
+        SCOPED_TRACE(file);
+        before.registry.view<scene::Name, scene::MeshInstance, scene::Material>().each(
+            [&](ecs::Entity entity, const scene::Name& name, const scene::MeshInstance&, const scene::Material&) {
+                const ecs::Entity found = scene::find_by_name(after.registry, name.name);
+                ASSERT_FALSE(found.is_null()) << name.name;
+                expect_same_entity(before, entity, after, found);
+                ++compared;
+            });
+    }
+    EXPECT_GT(written, 0);
+    EXPECT_GT(compared, 0);
+}
+
+} // namespace
+} // namespace sunfleck
