@@ -5,7 +5,7 @@
 namespace sunfleck::demo {
 namespace {
 
-// Shares of the whole at which reading, and then preparing, end.
+// Share of the whole at which reading ends; the rest is preparing.
 constexpr float read_until = 0.3f;
 
 } // namespace

@@ -236,7 +236,8 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
 namespace {
 
 // What the camera sees along the ray: single-sided surfaces not from behind.
-std::optional<raytrace::Hit> visible_hit(const raytrace::RayScene& rays, raytrace::Ray& ray, std::uint64_t& count) {
+std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& rays, raytrace::Ray ray,
+                                                      std::uint64_t& count) {
     constexpr int most_layers = 64;
     for (int layer = 0; layer < most_layers; ++layer) {
         ++count;
@@ -245,7 +246,7 @@ std::optional<raytrace::Hit> visible_hit(const raytrace::RayScene& rays, raytrac
             return std::nullopt;
         const raytrace::SurfacePoint point = rays.surface(ray, *hit);
         if (point.material.double_sided || glm::dot(point.geometric_normal, ray.direction) < 0.0f)
-            return hit;
+            return point;
         ray.origin = point.position + offset_distance * ray.direction;
     }
     return std::nullopt;
@@ -260,14 +261,15 @@ vec3 PathTracer::pixel_sample(std::uint32_t x, std::uint32_t y, std::uint32_t sa
     vec2 centre(float(x) + 0.5f, float(y) + 0.5f);
     if (settings.antialiasing)
         centre += vec2(path.random.at(0), path.random.at(1)) - 0.5f;
-    raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f, sample};
-    const auto hit = visible_hit(rays_, ray, rays);
+    const raytrace::Ray ray{vec3(camera.position), glm::normalize(shared::camera_ray(camera, centre)), 0.0f, 1e30f,
+                            sample};
+    const auto found = visible_surface(rays_, ray, rays);
     const bool radiance = settings.view == ReferenceView::radiance;
-    if (!hit) {
+    if (!found) {
         covered = 0;
         return radiance ? environment(ray.direction) : vec3(0.0f);
     }
-    const raytrace::SurfacePoint point = rays_.surface(ray, *hit);
+    const raytrace::SurfacePoint& point = *found;
     const auto emitter = area_emitters_.find(point.entity);
     covered = emitter != area_emitters_.end() && emitters_[emitter->second].is_lamp ? 0 : 1;
     if (!radiance && covered == 0)

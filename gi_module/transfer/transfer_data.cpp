@@ -20,10 +20,6 @@ struct SelfHit {
     float u, v;
 };
 
-struct VertexRays {
-    std::vector<SelfHit> hits;
-};
-
 class Precomputation {
 public:
     Precomputation(const scene::Mesh& mesh, const TransferPrecision& precision)
@@ -86,7 +82,7 @@ private:
                 for (std::size_t i = 0; i < harmonics; ++i)
                     row[i] += weight * values[i];
             } else if (faces(hit->primitive, direction)) {
-                from_[vertex].hits.push_back({hit->primitive, hit->u, hit->v});
+                from_[vertex].push_back({hit->primitive, hit->u, hit->v});
             }
         }
     }
@@ -101,7 +97,7 @@ private:
     void reflect(std::size_t vertex, std::size_t order) {
         Harmonics& row = data_.rows[vertex * transfer_orders + order];
         const float weight = 1.0f / float(side_ * side_);
-        for (const SelfHit& hit : from_[vertex].hits) {
+        for (const SelfHit& hit : from_[vertex]) {
             const std::uint32_t* corner = &mesh_.indices[3 * std::size_t(hit.primitive)];
             const float weights[3] = {1.0f - hit.u - hit.v, hit.u, hit.v};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -118,7 +114,7 @@ private:
     ecs::Registry registry_;
     scene::MeshStore meshes_;
     std::unique_ptr<raytrace::RayScene> rays_;
-    std::vector<VertexRays> from_;
+    std::vector<std::vector<SelfHit>> from_; // by vertex
     TransferData data_;
 };
 

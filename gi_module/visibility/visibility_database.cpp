@@ -310,8 +310,8 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
         const auto found = movers_.find(bits);
         const bool added = found == movers_.end();
         Mover& mover = movers_[bits];
-        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks && mover.lit == place->lit &&
-            mover.revision == place->revision)
+        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks &&
+            unlit_slots_[mover.slot] == !place->lit && mover.revision == place->revision)
             continue;
         if (added) {
             mover.entity = place->entity;
@@ -334,7 +334,6 @@ void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const
             mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
         mover.revision = place->revision;
         mover.blocks = place->blocks;
-        mover.lit = place->lit;
         unlit_slots_[mover.slot] = !place->lit;
         mover.matrix = place->matrix;
         mover.blocker.place(place->matrix);

@@ -122,7 +122,6 @@ private:
         std::uint32_t slot = 0;
         mat4 matrix{1.0f};
         bool blocks = true;
-        bool lit = true;
         MovingBlocker blocker;
         // By sample: node * 2 + (full ? 1 : 0), sorted.
         std::vector<std::vector<std::uint32_t>> footprint;
