@@ -44,7 +44,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->rays_, raytrace::RayScene::create());
     SUNFLECK_ASSIGN(renderer->lighting_, gi::System::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->g_buffer_pass_, render::GBufferPass::create(*renderer->pipelines_));
-    SUNFLECK_ASSIGN(renderer->composition_, render::CompositionPass::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->composition_,
+                    render::CompositionPass::create(device, *renderer->pipelines_, display_format));
     renderer->sky_ = std::make_unique<render::SkyImage>(device);
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));

@@ -7,12 +7,11 @@
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
 
+// All views, tone-mapped or scene-linear. The tone-mapped final picture has composition.frag.
 layout(local_size_x = 8, local_size_y = 8) in;
-// The final tone-mapped picture has a pipeline of its own, without the other views.
-layout(constant_id = 0) const uint final_only = 0;
 // Emission has an image of its own, and is not the same all over a surface.
-layout(constant_id = 1) const uint textured_emission = 0;
-layout(constant_id = 2) const uint sky_has_picture = 0;
+layout(constant_id = 0) const uint textured_emission = 0;
+layout(constant_id = 1) const uint sky_has_picture = 0;
 layout(set = 0, binding = 0) uniform sampler2D irradiance_image;
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
@@ -26,19 +25,7 @@ layout(set = 0, binding = 9) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 10) uniform sampler2D sky_image;
 layout(push_constant) uniform Constants { CompositionConstants constants; };
 
-const float pi = 3.14159265358979;
-
-// Radiance where no surface is: equirectangular, as scene::EnvironmentImage has it.
-vec3 sky_radiance(ivec2 pixel) {
-    const vec3 sky = vec3(constants.sky_red, constants.sky_green, constants.sky_blue);
-    if (sky_has_picture == 0)
-        return sky;
-    const vec3 d = normalize(camera_ray(camera, vec2(pixel) + 0.5));
-    const float c = cos(-constants.sky_rotation), s = sin(-constants.sky_rotation);
-    const vec3 turned = vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
-    const vec2 place = vec2(0.5 + atan(turned.x, -turned.z) / (2.0 * pi), acos(clamp(turned.y, -1.0, 1.0)) / pi);
-    return sky * textureLod(sky_image, place, 0.0).rgb;
-}
+#include "engine/render/sky_radiance.glsl"
 
 vec3 surface_radiance(ivec2 pixel, uint surface) {
     const vec3 irradiance = texelFetch(irradiance_image, pixel, 0).rgb;
@@ -63,11 +50,6 @@ void main() {
         return;
     const uint surface = texelFetch(surface_image, pixel, 0).r;
     const bool hit = surface != 0u;
-    if (final_only != 0) {
-        const vec3 radiance = hit ? surface_radiance(pixel, surface) : sky_radiance(pixel);
-        imageStore(output_image, pixel, vec4(display_from_radiance(radiance, constants.exposure), 1.0));
-        return;
-    }
     const bool emitter = (surface & surface_area_light) != 0u;
     vec4 value = vec4(0.0, 0.0, 0.0, hit ? 1.0 : 0.0);
     bool radiance = false;

@@ -1,24 +1,39 @@
 #include "engine/render/composition.h"
 
+#include "engine/gpu/rendering.h"
 #include "engine/render/tone_map.h"
 
 namespace sunfleck::render {
 
-Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::PipelineStore& pipelines,
+                                                VkFormat display_format) {
+    using enum gpu::BindingKind;
     CompositionPass pass;
-    gpu::ComputeDescription description;
-    description.shader = "engine/render/composition.comp";
-    description.bindings.assign(7, gpu::BindingKind::sampled_image);
-    description.bindings.push_back(gpu::BindingKind::storage_buffer);
-    description.bindings.push_back(gpu::BindingKind::storage_image);
-    description.bindings.push_back(gpu::BindingKind::uniform_buffer);
-    description.bindings.push_back(gpu::BindingKind::sampled_image);
-    description.push_constant_bytes = sizeof(shared::CompositionConstants);
-    for (std::uint32_t variant = 0; variant < 8; ++variant) {
-        const std::uint32_t final = variant >> 2, emission = variant >> 1 & 1, sky = variant & 1;
-        description.specialization = {final, emission, sky};
-        SUNFLECK_ASSIGN(pass.pipelines_[final][emission][sky], pipelines.compute(description));
-    }
+    gpu::ComputeDescription views;
+    views.shader = "engine/render/composition.comp";
+    views.bindings.assign(7, sampled_image);
+    views.bindings.insert(views.bindings.end(), {storage_buffer, storage_image, uniform_buffer, sampled_image});
+    views.push_constant_bytes = sizeof(shared::CompositionConstants);
+    gpu::GraphicsDescription final;
+    final.vertex_shader = "engine/render/composition.vert";
+    final.fragment_shader = "engine/render/composition.frag";
+    final.bindings = {sampled_image, sampled_image, sampled_image, sampled_image, uniform_buffer};
+    final.push_constant_bytes = sizeof(shared::CompositionConstants);
+    final.colour_formats = {display_format};
+    for (const std::uint32_t emission : {0, 1})
+        for (const std::uint32_t sky : {0, 1}) {
+            views.specialization = final.specialization = {emission, sky};
+            SUNFLECK_ASSIGN(pass.views_[emission][sky], pipelines.compute(views));
+            SUNFLECK_ASSIGN(pass.final_[emission][sky], pipelines.graphics(final));
+        }
+    gpu::GraphicsDescription emission;
+    emission.vertex_shader = "engine/render/composition_emission.vert";
+    emission.fragment_shader = "engine/render/composition_emission.frag";
+    emission.bindings = {sampled_image, sampled_image, sampled_image, uniform_buffer};
+    emission.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
+    emission.push_constant_bytes = sizeof(shared::EmissionConstants);
+    emission.colour_formats = {display_format};
+    SUNFLECK_ASSIGN(pass.emission_, pipelines.graphics(emission));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.sampler_), "creating a sampler");
     return pass;
@@ -31,14 +46,15 @@ void CompositionPass::destroy(gpu::Device& device) {
 
 void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                           const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const {
-    const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
-                                      g_buffer.albedo,
-                                      // bound, but not read, where there is none
-                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo,
-                                      g_buffer.emission.valid() ? g_buffer.emission : g_buffer.albedo};
-    auto pass = graph.add_pass("composition");
-    for (const gpu::ResourceId id : inputs)
-        pass.read(id, gpu::Usage::sampled);
+    if (input.view == shared::view_final && input.tone_map)
+        add_final(graph, scene, g_buffer, input, camera, output);
+    else
+        add_view(graph, scene, g_buffer, input, camera, output);
+}
+
+namespace {
+
+shared::CompositionConstants make_constants(const GBuffer& g_buffer, const CompositionInput& input) {
     shared::CompositionConstants constants{};
     constants.view = input.view;
     constants.tone_map = input.tone_map ? 1 : 0;
@@ -49,9 +65,101 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
     constants.sky_rotation = input.sky_rotation;
-    const bool final = input.view == shared::view_final && input.tone_map;
-    const gpu::Pipeline* kernel = pipelines_[final ? 1 : 0][g_buffer.emission.valid() ? 1 : 0]
-                                            [input.sky_image != nullptr && *input.sky_image ? 1 : 0];
+    return constants;
+}
+
+bool sky_has_picture(const CompositionInput& input) {
+    return input.sky_image != nullptr && *input.sky_image;
+}
+
+} // namespace
+
+void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                                const CompositionInput& input, const gpu::UploadSlice& camera,
+                                gpu::ResourceId output) const {
+    const bool emission_image = g_buffer.emission.valid();
+    auto pass = graph.add_pass("composition");
+    pass.read(input.irradiance, gpu::Usage::sampled)
+        .read(g_buffer.albedo, gpu::Usage::sampled)
+        .read(emission_image ? g_buffer.emission : g_buffer.surface, gpu::Usage::sampled)
+        .write(output, gpu::Usage::colour_attachment)
+        .execute([this, &scene, g_buffer, input, camera, output, emission_image](gpu::PassContext& context) -> Status {
+            const gpu::Pipeline& kernel = *final_[emission_image ? 1 : 0][sky_has_picture(input) ? 1 : 0];
+            const shared::CompositionConstants constants = make_constants(g_buffer, input);
+            const auto image = [&](gpu::ResourceId id) {
+                return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
+            };
+            auto target =
+                gpu::rendering_attachment(context.graph.view(output), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+            target.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // every pixel is written
+            VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+            rendering.renderArea.extent = {constants.width, constants.height};
+            rendering.layerCount = 1;
+            rendering.colorAttachmentCount = 1;
+            rendering.pColorAttachments = &target;
+            const VolkDeviceTable& vk = context.device.vk;
+            // Bound, but not read, where there is none.
+            const gpu::Binding bindings[] = {image(input.irradiance), image(g_buffer.albedo),
+                                             image(emission_image ? g_buffer.emission : g_buffer.albedo),
+                                             input.sky_image != nullptr ? input.sky_image->binding()
+                                                                        : image(g_buffer.albedo),
+                                             gpu::Binding::slice(camera)};
+            gpu::begin_rendering(vk, context.commands, rendering, constants.width, constants.height);
+            Status status = context.resources.bind(context.commands, kernel, bindings);
+            if (status) {
+                context.resources.push(context.commands, kernel, constants);
+                vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
+                if (!emission_image)
+                    status = draw_emission(context, scene, g_buffer, input.irradiance, camera, constants.exposure);
+            }
+            vk.vkCmdEndRendering(context.commands);
+            return status;
+        });
+}
+
+Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                                      gpu::ResourceId irradiance, const gpu::UploadSlice& camera,
+                                      float exposure) const {
+    bool bound = false;
+    for (const scene::DrawItem& item : scene.draws()) {
+        const shared::DrawConstants& draw = item.constants;
+        if ((draw.surface & shared::surface_emits) == 0 || (draw.surface & shared::surface_unlit) != 0)
+            continue;
+        if (!bound) {
+            const auto image = [&](gpu::ResourceId id) {
+                return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
+            };
+            const gpu::Binding bindings[] = {image(irradiance), image(g_buffer.albedo), image(g_buffer.surface),
+                                             gpu::Binding::slice(camera)};
+            SUNFLECK_TRY(context.resources.bind(context.commands, *emission_, bindings));
+            const VkBuffer positions = scene.positions().handle();
+            const VkDeviceSize offset = 0;
+            context.device.vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &positions, &offset);
+            context.device.vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+            bound = true;
+        }
+        const shared::EmissionConstants constants{
+            {draw.model[0], draw.model[1], draw.model[2]}, vec4(vec3(draw.emission), exposure), draw.surface};
+        context.resources.push(context.commands, *emission_, constants);
+        context.device.vk.vkCmdDrawIndexed(context.commands, item.index_count, 1, item.first_index, item.vertex_offset,
+                                           0);
+    }
+    return {};
+}
+
+void CompositionPass::add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                               const CompositionInput& input, const gpu::UploadSlice& camera,
+                               gpu::ResourceId output) const {
+    const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
+                                      g_buffer.albedo,
+                                      // bound, but not read, where there is none
+                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo,
+                                      g_buffer.emission.valid() ? g_buffer.emission : g_buffer.albedo};
+    auto pass = graph.add_pass("composition");
+    for (const gpu::ResourceId id : inputs)
+        pass.read(id, gpu::Usage::sampled);
+    const shared::CompositionConstants constants = make_constants(g_buffer, input);
+    const gpu::Pipeline* kernel = views_[g_buffer.emission.valid() ? 1 : 0][sky_has_picture(input) ? 1 : 0];
     pass.write(output, gpu::Usage::storage_write)
         .execute([this, &scene, kernel, output, constants, camera, sky = input.sky_image,
                   inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {

@@ -20,15 +20,25 @@ struct CompositionInput {
 
 class CompositionPass {
 public:
-    static Result<CompositionPass> create(gpu::Device& device, gpu::PipelineStore& pipelines);
-    // Writes all of `output`, a storage image with four channels.
+    static Result<CompositionPass> create(gpu::Device& device, gpu::PipelineStore& pipelines, VkFormat display_format);
+    // Writes all of `output`: a colour attachment of `display_format` for the final tone-mapped picture, else a storage
+    // image with four channels.
     void add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
              const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
     void destroy(gpu::Device& device);
 
 private:
-    // [the final tone-mapped picture only][emission has an image][the sky has a picture]
-    const gpu::Pipeline* pipelines_[2][2][2] = {};
+    void add_final(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                   const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
+    void add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                  const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
+    Status draw_emission(gpu::PassContext& context, const scene::GpuScene& scene, const GBuffer& g_buffer,
+                         gpu::ResourceId irradiance, const gpu::UploadSlice& camera, float exposure) const;
+
+    // [emission has an image][the sky has a picture]
+    const gpu::Pipeline* views_[2][2] = {};
+    const gpu::Pipeline* final_[2][2] = {};
+    const gpu::Pipeline* emission_ = nullptr;
     VkSampler sampler_ = VK_NULL_HANDLE;
 };
 

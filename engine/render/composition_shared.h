@@ -24,8 +24,21 @@ struct CompositionConstants {
     float sky_rotation; // rad, of that picture
 };
 
+// What the albedo's alpha says of a pixel, so that the final picture need not read surface ids.
+SHARED_CONSTANT float albedo_of_nothing = 0.0f; // no surface
+SHARED_CONSTANT float albedo_unlit = 0.5f;      // shown as it is, whatever the light
+SHARED_CONSTANT float albedo_lit = 1.0f;
+
+// An emitting surface in the final picture.
+struct EmissionConstants {
+    vec4 model[3];          // as in DrawConstants
+    vec4 emission_exposure; // rgb: radiance W/(sr m2); w: exposure_factor(EV100)
+    uint surface;           // as in the G-buffer
+};
+
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::CompositionConstants) == 36);
+static_assert(sizeof(sunfleck::shared::EmissionConstants) == 68);
 #endif
 #endif

@@ -10,13 +10,13 @@ namespace sunfleck::render {
 namespace {
 
 // Surfaces with textures read more of a vertex, and three textures.
-void describe_kind(std::uint32_t kind, gpu::GraphicsDescription& description) {
+void describe_kind(std::uint32_t kind, bool motion, gpu::GraphicsDescription& description) {
     const bool textured = kind >= scene::surface_kind_textured;
     description.vertex_shader = textured ? "engine/render/g_buffer_textured.vert" : "engine/render/g_buffer.vert";
     description.fragment_shader = textured ? "engine/render/g_buffer_textured.frag" : "engine/render/g_buffer.frag";
     description.bindings = {gpu::BindingKind::uniform_buffer, gpu::BindingKind::storage_buffer};
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}, {1, VK_FORMAT_R32G32B32_SFLOAT, 12}};
-    description.specialization = {kind};
+    description.specialization = {kind, motion};
     if (!textured)
         return;
     description.bindings.push_back(gpu::BindingKind::storage_buffer);
@@ -24,7 +24,7 @@ void describe_kind(std::uint32_t kind, gpu::GraphicsDescription& description) {
     description.attributes.push_back({2, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({3, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({4, VK_FORMAT_R8G8B8A8_UNORM, 4});
-    description.specialization = {kind == scene::surface_kind_holes ? 1u : 0u};
+    description.specialization = {kind == scene::surface_kind_holes, motion};
 }
 
 } // namespace
@@ -34,10 +34,12 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     gpu::GraphicsDescription description;
     description.depth_format = depth_format;
     description.dynamic_cull = true;
+    description.push_constant_bytes = sizeof(shared::DrawConstants);
     for (std::uint32_t kind = 0; kind < scene::surface_kinds; ++kind) {
-        describe_kind(kind, description);
+        describe_kind(kind, false, description);
         description.colour_formats = {normals_format, surface_format, albedo_format};
         SUNFLECK_ASSIGN(pass.pipelines_[nothing][kind], pipelines.graphics(description));
+        describe_kind(kind, true, description);
         description.colour_formats.push_back(motion_format);
         SUNFLECK_ASSIGN(pass.pipelines_[motion][kind], pipelines.graphics(description));
         description.colour_formats.push_back(emission_format);
@@ -127,6 +129,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         colours.push_back(attachment(target.motion, colour));
     if (target.emission.valid())
         colours.push_back(attachment(target.emission, colour));
+    colours[0].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // normals: nobody reads them where no surface is
     const auto& pipelines = pipelines_[target.emission.valid() ? motion_and_emission
                                        : target.motion.valid() ? motion
                                                                : nothing];
@@ -171,8 +174,8 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
             const VkFrontFace side = item->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
             if (side != front)
                 vk.vkCmdSetFrontFace(context.commands, front = side);
-            vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset,
-                                item->row);
+            context.resources.push(context.commands, *pipelines[item->kind], item->constants);
+            vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset, 0);
         }
     }
     vk.vkCmdEndRendering(context.commands);

@@ -3,8 +3,11 @@
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
 
+layout(constant_id = 1) const uint with_motion = 0;
+
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
+layout(push_constant) uniform Constants { DrawConstants draw; };
 
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
@@ -13,15 +16,12 @@ layout(location = 0) out vec3 out_position;
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec4 out_previous;
 layout(location = 3) out vec4 out_current;
-layout(location = 4) flat out uint out_row;
+
+#include "engine/render/draw_vertex.glsl"
 
 void main() {
-    const uint row = gl_InstanceIndex;
-    const vec4 world = rows[row].model * vec4(in_position, 1.0);
-    out_position = world.xyz;
-    out_normal = mat3(rows[row].normal_matrix) * in_normal;
-    out_previous = camera.previous_view_projection * (rows[row].previous_model * vec4(in_position, 1.0));
-    out_current = camera.view_projection * world;
-    out_row = row;
-    gl_Position = out_current;
+    out_position = world_position(in_position);
+    out_normal = world_normal(in_normal);
+    gl_Position = camera.view_projection * vec4(out_position, 1.0);
+    write_motion();
 }

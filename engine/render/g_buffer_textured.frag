@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "engine/core/octahedral.h"
+#include "engine/render/composition_shared.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
 #include "engine/scene/material_shared.h"
@@ -15,11 +16,12 @@ layout(set = 0, binding = 3) uniform sampler2D colour_texture;
 layout(set = 0, binding = 4) uniform sampler2D normal_texture;
 layout(set = 0, binding = 5) uniform sampler2D emission_texture;
 
+layout(push_constant) uniform Constants { DrawConstants draw; };
+
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_previous;
 layout(location = 3) in vec4 in_current;
-layout(location = 4) flat in uint in_row;
 layout(location = 5) in vec4 in_tangent;
 layout(location = 6) in vec4 in_colour;
 layout(location = 7) in vec4 in_colour_normal_place;
@@ -44,7 +46,7 @@ void main() {
     const vec4 colour = texture(colour_texture, in_colour_normal_place.xy) * in_colour;
     const vec3 bump_texel = texture(normal_texture, in_colour_normal_place.zw).xyz;
     const vec3 emission_texel = texture(emission_texture, in_emission_place).rgb;
-    const vec4 factors = materials[rows[in_row].material.x].factors;
+    const vec4 factors = materials[rows[(draw.surface & surface_row_mask) - 1u].material.x].factors;
     if (has_holes != 0) {
         const float alpha = colour.a * factors.x;
         const float least = factors.y >= 0.0 ? factors.y : dot_threshold(ivec2(gl_FragCoord.xy));
@@ -71,13 +73,12 @@ void main() {
     if (lean < 0.02)
         shading = normalize(shading + (0.02 - lean) * geometric);
     out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
-    vec4 emission = rows[in_row].emission;
+    vec3 emission = draw.emission.rgb;
     if (factors.w != 0.0)
-        emission.rgb *= emission_texel;
-    out_emission = vec4(emission.rgb, 1.0);
-    out_surface = (in_row + 1u) | (emission.w > 0.0 ? surface_area_light : 0u) |
-                  (rows[in_row].emission.r + rows[in_row].emission.g + rows[in_row].emission.b > 0.0 ? surface_emits : 0u) |
-                  (rows[in_row].material.y != 0u ? surface_unlit : 0u);
-    out_albedo = vec4(rows[in_row].base_colour.rgb * colour.rgb, 1.0);
+        emission *= emission_texel;
+    out_emission = vec4(emission, 1.0);
+    out_surface = draw.surface;
+    const vec3 base_colour = vec3(draw.normal_colour[0].w, draw.normal_colour[1].w, draw.normal_colour[2].w);
+    out_albedo = vec4(base_colour * colour.rgb, (draw.surface & surface_unlit) != 0u ? albedo_unlit : albedo_lit);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

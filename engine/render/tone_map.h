@@ -15,14 +15,25 @@ SHARED_FUNCTION vec3 filmic_curve(vec3 x) {
     return clamp((x * (2.51f * x + 0.03f)) / (x * (2.43f * x + 0.59f) + 0.14f), vec3(0.0f), vec3(1.0f));
 }
 
-// IEC 61966-2-1, per channel.
+// IEC 61966-2-1, per channel: 1.055 x^(1/2.4) - 0.055, from 0.0031308 to 1 as the best polynomial in the fourth root,
+// which is off by at most 3.5e-5 (a hundredth of an 8-bit step) and costs a third of the power.
 SHARED_FUNCTION float srgb_from_linear(float x) {
-    return x <= 0.0031308f ? 12.92f * x : 1.055f * pow(x, 1.0f / 2.4f) - 0.055f;
+    const float t = sqrt(sqrt(max(x, 0.0f)));
+    const float curve =
+        -0.0646115374f + t * (0.196135863f + t * (1.12268163f + t * (-0.335501569f + t * 0.081329981f)));
+    return x <= 0.0031308f ? 12.92f * x : curve;
+}
+
+SHARED_FUNCTION vec3 srgb_from_linear_colour(vec3 c) {
+    return vec3(srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z));
+}
+
+SHARED_FUNCTION vec3 shown_from_radiance(vec3 radiance, float exposure) {
+    return filmic_curve(max(radiance, vec3(0.0f)) * exposure);
 }
 
 SHARED_FUNCTION vec3 display_from_radiance(vec3 radiance, float exposure) {
-    vec3 c = filmic_curve(max(radiance, vec3(0.0f)) * exposure);
-    return vec3(srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z));
+    return srgb_from_linear_colour(shown_from_radiance(radiance, exposure));
 }
 
 // The radiance that a picture shows as the linear colour `shown`, 0 to 1.

@@ -117,6 +117,25 @@ Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& reso
     return for_each_buffer(geometry, make);
 }
 
+namespace {
+
+shared::DrawConstants draw_constants(const shared::InstanceRow& row, std::uint32_t number) {
+    shared::DrawConstants constants{};
+    const mat4 model_rows = glm::transpose(row.model);
+    for (int i = 0; i < 3; ++i) {
+        constants.model[i] = model_rows[i];
+        constants.normal_colour[i] = vec4(vec3(row.normal_matrix[i]), row.base_colour[i]);
+    }
+    const vec3 emission(row.emission);
+    constants.emission = vec4(emission, 0.0f);
+    constants.surface = (number + 1) | (row.emission.w > 0.0f ? shared::surface_area_light : 0) |
+                        (emission.r + emission.g + emission.b > 0.0f ? shared::surface_emits : 0) |
+                        (row.material.y != 0 ? shared::surface_unlit : 0);
+    return constants;
+}
+
+} // namespace
+
 Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources) {
     draws_.clear();
     removed_bounds_.clear();
@@ -179,6 +198,7 @@ Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::F
             row.material.y = surface.unlit ? 1 : 0;
             if (meshes[instance.mesh].is_textured() || surface.alpha_mode != AlphaMode::opaque)
                 describe_surface(registry, entity, surface, item, row, materials);
+            item.constants = draw_constants(row, item.row);
             rows.push_back(row);
             previous = {transform.matrix, item.bounds, meshes.revision(instance.mesh), true};
             draws_.push_back(item);

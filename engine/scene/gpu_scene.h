@@ -41,7 +41,8 @@ struct DrawItem {
     Bounds bounds;                           // world space
     std::uint32_t kind = 0;                  // of its surface
     std::int32_t textures[3] = {-1, -1, -1}; // base colour, normal, emission
-    bool casts_shadow = true;                // movers only: static geometry always does
+    shared::DrawConstants constants{};
+    bool casts_shadow = true; // movers only: static geometry always does
     bool is_static = true;
     // The bounds changed in the last update, or the item is new; previous_bounds is where it was (empty if new).
     bool moved = false;

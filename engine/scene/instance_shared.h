@@ -21,8 +21,18 @@ SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an Area
 SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
 SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour whatever the light
 
+// What drawing one instance into the G-buffer needs of its row, as push constants: a CPU device reads those once for
+// all vertices and pixels, where it would read a buffer for each.
+struct DrawConstants {
+    vec4 model[3];         //  0: rows of the model matrix, object to world
+    vec4 normal_colour[3]; // 48: columns of the normal matrix; w: red, green, blue of the base colour
+    vec4 emission;         // 96: rgb, radiance W/(sr m2)
+    uint surface;          // 112: surface id, as above
+};
+
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::InstanceRow) == 320);
+static_assert(sizeof(sunfleck::shared::DrawConstants) == 116);
 #endif
 #endif
