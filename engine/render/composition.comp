@@ -29,7 +29,7 @@ layout(push_constant) uniform Constants { CompositionConstants constants; };
 
 vec3 surface_radiance(ivec2 pixel, uint surface) {
     const vec3 irradiance = texelFetch(irradiance_image, pixel, 0).rgb;
-    const vec3 albedo = texelFetch(albedo_image, pixel, 0).rgb;
+    const vec3 albedo = unpack_albedo(texelFetch(albedo_image, pixel, 0));
     vec3 radiance = albedo * irradiance * (1.0 / pi);
     if ((surface & surface_emits) != 0u)
         radiance += textured_emission != 0 ? texelFetch(emission_image, pixel, 0).rgb
@@ -70,7 +70,7 @@ void main() {
     } else if (constants.view == view_normals && hit) {
         value.rgb = unpack_normal(texelFetch(normals_image, pixel, 0).r) * 0.5 + 0.5;
     } else if (constants.view == view_albedo && hit) {
-        value.rgb = texelFetch(albedo_image, pixel, 0).rgb;
+        value.rgb = unpack_albedo(texelFetch(albedo_image, pixel, 0));
     } else if (constants.view == view_depth && hit) {
         value.rgb = vec3(texelFetch(depth_image, pixel, 0).r);
     } else if (constants.view == view_surfaces && hit) {

@@ -23,11 +23,12 @@ layout(location = 0) out vec4 out_colour;
 
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
-    const vec4 albedo = texelFetch(albedo_image, pixel, 0);
-    vec3 radiance = albedo.rgb * texelFetch(irradiance_image, pixel, 0).rgb * (1.0 / pi);
+    const vec4 texel = texelFetch(albedo_image, pixel, 0);
+    const vec3 albedo = unpack_albedo(texel);
+    vec3 radiance = albedo * texelFetch(irradiance_image, pixel, 0).rgb * (1.0 / pi);
     if (textured_emission != 0)
         radiance += texelFetch(emission_image, pixel, 0).rgb;
-    const vec3 shown = shown_from_radiance(albedo.a > albedo_of_nothing ? radiance : sky_radiance(pixel), constants.exposure);
-    const bool unlit = abs(albedo.a - albedo_unlit) < 0.25; // the base colour itself
-    out_colour = vec4(srgb_from_linear_colour(unlit ? albedo.rgb : shown), 1.0);
+    const vec3 shown = shown_from_radiance(texel.a > albedo_of_nothing ? radiance : sky_radiance(pixel), constants.exposure);
+    const bool unlit = abs(texel.a - albedo_unlit) < 0.25; // the base colour itself
+    out_colour = vec4(srgb_from_linear_colour(unlit ? albedo : shown), 1.0);
 }

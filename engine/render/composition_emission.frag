@@ -16,7 +16,7 @@ void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     if (texelFetch(surface_image, pixel, 0).r != draw.surface)
         discard;
-    const vec3 reflected = texelFetch(albedo_image, pixel, 0).rgb * texelFetch(irradiance_image, pixel, 0).rgb;
+    const vec3 reflected = unpack_albedo(texelFetch(albedo_image, pixel, 0)) * texelFetch(irradiance_image, pixel, 0).rgb;
     const vec3 radiance = reflected * (1.0 / 3.14159265358979) + draw.emission_exposure.rgb;
     out_colour = vec4(display_from_radiance(radiance, draw.emission_exposure.w), 1.0);
 }

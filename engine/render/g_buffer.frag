@@ -43,6 +43,6 @@ void main() {
         const vec3 local_normal = mat3(rows[row].inverse_model) * normalize(geometric);
         albedo = mix(albedo, pattern.rgb, pattern_share(pattern_kind, pattern.w, local, local_normal));
     }
-    out_albedo = vec4(albedo, (draw.surface & surface_unlit) != 0u ? albedo_unlit : albedo_lit);
+    out_albedo = pack_albedo(albedo, (draw.surface & surface_unlit) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

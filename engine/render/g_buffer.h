@@ -7,10 +7,10 @@
 
 namespace sunfleck::render {
 
-inline constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;    // reverse Z, 0 where nothing is
-inline constexpr VkFormat normals_format = VK_FORMAT_R32G32_UINT; // shading, geometric; octahedral 2 x 16 bits
-inline constexpr VkFormat surface_format = VK_FORMAT_R32_UINT;    // instance row + 1, 0 where nothing is
-inline constexpr VkFormat albedo_format = VK_FORMAT_R8G8B8A8_SRGB;
+inline constexpr VkFormat depth_format = VK_FORMAT_D32_SFLOAT;      // reverse Z, 0 where nothing is
+inline constexpr VkFormat normals_format = VK_FORMAT_R32G32_UINT;   // shading, geometric; octahedral 2 x 16 bits
+inline constexpr VkFormat surface_format = VK_FORMAT_R32_UINT;      // instance row + 1, 0 where nothing is
+inline constexpr VkFormat albedo_format = VK_FORMAT_R8G8B8A8_UNORM; // see pack_albedo()
 inline constexpr VkFormat motion_format = VK_FORMAT_R16G16_SFLOAT;
 inline constexpr VkFormat emission_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 

@@ -79,6 +79,6 @@ void main() {
     out_emission = vec4(emission, 1.0);
     out_surface = draw.surface;
     const vec3 base_colour = vec3(draw.normal_colour[0].w, draw.normal_colour[1].w, draw.normal_colour[2].w);
-    out_albedo = vec4(base_colour * colour.rgb, (draw.surface & surface_unlit) != 0u ? albedo_unlit : albedo_lit);
+    out_albedo = pack_albedo(base_colour * colour.rgb, (draw.surface & surface_unlit) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

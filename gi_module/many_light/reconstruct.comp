@@ -28,6 +28,7 @@ struct Neighbour {
     vec3 irradiance;
     vec2 normal; // octahedral
     uint packed_normal;
+    bool flat_shaded; // shaded by the normal of its plane
     vec3 depth_plane; // depth at the cell's first pixel, and what a pixel to the right and one down add
     float height;     // of the camera over the plane, m
     bool exists;
@@ -45,6 +46,8 @@ Neighbour neighbour_at(ivec2 low, vec2 first) {
     result.exists = sum.a > 0.0;
     result.packed_normal = normals.x;
     result.normal = unpackSnorm2x16(normals.x);
+    const vec2 bend = result.normal - unpackSnorm2x16(normals.y);
+    result.flat_shaded = dot(bend, bend) < 1e-8; // three steps of 16 bits
     const vec3 geometric_normal = unpack_normal(normals.y);
     const vec3 to_point = camera_ray(camera, vec2(pixel) + 0.5) * (camera.position.w / max(depth, 1e-7));
     result.height = dot(geometric_normal, to_point);
@@ -58,6 +61,34 @@ Neighbour neighbour_at(ivec2 low, vec2 first) {
 
 float brightness(vec3 irradiance) { return max(irradiance.r, max(irradiance.g, irradiance.b)); }
 
+// Bilinear weights of the four at a pixel of the cell.
+vec4 weights_at(vec2 pixel) {
+    const vec2 place = pixel / float(scale);
+    return vec4((1.0 - place.x) * (1.0 - place.y), place.x * (1.0 - place.y), (1.0 - place.x) * place.y, place.x * place.y);
+}
+
+vec3 blend(Neighbour neighbours[4], vec4 shares) {
+    return neighbours[0].irradiance * shares[0] + neighbours[1].irradiance * shares[1] +
+           neighbours[2].irradiance * shares[2] + neighbours[3].irradiance * shares[3];
+}
+
+// Whether the four lie on one plane, within `distance` (times depth) all over the cell, and are shaded as one.
+bool on_one_plane(Neighbour neighbours[4], float distance) {
+    bool same = neighbours[0].flat_shaded && neighbours[0].exists;
+    [[unroll]] for (int i = 1; i < 4; ++i) {
+        const vec3 difference = neighbours[i].depth_plane - neighbours[0].depth_plane;
+        const vec2 across = difference.yz * float(scale);
+        const vec4 corners = abs(difference.x + vec4(0.0, across.x, across.y, across.x + across.y));
+        same = same && neighbours[i].packed_normal == neighbours[0].packed_normal &&
+               abs(neighbours[i].height) * max(max(corners.x, corners.y), max(corners.z, corners.w)) < distance;
+    }
+    return same;
+}
+
+uvec2 with_bit(uvec2 mask, uint bit) {
+    return bit < 32u ? uvec2(mask.x | 1u << bit, mask.y) : uvec2(mask.x, mask.y | 1u << (bit - 32u));
+}
+
 void main() {
     const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
     if (cell.x >= int(constants.cell_columns) || cell.y >= int(constants.cell_rows))
@@ -69,68 +100,79 @@ void main() {
     // Tolerance for surfaces that are not quite planes: a part of a low-resolution pixel's size, in units of distance.
     const float pixel_size = length(camera.right.xyz) * 2.0 / camera.forward.w;
     const float tolerance = camera.position.w * (0.15 * float(scale) * pixel_size + 2e-4);
-    vec4 bright;
+    vec4 bright, heights;
     bvec4 exists;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         bright[i] = brightness(neighbours[i].irradiance);
+        heights[i] = abs(neighbours[i].height);
         exists[i] = neighbours[i].exists;
     }
     const float brightest = max(max(bright.x, bright.y), max(bright.z, bright.w));
     const float darkest = min(min(bright.x, bright.y), min(bright.z, bright.w));
     const bool all_differ = brightest - darkest > constants.contrast * brightest;
-    uvec2 mask = uvec2(0u);
+
+    // Most pixels lie on a flat surface with all four neighbours: their planes are one within half the tolerance, and
+    // the pixel is on it within the other half; its normal need not be read. The rest waits for the loop after this one:
+    // a CPU device runs both sides of a branch, but a loop only while there is something to do.
+    const bool flat_cell = on_one_plane(neighbours, 0.5 * tolerance);
+    const float height = max(max(heights.x, heights.y), max(heights.z, heights.w));
+    const vec3 plane = neighbours[0].depth_plane;
+    uvec2 again_mask = uvec2(0u), others = uvec2(0u);
     for (int y = 0; y < scale; ++y) {
         [[unroll]] for (int x = 0; x < scale; ++x) {
             const ivec2 pixel = first + ivec2(x, y);
             if (any(lessThan(pixel, ivec2(0))) || pixel.x >= int(constants.width) || pixel.y >= int(constants.height))
                 continue;
             const float depth = texelFetch(depth_image, pixel, 0).r;
-            if (depth <= 0.0) {
-                imageStore(output_image, pixel, vec4(0.0));
-                continue;
-            }
-            const uint packed_normal = texelFetch(normals_image, pixel, 0).r;
-            const vec2 place = vec2(x, y) / float(scale);
-            const vec4 weights = vec4((1.0 - place.x) * (1.0 - place.y), place.x * (1.0 - place.y),
-                                      (1.0 - place.x) * place.y, place.x * place.y);
-            vec4 off_plane; // distance from the neighbours' planes, times depth
-            bvec4 same_normal;
-            [[unroll]] for (int i = 0; i < 4; ++i) {
-                off_plane[i] = abs(neighbours[i].height * (dot(neighbours[i].depth_plane, vec3(1.0, x, y)) - depth));
-                same_normal[i] = neighbours[i].packed_normal == packed_normal;
-            }
-            // Most pixels lie on a flat surface with all four neighbours: equal normals are equal bits.
-            vec4 shares = weights;
-            bool again = all_differ;
-            if (!(all(same_normal) && all(lessThan(off_plane, vec4(tolerance))))) {
-                // Octahedral places stand for angles: 1 is 55 to 90 degrees. Across a fold they are too far apart, and the
-                // pixel is lit again.
-                const vec2 normal = unpackSnorm2x16(packed_normal);
-                vec4 apart;
-                [[unroll]] for (int i = 0; i < 4; ++i)
-                    apart[i] = dot(neighbours[i].normal - normal, neighbours[i].normal - normal);
-                const bvec4 on_plane = lessThan(off_plane, vec4(tolerance));
-                const bvec4 alike = lessThan(apart, vec4(constants.normal_limit));
-                const vec4 valid = vec4(on_plane) * vec4(alike) * vec4(exists);
-                shares = (weights + 1e-3) * valid;
-                const float sum = shares.x + shares.y + shares.z + shares.w;
-                const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
-                const float highest = max(max(high.x, high.y), max(high.z, high.w));
-                const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-                again = sum < least_share || highest - lowest > constants.contrast * highest;
-                shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
-            }
-            const vec3 value = neighbours[0].irradiance * shares[0] + neighbours[1].irradiance * shares[1] +
-                               neighbours[2].irradiance * shares[2] + neighbours[3].irradiance * shares[3];
-            if (again) {
-                const uint bit = uint(y * scale + x);
-                if (bit < 32u)
-                    mask.x |= 1u << bit;
-                else
-                    mask.y |= 1u << (bit - 32u);
-            }
-            imageStore(output_image, pixel, vec4(value, 1.0));
+            const bool on_plane = height * abs(dot(plane, vec3(1.0, x, y)) - depth) < 0.5 * tolerance;
+            const bool easy = flat_cell && on_plane && depth > 0.0;
+            const uint bit = uint(y * scale + x);
+            if (easy)
+                imageStore(output_image, pixel, vec4(blend(neighbours, weights_at(vec2(x, y))), 1.0));
+            if (easy && all_differ)
+                again_mask = with_bit(again_mask, bit);
+            if (!easy)
+                others = with_bit(others, bit);
         }
     }
-    cell_masks[uint(cell.y) * constants.cell_columns + uint(cell.x)] = mask;
+    while ((others.x | others.y) != 0u) {
+        const uint bit = uint(others.x != 0u ? findLSB(others.x) : 32 + findLSB(others.y));
+        if (bit < 32u)
+            others.x &= others.x - 1u;
+        else
+            others.y &= others.y - 1u;
+        const ivec2 inside = ivec2(int(bit) % scale, int(bit) / scale);
+        const ivec2 pixel = first + inside;
+        const float depth = texelFetch(depth_image, pixel, 0).r;
+        const uint packed_normal = texelFetch(normals_image, pixel, 0).r;
+        const vec4 weights = weights_at(vec2(inside));
+        // Octahedral places stand for angles: 1 is 55 to 90 degrees. Across a fold they are too far apart, and the
+        // pixel is lit again.
+        const vec2 normal = unpackSnorm2x16(packed_normal);
+        vec4 off_plane, apart; // distance from the neighbours' planes, times depth; of the normals, squared
+        bvec4 same_normal;
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            off_plane[i] = heights[i] * abs(dot(neighbours[i].depth_plane, vec3(1.0, vec2(inside))) - depth);
+            apart[i] = dot(neighbours[i].normal - normal, neighbours[i].normal - normal);
+            same_normal[i] = neighbours[i].packed_normal == packed_normal;
+        }
+        const bvec4 on_plane = lessThan(off_plane, vec4(tolerance));
+        vec4 shares = weights;
+        bool again = all_differ;
+        if (!(all(same_normal) && all(on_plane))) {
+            const vec4 valid = vec4(on_plane) * vec4(lessThan(apart, vec4(constants.normal_limit))) * vec4(exists);
+            shares = (weights + 1e-3) * valid;
+            const float sum = shares.x + shares.y + shares.z + shares.w;
+            const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
+            const float highest = max(max(high.x, high.y), max(high.z, high.w));
+            const float lowest = min(min(low.x, low.y), min(low.z, low.w));
+            again = sum < least_share || highest - lowest > constants.contrast * highest;
+            shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
+        }
+        const bool surface = depth > 0.0;
+        if (surface && again)
+            again_mask = with_bit(again_mask, bit);
+        imageStore(output_image, pixel, surface ? vec4(blend(neighbours, shares), 1.0) : vec4(0.0));
+    }
+    cell_masks[uint(cell.y) * constants.cell_columns + uint(cell.x)] = again_mask;
 }
