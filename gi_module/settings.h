@@ -11,9 +11,9 @@ enum class DirectTechnique : std::uint32_t { light_samples, brute_force, none };
 enum class IndirectTechnique : std::uint32_t { light_samples, brute_force, none };
 enum class Sequence : std::uint32_t { pseudo_random, sobol };
 enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
-// contribution: brightest channel times age, and four times that for direct light: the samples of one lamp lie side by
-// side, so their shadows fall on each other, and so do the errors of their stale maps; reflected light comes from all
-// over, and its errors thin out. flux_and_age: thesis sec. 4.5.3. age: in turns.
+// contribution: by the light that the map's movers shadow in the picture (many_light/map_contributions.h), times age;
+// with brute force, which knows no such thing, flux_and_age: brightest channel times age, thesis sec. 4.5.3. age: in
+// turns.
 enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
 // as_static: as static geometry, in random walks, too. transfer: complex ones by precomputed radiance transfer.
 enum class MoverHandling : std::uint32_t { per_pixel, as_static, transfer };
@@ -58,7 +58,7 @@ struct Settings {
     bool map_detail = true;
     std::uint32_t map_budget = 100; // shadow maps a frame
     float map_milliseconds = 0.0f;  // GPU time for them; 0: map_budget counts
-    MapPriority map_priority = MapPriority::flux_and_age;
+    MapPriority map_priority = MapPriority::contribution;
     bool cluster_tests = true;
     bool count_passes = false;
     std::uint32_t lights_per_pass = 7;

@@ -1,6 +1,7 @@
 #include "gi_module/system.h"
 
 #include "engine/core/hash.h"
+#include "gi_module/many_light/map_contributions.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/transport/clamping.h"
 
@@ -357,6 +358,16 @@ void System::mark_by_bounds(const scene::GpuScene& gpu_scene) {
     }
 }
 
+// Empty where the choice does not need them.
+std::vector<float> System::contributions_of_stale_maps(const scene::GpuScene& gpu_scene, std::uint32_t budget) const {
+    if (!uses_many_light() || settings_.map_priority != MapPriority::contribution || scheduler_.stale() <= budget)
+        return {};
+    std::vector<std::uint8_t> wanted(samples_.size());
+    for (std::uint32_t i = 0; i < samples_.size(); ++i)
+        wanted[i] = scheduler_.frames_out_of_date(i) > 0 ? 1 : 0;
+    return map_contributions(database_, samples_, rows_, gpu_scene.draws(), input_.view_projection, wanted);
+}
+
 Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
                       raytrace::RayScene& rays, const FrameInput& input) {
     cpu_times_.clear();
@@ -404,8 +415,10 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
                                     : settings_.map_budget;
     const std::uint32_t wanted = std::max(usual, std::uint32_t(scheduler_.unusable()));
     const std::uint32_t budget = uses_many_light() ? std::min(input.map_budget, wanted) : input.map_budget;
-    to_draw_ =
-        settings_.shadows ? scheduler_.choose(samples_, settings_.map_priority, budget) : std::vector<std::uint32_t>();
+    to_draw_.clear();
+    if (settings_.shadows)
+        to_draw_ =
+            scheduler_.choose(samples_, settings_.map_priority, budget, contributions_of_stale_maps(gpu_scene, budget));
     map_budget_.drew(input.serial, to_draw_.size());
     counters_.light_samples = samples_.size();
     counters_.light_samples_dynamic = dynamic_samples_.size();

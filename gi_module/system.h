@@ -141,6 +141,7 @@ private:
     Status update_transfer(const ecs::Registry& registry, const scene::MeshStore& meshes,
                            const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays);
     void count_passes();
+    std::vector<float> contributions_of_stale_maps(const scene::GpuScene& gpu_scene, std::uint32_t budget) const;
     void mark_by_visibility();
     void mark_by_bounds(const scene::GpuScene& gpu_scene);
     Result<std::vector<LightBatch>> make_batches(std::uint32_t first, std::uint32_t count);

@@ -1,13 +1,33 @@
 #include "gi_module/shadows/map_scheduler.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace sunfleck::gi {
 namespace {
 
-constexpr float direct_weight = 4.0f;
+// Of the mean contribution, added to each: maps that hardly matter are redrawn now and then all the same, and not all
+// in one frame when they are overdue.
+constexpr float least_share = 0.2f;
 
+// What decides beside age.
+std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority priority,
+                              std::span<const float> contributions) {
+    std::vector<float> weights(samples.size(), 1.0f);
+    if (priority == MapPriority::age)
+        return weights;
+    const float sum = std::accumulate(contributions.begin(), contributions.end(), 0.0f);
+    const bool by_contribution =
+        priority == MapPriority::contribution && contributions.size() == samples.size() && sum > 0.0f;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const vec3 flux = samples[i].flux;
+        weights[i] = by_contribution ? contributions[i] + least_share * sum / float(samples.size())
+                                     : std::max({flux.x, flux.y, flux.z});
+    }
+    return weights;
 }
+
+} // namespace
 
 void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
@@ -28,7 +48,7 @@ std::size_t MapScheduler::unusable() const {
 }
 
 std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,
-                                                std::uint32_t budget) const {
+                                                std::uint32_t budget, std::span<const float> contributions) const {
     std::vector<std::uint32_t> chosen;
     for (std::uint32_t i = 0; i < age_.size(); ++i)
         if (age_[i] > 0)
@@ -38,18 +58,16 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
     if (budget == 0)
         return {};
     const std::uint32_t overdue = 4 * std::uint32_t((chosen.size() + budget - 1) / budget);
+    const std::vector<float> weights = weights_of(samples, priority, contributions);
     struct Rank {
         bool unusable; // nothing that the map shows is true
         bool overdue;
         float weight;
     };
     const auto rank = [&](std::uint32_t i) -> Rank {
-        const vec3 flux = samples[i].flux;
-        const float brightest = std::max({flux.x, flux.y, flux.z});
         const float age = float(age_[i]);
         const bool late = age_[i] >= overdue;
-        const float share = priority == MapPriority::contribution && samples[i].bounce == 0 ? direct_weight : 1.0f;
-        return {is_static_stale(i), late, late || priority == MapPriority::age ? age : age * brightest * share};
+        return {is_static_stale(i), late, late ? age : age * weights[i]};
     };
     std::stable_sort(chosen.begin(), chosen.end(), [&](std::uint32_t a, std::uint32_t b) {
         const Rank ra = rank(a), rb = rank(b);

@@ -29,9 +29,9 @@ public:
     void advance();
 
     // Samples whose maps are to be redrawn, in rising order: all whose static part is stale, and others up to the
-    // budget.
-    std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority,
-                                      std::uint32_t budget) const;
+    // budget. `contributions`: by sample, for that priority (many_light/map_contributions.h).
+    std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority, std::uint32_t budget,
+                                      std::span<const float> contributions = {}) const;
     // The maps show the present.
     void done(std::span<const std::uint32_t> samples);
 

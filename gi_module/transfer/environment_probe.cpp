@@ -1,6 +1,7 @@
 #include "gi_module/transfer/environment_probe.h"
 
 #include "engine/core/jobs.h"
+#include "gi_module/transport/arrival.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,24 +11,6 @@ namespace {
 
 constexpr float shortening = 1e-4f; // of a ray's length, at the light's end: samples lie on surfaces
 constexpr int most_layers = 64;     // of the mover itself that a ray passes
-
-// Light of a sample at a point: irradiance on a plane that faces it, W/m2, and the way to it.
-struct Arrival {
-    vec3 irradiance{0.0f};
-    vec3 to_light{0.0f}; // as long as the way; of parallel light very long
-};
-
-Arrival arrival(const shared::LightRow& row, std::uint32_t light_class, vec3 point, float scene_size) {
-    const vec3 intensity(row.intensity_slot), axis(row.normal_offset), position(row.position_bound);
-    if (light_class == shared::light_class_directional)
-        return {intensity, -2.0f * scene_size * axis};
-    const vec3 v = point - position;
-    const float squared = std::max(glm::dot(v, v), 1e-12f), along = glm::dot(axis, v);
-    if (light_class == shared::light_class_surface)
-        return {intensity * std::min(std::max(along, 0.0f) / (squared * std::sqrt(squared)), row.position_bound.w), -v};
-    const float cone = std::clamp(along / std::sqrt(squared) * row.tangent_scale.w + row.normal_offset.w, 0.0f, 1.0f);
-    return {intensity * (cone * cone / squared), -v};
-}
 
 bool meets(const raytrace::Ray& ray, const Bounds& bounds) {
     float enter = 0.0f, leave = ray.maximum;
@@ -90,7 +73,7 @@ private:
         packet.active = 0;
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t sample = candidates_[first + k];
-            arrivals[k] = arrival(scene_.rows[sample], light_class(scene_.samples[sample].kind), point, size_);
+            arrivals[k] = arrival(scene_.rows[sample], light_class(scene_.samples[sample].kind), point, 2.0f * size_);
             packet.rays[k] = {point, arrivals[k].to_light, 0.0f, 1.0f - shortening};
             const vec3 light = arrivals[k].irradiance;
             packet.active |= std::max({light.x, light.y, light.z}) > 0.0f ? 1u << k : 0u;

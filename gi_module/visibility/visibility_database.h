@@ -98,6 +98,14 @@ public:
     // Static geometry first, then movers by entity.
     std::vector<Blocker> blockers(std::uint32_t node, std::uint32_t sample) const;
 
+    // Calls visit(node) for each leaf that a mover may shadow from the sample, once for each such mover.
+    template <typename Visit>
+    void visit_shadowed(std::uint32_t sample, const Visit& visit) const {
+        for (const auto& [entity, mover] : movers_)
+            for (const std::uint32_t entry : mover.footprint[sample])
+                visit(entry >> 1);
+    }
+
     // Since the last begin_frame. A pair may change more than once; changes are in order.
     const std::vector<PairChange>& changes() const { return changes_; }
     // Samples that changed, and those whose shadow map shows a mover that moved (and is, or was, in sight of them), was

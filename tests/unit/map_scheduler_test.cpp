@@ -105,5 +105,43 @@ TEST(MapScheduler, BrightMapsGoFirstAndFreshOnesNotAtAll) {
     EXPECT_TRUE(scheduler.choose(samples, MapPriority::flux_and_age, 0).empty());
 }
 
+// What a map decides in the picture goes before flux; what decides nothing is redrawn in its turn, a few a frame.
+TEST(MapScheduler, ContributionsGoFirstAndNothingComesInBursts) {
+    std::mt19937 random(5);
+    const auto samples = samples_of(100, random);
+    MapScheduler scheduler;
+    scheduler.reset(samples.size());
+    std::vector<float> contributions(samples.size(), 0.0f);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        contributions[i] = i < 20 ? 10.0f + float(i) : 0.0f;
+        all.push_back(i);
+    }
+    scheduler.done(all);
+    int unseen_at_most = 0, seen = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+        scheduler.advance();
+        for (const std::uint32_t i : all)
+            scheduler.mark(i);
+        const auto chosen = scheduler.choose(samples, MapPriority::contribution, 25, contributions);
+        if (frame == 0) {
+            EXPECT_EQ(std::count_if(chosen.begin(), chosen.end(), [](std::uint32_t i) { return i < 20; }), 20);
+        }
+        const int unseen = int(std::count_if(chosen.begin(), chosen.end(), [](std::uint32_t i) { return i >= 20; }));
+        unseen_at_most = std::max(unseen_at_most, unseen);
+        seen += int(chosen.size()) - unseen;
+        scheduler.done(chosen);
+    }
+    EXPECT_GT(seen, 100 * 14) << "those in sight are redrawn in most frames";
+    EXPECT_LT(unseen_at_most, 20) << "never all of the budget for those out of sight";
+    // Without contributions, or where nothing is in sight, flux decides.
+    scheduler.done(all);
+    for (const std::uint32_t i : all)
+        scheduler.mark(i);
+    const auto by_flux = scheduler.choose(samples, MapPriority::flux_and_age, 25);
+    EXPECT_EQ(scheduler.choose(samples, MapPriority::contribution, 25), by_flux);
+    EXPECT_EQ(scheduler.choose(samples, MapPriority::contribution, 25, std::vector<float>(100, 0.0f)), by_flux);
+}
+
 } // namespace
 } // namespace sunfleck::gi

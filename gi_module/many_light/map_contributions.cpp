@@ -1,0 +1,85 @@
+#include "gi_module/many_light/map_contributions.h"
+
+#include "gi_module/many_light/visible_nodes.h"
+#include "gi_module/transport/arrival.h"
+
+namespace sunfleck::gi {
+namespace {
+
+// A node as the view shows it.
+struct SeenNode {
+    float share = 0.0f; // of the picture, about, but for a factor; 0: out of sight
+    vec3 centre{0.0f};
+    vec3 normal{0.0f}; // zero: it has all
+};
+
+SeenNode seen_node(const Bounds& bounds, vec3 normal, float area, const mat4& view_projection) {
+    SeenNode seen;
+    if (bounds.empty() || !may_be_seen(view_projection, bounds))
+        return seen;
+    seen.centre = bounds.centre();
+    seen.normal = normal;
+    const float distance = (view_projection * vec4(seen.centre, 1.0f)).w; // along the view
+    seen.share = area / std::max(distance * distance, std::max(area, 1e-12f));
+    return seen;
+}
+
+std::vector<SeenNode> seen_nodes(const VisibilityDatabase& database, const mat4& view_projection) {
+    const auto& patches = database.patches().nodes();
+    std::vector<SeenNode> nodes(database.node_count());
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+        const SurfacePatch& patch = patches[i];
+        if (!patch.is_leaf())
+            continue;
+        const vec3 extent = patch.bounds.extent();
+        const float area = patch.planar ? float(glm::length(glm::cross(patch.corners[1] - patch.corners[0],
+                                                                       patch.corners[3] - patch.corners[0])))
+                                        : std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+        nodes[i] = seen_node(patch.bounds, patch.planar ? vec3(patch.normal) : vec3(0.0f), area, view_projection);
+    }
+    return nodes;
+}
+
+// Irradiance of the sample on the node, brightest channel, times the node's share of the picture.
+float light_on(const SeenNode& node, const shared::LightRow& row, std::uint32_t light_class) {
+    if (node.share <= 0.0f)
+        return 0.0f;
+    const Arrival light = arrival(row, light_class, node.centre, 1.0f);
+    const float brightest = std::max({light.irradiance.x, light.irradiance.y, light.irradiance.z});
+    if (node.normal == vec3(0.0f))
+        return brightest * node.share;
+    const float cosine = glm::dot(light.to_light, node.normal) / std::max(glm::length(light.to_light), 1e-6f);
+    return brightest * std::max(cosine, 0.0f) * node.share;
+}
+
+} // namespace
+
+std::vector<float> map_contributions(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                                     std::span<const shared::LightRow> rows, std::span<const scene::DrawItem> draws,
+                                     const mat4& view_projection, std::span<const std::uint8_t> wanted) {
+    std::vector<SeenNode> nodes = seen_nodes(database, view_projection);
+    std::vector<std::uint32_t> mover_nodes;
+    for (const scene::DrawItem& item : draws) {
+        const std::uint32_t node = item.is_static ? shared::no_node : database.mover_node(item.entity);
+        if (node == shared::no_node)
+            continue;
+        const vec3 extent = item.bounds.extent();
+        const float area = std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+        nodes[node] = seen_node(item.bounds, vec3(0.0f), area, view_projection);
+        mover_nodes.push_back(node);
+    }
+    std::vector<float> result(samples.size(), 0.0f);
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        if (wanted[i] == 0)
+            continue;
+        const std::uint32_t kind = light_class(samples[i].kind);
+        float sum = 0.0f;
+        database.visit_shadowed(i, [&](std::uint32_t node) { sum += light_on(nodes[node], rows[i], kind); });
+        for (const std::uint32_t node : mover_nodes)
+            sum += light_on(nodes[node], rows[i], kind);
+        result[i] = sum;
+    }
+    return result;
+}
+
+} // namespace sunfleck::gi
