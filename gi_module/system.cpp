@@ -333,10 +333,17 @@ Status System::update_transfer(const ecs::Registry& registry, const scene::MeshS
     return {};
 }
 
-void System::mark_by_visibility() {
+void System::mark_by_visibility(const scene::GpuScene& gpu_scene) {
+    float distance = 0.0f;
+    lag_limit_ = 0.0f;
+    for (const scene::DrawItem& item : gpu_scene.draws())
+        if (!item.is_static) {
+            distance = std::max(distance, item.displacement);
+            lag_limit_ = std::max(lag_limit_, 0.5f * glm::length(item.bounds.extent()));
+        }
     for (std::uint32_t i = 0; i < samples_.size(); ++i)
         if (database_.affected_samples()[i])
-            scheduler_.mark(i);
+            scheduler_.mark(i, distance);
 }
 
 // A moved object touches the map of every sample that sees the box where it was, or the one where it is.
@@ -405,7 +412,7 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     const StageTimer timer(cpu_times_, "shadow scheduling");
     scheduler_.advance();
     if (uses_many_light())
-        mark_by_visibility();
+        mark_by_visibility(gpu_scene);
     else
         mark_by_bounds(gpu_scene);
     // The host's budget is a limit; the setting's is exceeded for maps that could not be used otherwise.

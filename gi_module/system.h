@@ -142,7 +142,7 @@ private:
                            const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays);
     void count_passes();
     std::vector<float> contributions_of_stale_maps(const scene::GpuScene& gpu_scene, std::uint32_t budget) const;
-    void mark_by_visibility();
+    void mark_by_visibility(const scene::GpuScene& gpu_scene);
     void mark_by_bounds(const scene::GpuScene& gpu_scene);
     Result<std::vector<LightBatch>> make_batches(std::uint32_t first, std::uint32_t count);
     std::vector<ShadowRequest> make_requests(std::span<const std::uint32_t> samples) const;
@@ -170,7 +170,8 @@ private:
     std::vector<std::uint32_t> changed_samples_; // in this frame
     std::vector<LightSample> samples_;           // grouped by class, direct before indirect
     std::vector<shared::LightRow> rows_;         // of the samples
-    std::vector<ecs::Entity> entities_;          // of the samples
+    float lag_limit_ = 0.0f; // m, of MapScheduler::lag: a mover that is farther from where it was does not touch itself
+    std::vector<ecs::Entity> entities_; // of the samples
     MapScheduler scheduler_;
     MapBudget map_budget_;
     std::vector<std::uint32_t> to_draw_;

@@ -12,7 +12,7 @@ namespace {
 
 // Texels by which movers' simplified surfaces may be off. Shadows of direct light lie on each other and show their
 // outline; those of reflected light are scattered.
-constexpr float direct_detail = 0.7f, indirect_detail = 2.0f;
+constexpr float direct_detail = 0.35f, indirect_detail = 1.0f;
 
 } // namespace
 
@@ -43,7 +43,8 @@ Result<std::vector<LightBatch>> System::make_batches(std::uint32_t first, std::u
         SUNFLECK_ASSIGN(batch.rows, resources_.allocate(sizeof(shared::LightRow) * shared::lights_per_batch));
         while (place < first + count && batch.count < shared::lights_per_batch &&
                light_class(samples_[place].kind) == batch.light_class && samples_[place].dynamic == batch.dynamic) {
-            const shared::LightRow& row = rows_[place++];
+            shared::LightRow row = rows_[place];
+            row.bitangent.w = std::min(scheduler_.lag(place++), lag_limit_);
             std::memcpy(batch.rows.data + sizeof row * batch.count++, &row, sizeof row);
         }
         batches.push_back(batch);
@@ -138,6 +139,7 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
         scheduler_.done(to_draw_);
     }
     SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(0, std::uint32_t(samples_.size())));
+    options.stale_maps = settings_.shadows && scheduler_.stale() > 0;
     SUNFLECK_TRY(many_light_->add_passes(graph, g_buffer, camera, *shadow_maps_, batches, scheduler_.ages(), options,
                                          resources_, output));
     counters_.shadow_map_updates = shadow_counters.maps;

@@ -111,6 +111,9 @@ Result<VkDescriptorSet> FrameResources::allocate_set(const Pipeline& pipeline) {
 
 Status FrameResources::bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings) {
     assert(bindings.size() == pipeline.bindings().size() && "one entry for each binding of the pipeline");
+    device_.vk.vkCmdBindPipeline(commands, pipeline.bind_point(), pipeline.handle());
+    if (bindings.empty())
+        return {};
     SUNFLECK_ASSIGN(const VkDescriptorSet set, allocate_set(pipeline));
     std::vector<VkWriteDescriptorSet> writes;
     for (std::uint32_t i = 0; i < bindings.size(); ++i) {
@@ -141,7 +144,6 @@ Status FrameResources::bind(VkCommandBuffer commands, const Pipeline& pipeline, 
         writes.push_back(write);
     }
     device_.vk.vkUpdateDescriptorSets(device_.handle(), std::uint32_t(writes.size()), writes.data(), 0, nullptr);
-    device_.vk.vkCmdBindPipeline(commands, pipeline.bind_point(), pipeline.handle());
     device_.vk.vkCmdBindDescriptorSets(commands, pipeline.bind_point(), pipeline.layout(), 0, 1, &set, 0, nullptr);
     return {};
 }

@@ -1,5 +1,7 @@
 #include "engine/gpu/pipeline.h"
 
+#include <algorithm>
+
 namespace sunfleck::gpu {
 namespace {
 
@@ -116,8 +118,12 @@ Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry) {
     std::vector<VkVertexInputBindingDescription> buffers;
     std::vector<VkVertexInputAttributeDescription> attributes;
     for (std::uint32_t i = 0; i < d.attributes.size(); ++i) {
-        buffers.push_back({d.attributes[i].buffer, d.attributes[i].stride, VK_VERTEX_INPUT_RATE_VERTEX});
-        attributes.push_back({i, d.attributes[i].buffer, d.attributes[i].format, 0});
+        const VertexAttribute& attribute = d.attributes[i];
+        attributes.push_back({i, attribute.buffer, attribute.format, attribute.offset});
+        if (std::none_of(buffers.begin(), buffers.end(),
+                         [&](const auto& buffer) { return buffer.binding == attribute.buffer; }))
+            buffers.push_back({attribute.buffer, attribute.stride,
+                               attribute.per_instance ? VK_VERTEX_INPUT_RATE_INSTANCE : VK_VERTEX_INPUT_RATE_VERTEX});
     }
     VkPipelineVertexInputStateCreateInfo vertex{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     vertex.vertexBindingDescriptionCount = std::uint32_t(buffers.size());

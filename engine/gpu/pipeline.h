@@ -22,9 +22,11 @@ struct ComputeDescription {
 };
 
 struct VertexAttribute {
-    std::uint32_t buffer = 0; // each buffer holds one attribute, tightly packed
+    std::uint32_t buffer = 0; // attributes of one buffer have one stride and rate
     VkFormat format = VK_FORMAT_UNDEFINED;
     std::uint32_t stride = 0;
+    std::uint32_t offset = 0;
+    bool per_instance = false;
 };
 
 struct GraphicsDescription {

@@ -47,6 +47,7 @@ struct DrawItem {
     // The bounds changed in the last update, or the item is new; previous_bounds is where it was (empty if new).
     bool moved = false;
     Bounds previous_bounds;
+    float displacement = 0.0f; // m: how far any corner of its box moved in the last update
 };
 
 class GpuScene {

@@ -18,6 +18,8 @@ layout(constant_id = 4) const uint count_clamped = 0;
 layout(constant_id = 5) const uint storage_lights = 0;
 layout(constant_id = 6) const uint map_bits = 16;
 
+const uint stale_maps = 0;
+
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
@@ -75,6 +77,7 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
+        surface[k].on_mover = 0.0;
         sum[k] = vec3(0.0);
         clamped[k] = 0.0;
         if (constants.first_batch == 0u && pixel == inside) {

@@ -46,7 +46,7 @@ void main() {
         }
         any_pixel = any_pixel || exists;
         any_node = any_node || (exists && slot == any_node_slot);
-        entry_slots[entry] = slot;
+        entry_slots[entry] = slot | (node != no_node && node >= constants.first_mover ? entry_on_mover : 0u);
         // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
         if (slot == any_node_slot && constants.batch_first == 0u)
             sums[entry] = vec4(0.0);

@@ -17,6 +17,7 @@ layout(constant_id = 4) const uint map_bits = 16;
 layout(constant_id = 5) const uint to_image = 0; // 1: the sums go to the full picture
 layout(constant_id = 6) const uint lanes = 8;
 layout(local_size_x_id = 6) in;
+layout(constant_id = 7) const uint stale_maps = 0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -56,7 +57,8 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
-        slot[k] = entry_slots[entry] + entry_slots_shift;
+        slot[k] = (entry_slots[entry] & ~entry_on_mover) + entry_slots_shift;
+        surface[k].on_mover = (entry_slots[entry] & entry_on_mover) != 0u ? 1.0 : 0.0;
         sum[k] = sums[entry].rgb;
     }
     const GroupCounts count = counts[group];

@@ -68,6 +68,7 @@ Status ManyLight::update(VisibilityDatabase& database, const scene::GpuScene& sc
         std::memcmp(node_rows.data(), node_rows_.data(), std::as_bytes(std::span(node_rows)).size()) != 0;
     node_rows_ = std::move(node_rows);
     words_per_row_ = database.words_per_row();
+    first_mover_ = std::uint32_t(database.patches().nodes().size());
     return tables_.update(device_, database, scene, node_rows_, changed, resources);
 }
 
@@ -141,6 +142,7 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     constants.normal_limit = limit * limit;
     constants.fixed_point = light_maps_->fixed_point();
     constants.node_count = std::uint32_t(node_rows_.size());
+    constants.first_mover = first_mover_;
     for (const LightBatch& batch : batches)
         constants.list_stride = std::max(constants.list_stride, std::max(batch.count, 1u));
     const std::uint64_t whole = std::uint64_t(divide_up(g_buffer.width * g_buffer.height, shared::group_pixels));
@@ -290,7 +292,8 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, const LightBatch& b
                   storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_image},
                  {shared::group_pixels / lanes, batch.light_class,
                   frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
-                  filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes}));
+                  filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes,
+                  frame.options.stale_maps}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution light");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);

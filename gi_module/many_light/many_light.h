@@ -24,6 +24,7 @@ struct ManyLightOptions {
     std::uint32_t scale = 4; // of the low-resolution pass: 1 (off), 2, 4 or 8
     float contrast = 0.3f;
     float normal_degrees = 12.0f;
+    bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
     std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
     auto operator<=>(const ManyLightOptions&) const = default;
 };
@@ -83,7 +84,7 @@ private:
     SurfaceTables tables_;
     std::vector<shared::NodeRow> node_rows_;
     std::uint64_t node_rows_generation_ = 0;
-    std::uint32_t words_per_row_ = 0;
+    std::uint32_t words_per_row_ = 0, first_mover_ = 0;
     VkSampler sampler_ = VK_NULL_HANDLE;
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, const gpu::Pipeline*> kernels_;
     gpu::Buffer pixels_, nodes_, slots_, sums_, entries_, counts_, cell_masks_, block_groups_, commands_,

@@ -17,6 +17,7 @@ SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
 // Nodes of a group have slots 0 to 10. Slot 11 is for pixels of any further node, or of none: every sample is tested.
 SHARED_CONSTANT uint group_slots = 12u;
 SHARED_CONSTANT uint any_node_slot = 11u;
+SHARED_CONSTANT uint entry_on_mover = 256u; // beside the slot: the pixel shows a mover
 
 // A list entry: sample (of the batch) in bits 0 to 15; from bit 16 a bit for each slot. In the list with tests the bit
 // says that the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; in
@@ -62,6 +63,7 @@ struct ManyLightConstants {
     float fixed_point;  // steps of a light map a W/m2
     uint node_count;
     uint group_count; // of the low-resolution picture
+    uint first_mover; // nodes from here on are movers
 };
 
 // What show.comp shows in place of the irradiance.
@@ -81,6 +83,6 @@ SHARED_CONSTANT uint command_words = 12u;
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
-static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 84);
+static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 88);
 #endif
 #endif

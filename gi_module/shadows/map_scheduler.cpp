@@ -32,6 +32,7 @@ std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority 
 void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
     static_stale_.assign(count, 1);
+    lags_.assign(count, 0.0f);
 }
 
 void MapScheduler::advance() {
@@ -84,6 +85,7 @@ void MapScheduler::done(std::span<const std::uint32_t> samples) {
     for (const std::uint32_t sample : samples) {
         age_[sample] = 0;
         static_stale_[sample] = 0;
+        lags_[sample] = 0.0f;
     }
 }
 

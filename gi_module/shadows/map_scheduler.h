@@ -18,8 +18,11 @@ class MapScheduler {
 public:
     // All maps of `count` samples are stale, static part and all.
     void reset(std::size_t count);
-    // Something in the sample's map moved.
-    void mark(std::uint32_t sample) { age_[sample] = age_[sample] > 0 ? age_[sample] : 1; }
+    // Something in the sample's map moved, so many metres.
+    void mark(std::uint32_t sample, float distance = 0.0f) {
+        age_[sample] = age_[sample] > 0 ? age_[sample] : 1;
+        lags_[sample] += distance;
+    }
     // The static part must be redrawn, too.
     void mark_static(std::uint32_t sample) {
         mark(sample);
@@ -39,6 +42,8 @@ public:
     // 0: fresh.
     std::uint32_t frames_out_of_date(std::uint32_t sample) const { return age_[sample]; }
     std::span<const std::uint32_t> ages() const { return age_; }
+    // How far things in the map have moved at most since it was drawn, m.
+    float lag(std::uint32_t sample) const { return lags_[sample]; }
     std::size_t stale() const;
     // Maps whose static part is stale: they show nothing that is true.
     std::size_t unusable() const;
@@ -47,6 +52,7 @@ public:
 private:
     std::vector<std::uint32_t> age_;
     std::vector<std::uint8_t> static_stale_;
+    std::vector<float> lags_;
 };
 
 } // namespace sunfleck::gi

@@ -1,6 +1,6 @@
 #version 460
 // Leaves out what is a hole.
-layout(set = 0, binding = 4) uniform sampler2D colour_texture;
+layout(set = 0, binding = 2) uniform sampler2D colour_texture;
 layout(location = 0) in vec2 in_place;
 layout(location = 1) in vec2 in_alpha_least;
 

@@ -2,22 +2,17 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
 // shadow_map.vert for surfaces with holes: their textures say where.
-// Draws occluders onto the faces of many shadow maps in one call: the instance says which map (a layer of the staging
-// image), which face and which occluder. Thesis sec. 4.2.2, with instances in place of four passes a map.
 #include "engine/scene/instance_shared.h"
 #include "engine/scene/material_shared.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_map_shared.h"
 
 layout(set = 0, binding = 0) readonly buffer Rows { InstanceRow rows[]; };
-layout(set = 0, binding = 1) readonly buffer Jobs { ShadowJob jobs[]; };
-layout(set = 0, binding = 2) readonly buffer Lights { LightRow lights[]; }; // by layer
-layout(set = 0, binding = 3) readonly buffer Materials { MaterialRow materials[]; };
+layout(set = 0, binding = 1) readonly buffer Materials { MaterialRow materials[]; };
 layout(push_constant) uniform Constants { ShadowConstants constants; };
 
-layout(location = 0) in vec3 in_position;
-layout(location = 1) in vec4 in_coordinates;
-layout(location = 2) in vec4 in_colour;
+layout(location = 6) in vec4 in_coordinates;
+layout(location = 7) in vec4 in_colour;
 
 layout(location = 0) out vec2 out_place;
 layout(location = 1) out vec2 out_alpha_least; // alpha of material and vertex; below the second is a hole
@@ -30,11 +25,10 @@ out gl_PerVertex {
 #include "gi_module/shadows/shadow_projection.glsl"
 
 void main() {
-    const ShadowJob job = jobs[gl_InstanceIndex];
-    const MaterialRow material = materials[rows[job.row].material.x];
+    const MaterialRow material = materials[rows[in_layer_face_row.y].material.x];
     out_place = texture_place(material.base_colour, in_coordinates);
     // What blends casts the shadow of what is at least half there.
     out_alpha_least =
         vec2(material.factors.x * in_colour.a, material.factors.y >= 0.0 ? material.factors.y : 0.5);
-    project_on_map(job, (rows[job.row].model * vec4(in_position, 1.0)).xyz);
+    project_on_map();
 }

@@ -3,18 +3,21 @@
 #include "gi_module/transport/light_row_shared.h"
 SHARED_BEGIN
 
-// One instance of a draw: an occluder seen from one light through one face.
+// One instance of a draw: an occluder seen from one light through one face. All that a vertex needs, as attributes of
+// the instance: a CPU device reads those once for all lanes, buffers for each.
 struct ShadowJob {
+    vec4 x, y, w;    // clip position = dot(row, (p, 1)) of a point in the occluder's space; see octahedral_map.h
+    vec4 z;          // the same for light-space z; of directional lights, the depth
     uint layer_face; // layer of the staging image in the low 16 bits, face in bits 16 to 19, light class from bit 20
     uint row;        // instance row of the occluder
 };
 
 struct ShadowConstants {
-    float half_texel_margin; // faces are drawn this much wider (in w), see shadow_map.vert
+    float half_texel_margin; // faces are drawn this much wider (in w), see shadow_projection.glsl
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::ShadowJob) == 8);
+static_assert(sizeof(sunfleck::shared::ShadowJob) == 72);
 #endif
 #endif

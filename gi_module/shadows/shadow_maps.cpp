@@ -1,7 +1,7 @@
 #include "gi_module/shadows/shadow_maps.h"
 
 #include "engine/gpu/rendering.h"
-#include "gi_module/shadows/octahedral_map.h"
+#include "gi_module/shadows/shadow_jobs.h"
 
 #include <algorithm>
 #include <iterator>
@@ -12,6 +12,9 @@ namespace {
 // Enough layers that few submissions are needed, few enough that the staging image stays small in the cache.
 constexpr std::uint32_t staging_layers = 64;
 constexpr std::uint64_t staging_budget_bytes = std::uint64_t(64) << 20;
+
+// Vertex buffers: positions, then these.
+constexpr std::uint32_t jobs_buffer = 1;
 
 VkFormat depth_format(std::uint32_t bits) {
     return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
@@ -29,7 +32,7 @@ float support(const Bounds& bounds, vec3 origin, vec3 axis) {
 
 // Everything that one pair of passes (draw, copy) needs; lives in the passes' closures.
 struct ShadowMaps::Chunk {
-    gpu::UploadSlice jobs, lights, commands;
+    gpu::UploadSlice jobs, commands;
     std::uint32_t command_count = 0;
     std::uint32_t culled_count = 0; // of the commands, those after the plain ones draw faces towards the light only
     // The last commands draw surfaces with holes, each with its texture.
@@ -41,9 +44,14 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     std::unique_ptr<ShadowMaps> maps(new ShadowMaps(device));
     gpu::GraphicsDescription description;
     description.vertex_shader = "gi_module/shadows/shadow_map.vert";
-    description.bindings.assign(3, gpu::BindingKind::storage_buffer);
     description.push_constant_bytes = sizeof(shared::ShadowConstants);
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
+    for (const std::size_t offset : {offsetof(shared::ShadowJob, x), offsetof(shared::ShadowJob, y),
+                                     offsetof(shared::ShadowJob, w), offsetof(shared::ShadowJob, z)})
+        description.attributes.push_back(
+            {jobs_buffer, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(shared::ShadowJob), std::uint32_t(offset), true});
+    description.attributes.push_back(
+        {jobs_buffer, VK_FORMAT_R32G32_UINT, sizeof(shared::ShadowJob), offsetof(shared::ShadowJob, layer_face), true});
     description.depth_clamp = true; // what is nearer than shadow_near still blocks
     for (const bool culled : {false, true}) {
         // The hemisphere's projection mirrors: what faces the light is wound clockwise on the map.
@@ -55,10 +63,10 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     }
     description.vertex_shader = "gi_module/shadows/shadow_map_holes.vert";
     description.fragment_shader = "gi_module/shadows/shadow_map_holes.frag";
-    description.bindings.push_back(gpu::BindingKind::storage_buffer);
-    description.bindings.push_back(gpu::BindingKind::sampled_image);
-    description.attributes.push_back({1, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
-    description.attributes.push_back({2, VK_FORMAT_R8G8B8A8_UNORM, 4});
+    description.bindings = {gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer,
+                            gpu::BindingKind::sampled_image};
+    description.attributes.push_back({jobs_buffer + 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
+    description.attributes.push_back({jobs_buffer + 2, VK_FORMAT_R8G8B8A8_UNORM, 4});
     description.cull = VK_CULL_MODE_NONE;
     for (const std::uint32_t bits : {16u, 32u}) {
         description.depth_format = depth_format(bits);
@@ -147,11 +155,8 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                                                     std::span<const ShadowRequest> requests, Occluders occluders,
                                                     bool detail, ShadowCounters& counters) const {
     Chunk chunk;
-    std::vector<shared::LightRow> lights;
-    for (const ShadowRequest& request : requests) {
+    for (const ShadowRequest& request : requests)
         chunk.slots.push_back(request.slot);
-        lights.push_back(request.light);
-    }
     std::vector<shared::ShadowJob> jobs;
     std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands, hole_commands;
     std::vector<std::uint32_t> seen(requests.size());
@@ -172,7 +177,8 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                                                       (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
             for (std::uint32_t face = 0; faces >> face; ++face)
                 if ((faces >> face) & 1u)
-                    by_level[level].push_back({layer | (face << 16) | (requests[layer].light_class << 20), item.row});
+                    by_level[level].push_back(make_shadow_job(requests[layer].light, requests[layer].light_class, layer,
+                                                              face, item.constants, item.row));
         }
         for (std::size_t level = 0; level < by_level.size(); ++level) {
             const std::uint32_t count = std::uint32_t(by_level[level].size());
@@ -202,7 +208,6 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     commands.insert(commands.end(), culled_commands.begin(), culled_commands.end());
     commands.insert(commands.end(), hole_commands.begin(), hole_commands.end());
     SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
-    SUNFLECK_ASSIGN(chunk.lights, resources.upload(std::span<const shared::LightRow>(lights)));
     SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(commands)));
     return chunk;
 }
@@ -291,9 +296,9 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
     gpu::begin_rendering(vk, context.commands, rendering, resolution_, resolution_);
     Status status;
     if (chunk.command_count > 0 || !chunk.hole_textures.empty()) {
-        const VkBuffer vertices = scene.positions().handle();
-        const VkDeviceSize offset = 0;
-        vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &vertices, &offset);
+        const VkBuffer buffers[] = {scene.positions().handle(), chunk.jobs.buffer};
+        const VkDeviceSize offsets[] = {0, chunk.jobs.offset};
+        vk.vkCmdBindVertexBuffers(context.commands, 0, 2, buffers, offsets);
         vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
         for (const bool culled : {false, true}) {
             const std::uint32_t plain = chunk.command_count - chunk.culled_count;
@@ -301,9 +306,7 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
             if (count == 0 || !status)
                 continue;
             const gpu::Pipeline& pipeline = bits_ == 16 ? *pipelines16_[culled] : *pipelines32_[culled];
-            const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
-                                             gpu::Binding::slice(chunk.lights)};
-            status = context.resources.bind(context.commands, pipeline, bindings);
+            status = context.resources.bind(context.commands, pipeline, {});
             context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
             const VkDeviceSize first = culled ? plain * sizeof(VkDrawIndexedIndirectCommand) : 0;
             if (status)
@@ -323,13 +326,11 @@ Status ShadowMaps::draw_holes(gpu::PassContext& context, const scene::GpuScene& 
         return {};
     const VolkDeviceTable& vk = context.device.vk;
     const gpu::Pipeline& pipeline = *hole_pipelines_[bits_ == 16 ? 0 : 1];
-    const VkBuffer buffers[] = {scene.positions().handle(), scene.texture_coordinates().handle(),
-                                scene.colours().handle()};
-    const VkDeviceSize offsets[3] = {};
-    vk.vkCmdBindVertexBuffers(context.commands, 0, 3, buffers, offsets);
+    const VkBuffer buffers[] = {scene.texture_coordinates().handle(), scene.colours().handle()};
+    const VkDeviceSize offsets[2] = {};
+    vk.vkCmdBindVertexBuffers(context.commands, jobs_buffer + 1, 2, buffers, offsets);
     for (std::uint32_t i = 0; i < chunk.hole_textures.size(); ++i) {
-        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(chunk.jobs),
-                                         gpu::Binding::slice(chunk.lights), gpu::Binding::slice(scene.materials()),
+        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(scene.materials()),
                                          scene.textures().binding(chunk.hole_textures[i])};
         SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings));
         context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});

@@ -1,28 +1,39 @@
-// Where a vertex lies on the face of a shadow map. Included by vertex shaders that declare rows, jobs and lights.
-void project_on_map(ShadowJob job, vec3 world) {
-    const uint layer = job.layer_face & 0xffffu;
-    const uint face = (job.layer_face >> 16) & 0xfu;
-    const uint kind = job.layer_face >> 20;
-    gl_Layer = int(layer);
+// Where a vertex lies on the face of a shadow map: the instance (ShadowJob) says which map, a layer of the staging image,
+// which face and which occluder, so that one call draws many. Thesis sec. 4.2.2, with instances in place of four passes a
+// map. Included by vertex shaders that declare the constants and gl_PerVertex.
+layout(location = 0) in vec3 in_position;
+layout(location = 1) in vec4 in_x;
+layout(location = 2) in vec4 in_y;
+layout(location = 3) in vec4 in_w;
+layout(location = 4) in vec4 in_z;
+layout(location = 5) in uvec2 in_layer_face_row;
 
-    const vec3 v = world - lights[layer].position_bound.xyz;
-    const vec3 d = vec3(dot(lights[layer].tangent_scale.xyz, v), dot(lights[layer].bitangent.xyz, v),
-                        dot(lights[layer].normal_offset.xyz, v));
+void project_on_map() {
+    const uint face = (in_layer_face_row.x >> 16) & 0xfu;
+    const uint kind = in_layer_face_row.x >> 20;
+    gl_Layer = int(in_layer_face_row.x & 0xffffu);
+
+    const vec4 p = vec4(in_position, 1.0);
+    const float x = dot(in_x, p), y = dot(in_y, p), z = dot(in_z, p), w = dot(in_w, p);
     if (kind == light_class_directional) {
-        const float inverse_radius = lights[layer].tangent_scale.w;
-        gl_Position = vec4(d.xy * inverse_radius, 1.0 - d.z * lights[layer].normal_offset.w, 1.0);
+        gl_Position = vec4(x, y, z, w);
         gl_ClipDistance[0] = gl_ClipDistance[1] = gl_ClipDistance[2] = 1.0;
         return;
     }
-    // Neighbouring faces meet on texel centres. Each is drawn a quarter of a texel wider, so that rounding leaves no
-    // gap on a centre that both share, and no other centre gets a value from the wrong face.
+    gl_Position = vec4(x, y, shadow_near, w);
+    // Light-space x and y again from the face's projection.
     const vec3 s = face_signs(face);
     const bool hemisphere = kind == light_class_surface;
-    const vec3 clip = hemisphere ? hemisphere_face_clip(d, face) : sphere_face_clip(d, face);
-    const float margin = constants.half_texel_margin * clip.z;
-    gl_Position = vec4(clip.xy, shadow_near, clip.z);
+    vec2 d = vec2(x, y);
+    if (hemisphere)
+        d = vec2(x + y, x - y) * 0.5;
+    else if (s.z < 0.0)
+        d = vec2(s.x * (w - s.y * y), s.y * (w - s.x * x));
+    // Neighbouring faces meet on texel centres. Each is drawn a quarter of a texel wider, so that rounding leaves no
+    // gap on a centre that both share, and no other centre gets a value from the wrong face.
+    const float margin = constants.half_texel_margin * w;
     gl_ClipDistance[0] = s.x * d.x + margin;
     gl_ClipDistance[1] = s.y * d.y + margin;
     // Nothing behind a surface sample's tangent plane can shadow what it lights.
-    gl_ClipDistance[2] = hemisphere ? d.z - 1e-5 : s.z * d.z + margin;
+    gl_ClipDistance[2] = hemisphere ? z - 1e-5 : s.z * z + margin;
 }

@@ -1,6 +1,7 @@
 // Light of one sample at one pixel: what every kernel that evaluates samples per pixel shares.
 //
-// The including shader defines before: light_class, maps (maps_none: no test), filtered, map_bits as constants;
+// The including shader defines before: light_class, maps (maps_none: no test), filtered, map_bits, stale_maps (some
+// map shows movers where they were) as constants;
 // map_side(), the texels along a map's side; and map_value(slot, texel), the stored value.
 #include "gi_module/shadows/octahedral_map.h"
 
@@ -8,6 +9,7 @@ struct Pixel {
     vec3 position;
     vec3 normal;
     vec3 geometric_normal;
+    float on_mover; // 1: of a mover, which stale maps show where it was; 0
 };
 
 // What one sample does to a pixel, as factors of its intensity.
@@ -39,7 +41,7 @@ float filtered_visibility(uint slot, vec2 uv, float receiver) {
 
 // The same for octahedral maps: each texel against the receiver's plane at the texel's centre.
 float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_space_normal, float plane_distance,
-                                float bias, float reach) {
+                                float bias, float reach, float lag) {
     const vec2 place = map_place(uv) - 0.5;
     const ivec2 corner = ivec2(floor(place));
     vec4 lit;
@@ -49,9 +51,16 @@ float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_s
         const vec3 centre =
             light_class == light_class_surface ? hemisphere_direction(centre_uv) : sphere_direction(centre_uv);
         const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
-        lit[i] = min(value, 1.0) + depth_step(map_bits) >= map_value(slot, texel) ? 1.0 : 0.0;
+        lit[i] = min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, texel) ? 1.0 : 0.0;
     }
     return blend(lit, place - floor(place));
+}
+
+// What a receiver on a mover gains where the map is stale: the mover itself, as the map shows it, may be nearer to the
+// light by as much as it has moved since, and would shadow all of its lit side. 1/w changes by the step over w squared,
+// and w, the sum of three coordinates, by at most sqrt(3) times the distance.
+float lag_value(LightRow light, Pixel pixel, float inverse_w) {
+    return stale_maps == 0 ? 0.0 : pixel.on_mover * shadow_near * 1.7320508 * light.bitangent.w * inverse_w * inverse_w;
 }
 
 LightFactor directional_factor(LightRow light, Pixel pixel, vec3 v, float along, bool test) {
@@ -61,7 +70,8 @@ LightFactor directional_factor(LightRow light, Pixel pixel, vec3 v, float along,
     if (maps != maps_none && test) {
         const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
         const float bias = orthographic_bias(map_side(), geometric_cosine);
-        const float receiver = 1.0 - along * light.normal_offset.w + depth_step(map_bits);
+        const float lag = stale_maps == 0 ? 0.0 : pixel.on_mover * light.bitangent.w;
+        const float receiver = 1.0 - (along - lag) * light.normal_offset.w + depth_step(map_bits);
         const uint slot = uint(light.intensity_slot.w);
         if (filtered == 0)
             factor.visibility = nearest_visibility(slot, uv, receiver + bias);
@@ -101,13 +111,14 @@ LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
         const uint slot = uint(light.intensity_slot.w);
         if (filtered == 0) {
             factor.visibility =
-                nearest_visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits));
+                nearest_visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits) +
+                                                       lag_value(light, pixel, place.z));
         } else {
             const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
                                      dot(light.bitangent.xyz, pixel.geometric_normal),
                                      dot(light.normal_offset.xyz, pixel.geometric_normal));
             factor.visibility = filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance,
-                                                          bias, reach);
+                                                          bias, reach, lag_value(light, pixel, place.z));
         }
     }
     return factor;

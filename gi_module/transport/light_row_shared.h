@@ -14,7 +14,7 @@ struct LightRow {
     vec4 normal_offset;  // 16: xyz: axis; w: cone offset (point class), 1 / (2 * radius) (directional class)
     vec4 intensity_slot; // 32: rgb: radiant intensity on the axis W/sr, or irradiance W/m2; w: map slot
     vec4 tangent_scale;  // 48: xyz: first axis of the map; w: cone scale (point), 1 / radius (directional)
-    vec4 bitangent;      // 64: xyz: second axis of the map
+    vec4 bitangent;      // 64: xyz: second axis of the map; w: how far movers have moved since it was drawn, m
 };
 
 SHARED_CONSTANT uint lights_per_batch = 512u; // 40 KiB: within every device's uniform range

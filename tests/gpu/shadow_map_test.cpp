@@ -4,6 +4,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/core/random.h"
 #include "gi_module/shadows/octahedral_map.h"
+#include "gi_module/shadows/shadow_jobs.h"
 
 #include <cmath>
 
@@ -327,6 +328,50 @@ TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     const io::Picture at_once = fresh.picture();
     ASSERT_EQ(spread.pixels.size(), at_once.pixels.size());
     EXPECT_EQ(std::memcmp(spread.pixels.data(), at_once.pixels.data(), spread.pixels.size() * sizeof(vec4)), 0);
+}
+
+// The numbers that vertices are given place points of an occluder where the definition does.
+TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
+    RandomSequence random(SequenceKind::pseudo_random, 8, 1);
+    const auto number = [&] { return 2.0f * random.next() - 1.0f; };
+    for (int i = 0; i < 20000; ++i) {
+        gi::LightSample sample;
+        sample.position = vec3(number(), number(), number());
+        sample.normal = glm::normalize(vec3(number(), number(), number()));
+        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional}[i % 3u];
+        Bounds bounds;
+        bounds.add(vec3(-2.0f));
+        bounds.add(vec3(3.0f));
+        const std::uint32_t kind = gi::light_class(sample.kind);
+        const LightRow light = gi::make_light_row(sample, 0, 1e30f, bounds);
+        mat4 model(vec4(number(), number(), number(), 0), vec4(number(), number(), number(), 0),
+                   vec4(number(), number(), number(), 0), vec4(number(), number(), number(), 1));
+        DrawConstants occluder{};
+        for (int r = 0; r < 3; ++r)
+            occluder.model[r] = glm::transpose(model)[r];
+        const std::uint32_t face = std::uint32_t(i) % (kind == light_class_surface ? 4 : 8);
+        const ShadowJob job =
+            gi::make_shadow_job(light, kind, 5, kind == light_class_directional ? 0 : face, occluder, 9);
+        EXPECT_EQ(job.layer_face & 0xffffu, 5u);
+        EXPECT_EQ(job.row, 9u);
+        const vec4 p(number(), number(), number(), 1.0f);
+        const vec3 v = vec3(model * p) - vec3(light.position_bound);
+        const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
+                     glm::dot(vec3(light.normal_offset), v));
+        const vec4 clip(glm::dot(job.x, p), glm::dot(job.y, p), glm::dot(job.z, p), glm::dot(job.w, p));
+        if (kind == light_class_directional) {
+            ASSERT_NEAR(clip.x, d.x * light.tangent_scale.w, 1e-5f);
+            ASSERT_NEAR(clip.y, d.y * light.tangent_scale.w, 1e-5f);
+            ASSERT_NEAR(clip.z, 1.0f - d.z * light.normal_offset.w, 1e-5f);
+            ASSERT_EQ(clip.w, 1.0f);
+            continue;
+        }
+        const vec3 expected = kind == light_class_surface ? hemisphere_face_clip(d, face) : sphere_face_clip(d, face);
+        ASSERT_NEAR(clip.x, expected.x, 1e-5f);
+        ASSERT_NEAR(clip.y, expected.y, 1e-5f);
+        ASSERT_NEAR(clip.w, expected.z, 1e-5f);
+        ASSERT_NEAR(clip.z, d.z, 1e-5f);
+    }
 }
 
 // The three projections agree with their definition on every face, and neighbouring faces meet.
