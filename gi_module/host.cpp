@@ -7,6 +7,7 @@
 #include "sunfleck/host.h"
 
 #include <cstring>
+#include <optional>
 #include <unordered_map>
 
 namespace sunfleck::host {
@@ -94,6 +95,7 @@ struct Context::Implementation {
     scene::MeshStore meshes;
     std::vector<ecs::Entity> instances, lights; // null: removed
     std::vector<std::uint32_t> surface_ids;     // by instance
+    std::optional<mat4> view_projection;        // of the last frame recorded
     bool updated = false;
 
     Result<ecs::Entity> find(const std::vector<ecs::Entity>& list, std::uint32_t number, const char* what) const {
@@ -312,6 +314,7 @@ Status Context::update(const Frame& frame) {
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
+    input.view_projection = self.view_projection;
     SUNFLECK_TRY(self.system->update(self.registry, self.meshes, *self.gpu_scene, *self.rays, input));
     std::unordered_map<ecs::Entity, std::uint32_t> rows;
     for (const scene::DrawItem& item : self.gpu_scene->draws())
@@ -336,8 +339,9 @@ Status Context::record(VkCommandBuffer commands, const Camera& camera, const Fra
     self.updated = false;
     if (images.width == 0 || images.height == 0)
         return Error{"the images have no size"};
-    SUNFLECK_ASSIGN(const gpu::UploadSlice row,
-                    self.resources->upload_value(scene::make_camera_row(view_of(camera), images.width, images.height)));
+    const shared::CameraRow camera_row = scene::make_camera_row(view_of(camera), images.width, images.height);
+    self.view_projection = camera_row.view_projection;
+    SUNFLECK_ASSIGN(const gpu::UploadSlice row, self.resources->upload_value(camera_row));
     gpu::FrameGraph& graph = *self.graph;
     graph.reset();
     self.gpu_scene->add_passes(graph);

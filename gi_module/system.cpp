@@ -367,12 +367,13 @@ void System::mark_by_bounds(const scene::GpuScene& gpu_scene) {
 
 // Empty where the choice does not need them.
 std::vector<float> System::contributions_of_stale_maps(const scene::GpuScene& gpu_scene, std::uint32_t budget) const {
-    if (!uses_many_light() || settings_.map_priority != MapPriority::contribution || scheduler_.stale() <= budget)
+    if (!uses_many_light() || !input_.view_projection || settings_.map_priority != MapPriority::contribution ||
+        scheduler_.stale() <= budget)
         return {};
     std::vector<std::uint8_t> wanted(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i)
         wanted[i] = scheduler_.frames_out_of_date(i) > 0 ? 1 : 0;
-    return map_contributions(database_, samples_, rows_, gpu_scene.draws(), input_.view_projection, wanted);
+    return map_contributions(database_, samples_, rows_, gpu_scene.draws(), *input_.view_projection, wanted);
 }
 
 Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,

@@ -32,6 +32,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace sunfleck::gi {
 
@@ -56,8 +57,9 @@ struct FrameInput {
     // first one of a level), from any thread but by one at a time. Returning false ends the update with an error; the
     // next one begins again.
     std::function<bool(float)> progress;
-    // World to clip; only for Settings::count_passes.
-    mat4 view_projection{1.0f};
+    // World to clip, of this frame's camera or the one before: which shadow maps matter most to the picture, and what
+    // Settings::count_passes counts. Without it, maps are redrawn by flux, and no passes are counted.
+    std::optional<mat4> view_projection;
 };
 
 // Of the last update and, for what the GPU counts, of the newest frame that is complete.

@@ -158,7 +158,7 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
 
 // Nodes that left the view are drawn no longer; the rest keeps its elements from frame to frame.
 void System::count_passes() {
-    if (!settings_.count_passes)
+    if (!settings_.count_passes || !input_.view_projection)
         return;
     if (passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass ||
         passes_extras_ != settings_.pass_extras) {
@@ -168,7 +168,7 @@ void System::count_passes() {
         passes_extras_ = settings_.pass_extras;
         seen_nodes_.clear();
     }
-    auto changed = tested_lights_of_visible_nodes(database_, input_.view_projection, settings_.pass_extras);
+    auto changed = tested_lights_of_visible_nodes(database_, *input_.view_projection, settings_.pass_extras);
     const auto seen = changed;
     for (const auto& [node, lights] : seen_nodes_) {
         const LightSet none(lights.needed.size(), 0);
