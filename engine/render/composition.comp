@@ -33,7 +33,7 @@ vec3 surface_radiance(ivec2 pixel, uint surface) {
     vec3 radiance = albedo * irradiance * (1.0 / pi);
     if ((surface & surface_emits) != 0u)
         radiance += textured_emission != 0 ? texelFetch(emission_image, pixel, 0).rgb
-                                           : rows[(surface & surface_row_mask) - 1u].emission.rgb;
+                                           : rows[surface_row(surface)].emission.rgb;
     if ((surface & surface_unlit) != 0u)
         radiance = radiance_from_display(albedo, constants.exposure);
     return radiance;

@@ -12,7 +12,7 @@ void write_motion() {
     out_current = out_previous = vec4(0.0, 0.0, 0.0, 1.0);
     if (with_motion == 0)
         return;
-    const uint row = (draw.surface & surface_row_mask) - 1u;
+    const uint row = surface_row(draw.surface);
     out_previous = camera.previous_view_projection * (rows[row].previous_model * vec4(in_position, 1.0));
     out_current = gl_Position;
 }

@@ -35,9 +35,9 @@ void main() {
     out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
     out_surface = draw.surface;
     out_emission = vec4(draw.emission.rgb, 1.0);
-    vec3 albedo = vec3(draw.normal_colour[0].w, draw.normal_colour[1].w, draw.normal_colour[2].w);
+    vec3 albedo = base_colour_of(draw);
     if (pattern_kind != pattern_none) {
-        const uint row = (draw.surface & surface_row_mask) - 1u;
+        const uint row = surface_row(draw.surface);
         const vec4 pattern = rows[row].pattern;
         const vec3 local = (rows[row].inverse_model * vec4(in_position, 1.0)).xyz;
         const vec3 local_normal = mat3(rows[row].inverse_model) * normalize(geometric);

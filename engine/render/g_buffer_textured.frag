@@ -46,7 +46,7 @@ void main() {
     const vec4 colour = texture(colour_texture, in_colour_normal_place.xy) * in_colour;
     const vec3 bump_texel = texture(normal_texture, in_colour_normal_place.zw).xyz;
     const vec3 emission_texel = texture(emission_texture, in_emission_place).rgb;
-    const vec4 factors = materials[rows[(draw.surface & surface_row_mask) - 1u].material.x].factors;
+    const vec4 factors = materials[rows[surface_row(draw.surface)].material.x].factors;
     if (has_holes != 0) {
         const float alpha = colour.a * factors.x;
         const float least = factors.y >= 0.0 ? factors.y : dot_threshold(ivec2(gl_FragCoord.xy));
@@ -78,7 +78,6 @@ void main() {
         emission *= emission_texel;
     out_emission = vec4(emission, 1.0);
     out_surface = draw.surface;
-    const vec3 base_colour = vec3(draw.normal_colour[0].w, draw.normal_colour[1].w, draw.normal_colour[2].w);
-    out_albedo = pack_albedo(base_colour * colour.rgb, (draw.surface & surface_unlit) != 0u);
+    out_albedo = pack_albedo(base_colour_of(draw) * colour.rgb, (draw.surface & surface_unlit) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

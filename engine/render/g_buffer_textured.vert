@@ -36,7 +36,7 @@ void main() {
     out_normal = world_normal(in_normal);
     gl_Position = camera.view_projection * vec4(out_position, 1.0);
     write_motion();
-    const uint material = rows[(draw.surface & surface_row_mask) - 1u].material.x;
+    const uint material = rows[surface_row(draw.surface)].material.x;
     out_colour_normal_place = vec4(texture_place(materials[material].base_colour, in_coordinates),
                                    texture_place(materials[material].normal, in_coordinates));
     out_emission_place = texture_place(materials[material].emission, in_coordinates);

@@ -30,6 +30,14 @@ struct DrawConstants {
     uint surface;          // 112: surface id, as above
 };
 
+// Row of a surface id that is not 0.
+SHARED_FUNCTION uint surface_row(uint surface) {
+    return (surface & surface_row_mask) - 1u;
+}
+SHARED_FUNCTION vec3 base_colour_of(DrawConstants draw) {
+    return vec3(draw.normal_colour[0].w, draw.normal_colour[1].w, draw.normal_colour[2].w);
+}
+
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::InstanceRow) == 320);

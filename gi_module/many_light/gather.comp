@@ -27,7 +27,7 @@ layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
-    const SurfaceInstance instance = instances[(surface & surface_row_mask) - 1u];
+    const SurfaceInstance instance = instances[surface_row(surface)];
     for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count; ++i)
         if (on_chart(charts[i], position, geometric_normal))
             return cells[chart_cell(charts[i], position)];

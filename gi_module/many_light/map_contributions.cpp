@@ -24,6 +24,11 @@ SeenNode seen_node(const Bounds& bounds, vec3 normal, float area, const mat4& vi
     return seen;
 }
 
+float largest_side_area(const Bounds& bounds) {
+    const vec3 extent = bounds.extent();
+    return std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+}
+
 std::vector<SeenNode> seen_nodes(const VisibilityDatabase& database, const mat4& view_projection) {
     const auto& patches = database.patches().nodes();
     std::vector<SeenNode> nodes(database.node_count());
@@ -31,10 +36,9 @@ std::vector<SeenNode> seen_nodes(const VisibilityDatabase& database, const mat4&
         const SurfacePatch& patch = patches[i];
         if (!patch.is_leaf())
             continue;
-        const vec3 extent = patch.bounds.extent();
         const float area = patch.planar ? float(glm::length(glm::cross(patch.corners[1] - patch.corners[0],
                                                                        patch.corners[3] - patch.corners[0])))
-                                        : std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
+                                        : largest_side_area(patch.bounds);
         nodes[i] = seen_node(patch.bounds, patch.planar ? vec3(patch.normal) : vec3(0.0f), area, view_projection);
     }
     return nodes;
@@ -63,9 +67,7 @@ std::vector<float> map_contributions(const VisibilityDatabase& database, std::sp
         const std::uint32_t node = item.is_static ? shared::no_node : database.mover_node(item.entity);
         if (node == shared::no_node)
             continue;
-        const vec3 extent = item.bounds.extent();
-        const float area = std::max({extent.x * extent.y, extent.y * extent.z, extent.z * extent.x});
-        nodes[node] = seen_node(item.bounds, vec3(0.0f), area, view_projection);
+        nodes[node] = seen_node(item.bounds, vec3(0.0f), largest_side_area(item.bounds), view_projection);
         mover_nodes.push_back(node);
     }
     std::vector<float> result(samples.size(), 0.0f);
