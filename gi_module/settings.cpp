@@ -53,6 +53,9 @@ const TypeDescription& Settings::description() {
          SUNFLECK_FIELD(Settings, patch_levels, "", 0, 6, "How often patches of surfaces are divided at most"),
          SUNFLECK_FIELD(Settings, light_maps, "", 0, 1,
                         "Unshadowed light is kept in light maps; only what is blocked is evaluated by pixel"),
+         SUNFLECK_FIELD(Settings, baked_light, "", 0, 1,
+                        "Light that static geometry lets pass is kept where it is smooth; there only the shadows of "
+                        "movers are evaluated by pixel"),
          SUNFLECK_FIELD(Settings, low_resolution, "pixels", 1, 8,
                         "Light is evaluated once for so many pixels in each direction: 1 (all), 2, 4 or 8"),
          SUNFLECK_FIELD(Settings, repair_contrast, "", 0, 1,

@@ -51,6 +51,7 @@ struct Settings {
     bool visibility = true;
     std::uint32_t patch_levels = 4;
     bool light_maps = true;
+    bool baked_light = true;
     std::uint32_t low_resolution = 4;
     float repair_contrast = 0.3f;
     float repair_angle = 12.0f;

@@ -125,6 +125,10 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     options.filter = settings_.shadow_filter;
     options.visibility = settings_.visibility;
     options.light_maps = settings_.light_maps && settings_.visibility;
+    // Maps whose static part is stale are all redrawn in this frame.
+    options.baked_light = settings_.baked_light && settings_.static_maps && shadow_maps_->slots() >= samples_.size();
+    for (const std::uint32_t sample : to_draw_)
+        options.static_maps_changed |= scheduler_.is_static_stale(sample) && held_by_light_maps(samples_[sample]);
     options.scale = settings_.low_resolution;
     options.contrast = settings_.repair_contrast;
     options.normal_degrees = settings_.repair_angle;

@@ -24,11 +24,10 @@ struct RenderOptions {
 };
 
 // Views that the lighting itself draws, in false colours.
-const std::map<std::string, std::uint32_t> lighting_views = {{"tiles", shared::show_tiles},
-                                                             {"repaired", shared::show_repaired},
-                                                             {"visibility", shared::show_visibility},
-                                                             {"staleness", shared::show_staleness},
-                                                             {"light_maps", shared::show_light_maps}};
+const std::map<std::string, std::uint32_t> lighting_views = {
+    {"tiles", shared::show_tiles},           {"repaired", shared::show_repaired},
+    {"visibility", shared::show_visibility}, {"staleness", shared::show_staleness},
+    {"light_maps", shared::show_light_maps}, {"baked", shared::show_baked}};
 
 const std::map<std::string, std::uint32_t> views = {{"final", shared::view_final},
                                                     {"irradiance", shared::view_irradiance},
@@ -44,7 +43,8 @@ const std::map<std::string, std::uint32_t> views = {{"final", shared::view_final
                                                     {"repaired", shared::view_false_colours},
                                                     {"visibility", shared::view_false_colours},
                                                     {"staleness", shared::view_false_colours},
-                                                    {"light_maps", shared::view_irradiance}};
+                                                    {"light_maps", shared::view_irradiance},
+                                                    {"baked", shared::view_false_colours}};
 
 // The command line's options come before what the scene file says, that before their defaults.
 Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<std::string, std::string>& of_scene) {

@@ -10,6 +10,8 @@ layout(local_size_x = 8) in;
 layout(constant_id = 0) const uint indirect = 0;   // 1: the number of groups is in the commands
 layout(constant_id = 1) const uint light_maps = 1; // this class of samples is in the light maps
 layout(constant_id = 2) const uint visibility = 1; // 0: every sample is tested everywhere
+layout(constant_id = 3) const uint phase = phase_plain;
+layout(constant_id = 4) const uint first_batch = 1; // pixels are lit from here on
 
 layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
@@ -20,6 +22,7 @@ layout(set = 0, binding = 5) writeonly buffer Entries { uint entries[]; };
 layout(set = 0, binding = 6) writeonly buffer Counts { GroupCounts counts[]; };
 layout(set = 0, binding = 7) readonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = 8) writeonly buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 9) readonly buffer RoughEntries { uint rough_entries[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 void main() {
@@ -32,9 +35,15 @@ void main() {
         slot_nodes[s] = no_node;
     bool any_pixel = false, any_node = false;
     for (uint i = 0; i < group_pixels; ++i) {
-        const uint entry = group * group_pixels + i;
-        const bool exists = (pixels[entry] & unlit_pixel) == 0u;
-        const uint node = entry_nodes[entry];
+        const uint place = group * group_pixels + i;
+        uint entry = place;
+        if (phase == phase_rough)
+            entry = rough_entries[place];
+        bool exists = entry != no_pixel;
+        entry = exists ? entry : 0u;
+        exists = exists && (pixels[entry] & unlit_pixel) == 0u;
+        uint node = exists ? entry_nodes[entry] : no_node;
+        node = node == no_node ? no_node : node & ~node_baked;
         uint slot = any_node_slot;
         if (exists && node != no_node && visibility != 0) {
             [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
@@ -46,10 +55,10 @@ void main() {
         }
         any_pixel = any_pixel || exists;
         any_node = any_node || (exists && slot == any_node_slot);
-        entry_slots[entry] = slot | (node != no_node && node >= constants.first_mover ? entry_on_mover : 0u);
+        entry_slots[place] = slot | (node != no_node && node >= constants.first_mover ? entry_on_mover : 0u);
         // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
-        if (slot == any_node_slot && constants.batch_first == 0u)
-            sums[entry] = vec4(0.0);
+        if (slot == any_node_slot && first_batch != 0u && exists)
+            sums[entry] = vec4(0.0, 0.0, 0.0, 1.0);
     }
     bool mapped[any_node_slot];
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)

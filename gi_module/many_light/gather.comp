@@ -11,6 +11,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint from_list = 0; // 0: tiles of the low-resolution picture, 1: the pixels are given
 layout(constant_id = 1) const uint light_maps = 1;
+layout(constant_id = 2) const uint baked = 0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -24,6 +25,7 @@ layout(set = 0, binding = 8) buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 9) writeonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
+layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
@@ -34,21 +36,36 @@ uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
     return box_node(instance, position);
 }
 
-// Bilinear, within the patch: patches share the values on their borders where they share their samples.
-vec3 light_map(uint node, vec3 position) {
-    const NodeRow row = node_rows[node];
-    if (row.first_texel == no_light_map)
-        return vec3(0.0);
+// Where a point lies in a patch's grid of texels.
+struct TexelPlace {
+    uint first; // of the four around it
+    vec2 weight;
+};
+
+TexelPlace texel_place(NodeRow row, vec3 position) {
     const SurfaceChart chart = charts[row.chart];
     const vec2 place = vec2(dot(chart.u_axis.xyz, position) + chart.u_axis.w, dot(chart.v_axis.xyz, position) + chart.v_axis.w);
     const vec2 texel = clamp((place - row.place.xy) / row.place.zw, 0.0, 1.0) * vec2(row.columns - 1u, row.rows - 1u);
     const uvec2 corner = uvec2(min(texel, vec2(row.columns - 2u, row.rows - 2u)));
-    const vec2 weight = texel - vec2(corner);
-    const uint first = row.first_texel + corner.y * row.columns + corner.x;
-    const vec3 low = mix(vec3(light_map_texels[first].xyz), vec3(light_map_texels[first + 1u].xyz), weight.x);
+    return TexelPlace(row.first_texel + corner.y * row.columns + corner.x, texel - vec2(corner));
+}
+
+// Bilinear, within the patch: patches share the values on their borders where they share their samples.
+vec3 light_map(NodeRow row, TexelPlace place) {
+    const uint first = place.first;
+    const vec3 low = mix(vec3(light_map_texels[first].xyz), vec3(light_map_texels[first + 1u].xyz), place.weight.x);
     const vec3 high = mix(vec3(light_map_texels[first + row.columns].xyz),
-                          vec3(light_map_texels[first + row.columns + 1u].xyz), weight.x);
-    return mix(low, high, weight.y) / constants.fixed_point;
+                          vec3(light_map_texels[first + row.columns + 1u].xyz), place.weight.x);
+    return mix(low, high, place.weight.y) / constants.fixed_point;
+}
+
+// a: 0 where it may be used.
+vec4 baked_light(NodeRow row, TexelPlace place) {
+    const int first = int(place.first), below = first + int(row.columns);
+    const vec4 corner = texelFetch(baked_texels, first);
+    const vec3 low = mix(corner.rgb, texelFetch(baked_texels, first + 1).rgb, place.weight.x);
+    const vec3 high = mix(texelFetch(baked_texels, below).rgb, texelFetch(baked_texels, below + 1).rgb, place.weight.x);
+    return vec4(mix(low, high, place.weight.y), corner.a);
 }
 
 void main() {
@@ -74,12 +91,31 @@ void main() {
     vec3 sum = vec3(0.0);
     if (exists) {
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
-        node = find_node(surface, position, unpack_normal(texelFetch(normals_image, pixel, 0).g));
-        if (light_maps != 0 && node != no_node)
-            sum = light_map(node, position);
+        const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
+        const vec3 geometric_normal = unpack_normal(normals.g);
+        node = find_node(surface, position, geometric_normal);
+        if (light_maps != 0 && node != no_node) {
+            const NodeRow row = node_rows[node];
+            if (row.first_texel != no_light_map) {
+                const TexelPlace place = texel_place(row, position);
+                if (baked != 0) {
+                    // Texels know the patch's normal alone.
+                    const vec3 bend = unpack_normal(normals.r) - geometric_normal;
+                    const vec4 light = baked_light(row, place);
+                    if (light.a == 0.0 && dot(bend, bend) < flat_shaded_limit) {
+                        sum = light.rgb;
+                        node |= node_baked;
+                    } else {
+                        sum = light_map(row, place);
+                    }
+                } else {
+                    sum = light_map(row, place);
+                }
+            }
+        }
     }
     if (from_list == 0)
         pixels[entry] = in_picture ? uint(pixel.x) | (uint(pixel.y) << 16) | (exists ? 0u : unlit_pixel) : no_pixel;
     entry_nodes[entry] = node;
-    sums[entry] = vec4(sum, 0.0);
+    sums[entry] = vec4(sum, exists ? 1.0 : 0.0);
 }

@@ -18,6 +18,7 @@ layout(constant_id = 5) const uint to_image = 0; // 1: the sums go to the full p
 layout(constant_id = 6) const uint lanes = 8;
 layout(local_size_x_id = 6) in;
 layout(constant_id = 7) const uint stale_maps = 0;
+layout(constant_id = 8) const uint phase = phase_plain;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -30,26 +31,43 @@ layout(set = 0, binding = 7) readonly buffer Entries { uint entries[]; };
 layout(set = 0, binding = 8) readonly buffer Counts { GroupCounts counts[]; };
 layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 10) writeonly uniform image2D output_image;
+layout(set = 0, binding = 11) uniform samplerBuffer static_map_texels;
+layout(set = 0, binding = 12) readonly buffer RoughEntries { uint rough_entries[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 float map_side() { return float(constants.map_resolution); }
+bool ask_static_maps = false; // a constant wherever a map is read
 float map_value(uint slot, ivec2 texel) {
     const int side = int(constants.map_resolution);
-    return texelFetch(map_texels, (int(slot) * side + texel.y) * side + texel.x).r;
+    const int place = (int(slot) * side + texel.y) * side + texel.x;
+    return ask_static_maps ? texelFetch(static_map_texels, place).r : texelFetch(map_texels, place).r;
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 
+// Share of a sample's light that movers alone keep from a pixel.
+float taken_by_movers(LightRow light, Pixel pixel, float visibility) {
+    ask_static_maps = true;
+    const float before = map_visibility(light, pixel);
+    ask_static_maps = false;
+    return max(before - visibility, 0.0);
+}
+
 void main() {
     const uint group = gl_WorkGroupID.x;
+    const GroupCounts count = counts[group];
+    if (to_image == 0 && count.tested + count.untested == 0u)
+        return; // what the sums hold is all
     Pixel surface[pixels_per_invocation];
-    vec3 sum[pixels_per_invocation];
-    uint slot[pixels_per_invocation];
+    vec4 sum[pixels_per_invocation];
+    uint slot[pixels_per_invocation], entry_of[pixels_per_invocation];
     ivec2 place[pixels_per_invocation];
-    bool exists[pixels_per_invocation];
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        const uint entry = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
+        const uint i = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
+        entry_of[k] = i;
+        if (phase == phase_rough)
+            entry_of[k] = rough_entries[i];
+        const uint entry = entry_of[k] != no_pixel ? entry_of[k] : 0u;
         const uint packed = pixels[entry];
-        exists[k] = (packed & unlit_pixel) == 0u;
         place[k] = packed != no_pixel ? ivec2(packed & 0xffffu, (packed & ~unlit_pixel) >> 16) : ivec2(-1);
         const ivec2 inside = max(place[k], ivec2(0));
         const float depth = texelFetch(depth_image, inside, 0).r;
@@ -57,19 +75,24 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
-        slot[k] = (entry_slots[entry] & ~entry_on_mover) + entry_slots_shift;
-        surface[k].on_mover = (entry_slots[entry] & entry_on_mover) != 0u ? 1.0 : 0.0;
-        sum[k] = sums[entry].rgb;
+        slot[k] = (entry_slots[i] & (entry_on_mover - 1u)) + entry_slots_shift;
+        surface[k].on_mover = (entry_slots[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
+        if (phase == phase_baked && (entry_slots[i] & entry_is_baked) == 0u)
+            surface[k].normal = vec3(0.0); // no sample lights it
+        sum[k] = sums[entry];
     }
-    const GroupCounts count = counts[group];
     const uint first = group * constants.list_stride;
     for (uint i = 0; i < count.tested; ++i) {
         const uint entry = entries[first + i];
         const LightRow light = light_rows[entry & entry_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
             const LightFactor factor = light_factor(light, surface[k], true);
-            const float held = float((entry >> slot[k]) & 1u); // by the light map
-            sum[k] += light.intensity_slot.rgb * (factor.unshadowed * (factor.visibility - held));
+            if (phase == phase_baked) {
+                sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * taken_by_movers(light, surface[k], factor.visibility));
+            } else {
+                const float held = float((entry >> slot[k]) & 1u); // by the light map
+                sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (factor.visibility - held));
+            }
         }
     }
     const uint last = first + constants.list_stride - 1u;
@@ -77,18 +100,22 @@ void main() {
         const uint entry = entries[last - i];
         const LightRow light = light_rows[entry & entry_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-            const float wanted = float((entry >> slot[k]) & 1u);
-            sum[k] += light.intensity_slot.rgb * (light_factor(light, surface[k], false).unshadowed * wanted);
+            if (phase == phase_baked) { // no static geometry is in the way
+                const LightFactor factor = light_factor(light, surface[k], true);
+                sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * (1.0 - factor.visibility));
+            } else {
+                const float wanted = float((entry >> slot[k]) & 1u);
+                sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * wanted);
+            }
         }
     }
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        const uint entry = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
         // What the light map interpolates may exceed what is subtracted, by a little: never below darkness.
         if (to_image != 0) {
             if (place[k].x >= 0)
-                imageStore(output_image, place[k], exists[k] ? vec4(max(sum[k], vec3(0.0)), 1.0) : vec4(0.0));
-        } else {
-            sums[entry] = vec4(sum[k], exists[k] ? 1.0 : 0.0);
+                imageStore(output_image, place[k], sum[k].a > 0.0 ? vec4(max(sum[k].rgb, vec3(0.0)), 1.0) : vec4(0.0));
+        } else if (entry_of[k] != no_pixel) {
+            sums[entry_of[k]] = sum[k];
         }
     }
 }

@@ -31,7 +31,7 @@ void main() {
         ivec4 sum = job.clear != 0u ? ivec4(0) : texels[job.first_texel + i];
         for (uint c = 0; c < job.change_count; ++c) {
             const uint change = changes[job.first_change + c];
-            const vec3 light = unshadowed(lights[change & ~light_map_subtract], position, job.normal.xyz);
+            const vec3 light = unshadowed(lights[change & light_map_sample_mask], position, job.normal.xyz);
             const ivec3 steps = ivec3(light * constants.fixed_point + 0.5);
             sum.rgb += (change & light_map_subtract) != 0u ? -steps : steps;
         }

@@ -1,21 +1,17 @@
 #include "gi_module/many_light/light_maps.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace sunfleck::gi {
 namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
-// Of an invocation's loops in all: llvmpipe ends a shader's loops, silently, after 65,535.
-constexpr std::uint32_t most_iterations = 40000;
 constexpr std::uint32_t most_samples = 60000; // with more, a single texel would take too many
 constexpr std::uint32_t invocations = 64;     // of a work group: light_maps.comp
 constexpr std::uint32_t most_texels = 256;    // along a patch's side
 constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;
-constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
-constexpr float highest_sum = 1073741824.0f;   // of all samples at once: 2^30 leaves room in 32 bits
+constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
 
 bool reaches(PairState state) {
     return state == PairState::none || state == PairState::partial;
@@ -76,60 +72,13 @@ std::uint64_t LightMaps::place_maps(const VisibilityDatabase& database, float te
     return next;
 }
 
-void LightMaps::add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear) {
-    const SurfacePatch& patch = database.patches().nodes()[node];
-    const shared::NodeRow& row = node_rows_[node];
-    shared::LightMapJob job{};
-    job.corner = vec4(vec3(patch.corners[0]), 1.0f);
-    job.u_edge = vec4(vec3(patch.corners[1] - patch.corners[0]), 0.0f);
-    job.v_edge = vec4(vec3(patch.corners[3] - patch.corners[0]), 0.0f);
-    job.normal = vec4(vec3(patch.normal), 0.0f);
-    job.first_texel = row.first_texel;
-    job.columns = row.columns;
-    job.rows = row.rows;
-    job.clear = clear;
-    job.first_change = std::uint32_t(changes_.size());
-    jobs_.push_back(job);
-}
-
-// A job's invocations take turns at its texels; each goes through all changes at every texel.
-void LightMaps::split_jobs() {
-    std::vector<shared::LightMapJob> parts;
-    for (shared::LightMapJob job : jobs_) {
-        const std::uint32_t turns = std::max(most_iterations / (job.change_count + 1), 1u);
-        const std::uint32_t all = job.columns * job.rows;
-        for (job.first = 0; job.first < all; job.first += job.count) {
-            job.count = std::min(turns * invocations, all - job.first);
-            parts.push_back(job);
-        }
-    }
-    jobs_ = std::move(parts);
-}
-
-// False if more than strengths changed, or too many of them.
-bool LightMaps::find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
-                                   std::vector<std::uint32_t>& changed) const {
-    if (rows.size() != summed_rows_.size())
-        return false;
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-        if (!holds(samples[i]) || std::memcmp(&rows[i], &summed_rows_[i], sizeof rows[i]) == 0)
-            continue;
-        shared::LightRow like = summed_rows_[i];
-        like.intensity_slot = rows[i].intensity_slot;
-        if (std::memcmp(&rows[i], &like, sizeof like) != 0)
-            return false;
-        changed.push_back(i);
-    }
-    return changed.size() <= most_new_strengths;
-}
-
 // Pairs that changed their state, with the old strengths; then the new strengths, wherever the samples reach now.
 void LightMaps::follow_changes(const VisibilityDatabase& database, std::span<const LightSample> samples,
                                std::span<const std::uint32_t> changed) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted; // node, change
     for (const PairChange& change : database.changes())
         if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
-            holds(samples[change.sample]) && reaches(change.before) != reaches(change.after))
+            held_by_light_maps(samples[change.sample]) && reaches(change.before) != reaches(change.after))
             wanted.emplace_back(change.node, change.sample | (reaches(change.after) ? 0u : shared::light_map_subtract));
     for (std::uint32_t k = 0; k < changed.size(); ++k)
         for (std::uint32_t node = 0; node < node_rows_.size(); ++node)
@@ -140,25 +89,23 @@ void LightMaps::follow_changes(const VisibilityDatabase& database, std::span<con
     std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (i == 0 || wanted[i].first != wanted[i - 1].first)
-            add_job(database, wanted[i].first, false);
-        changes_.push_back(wanted[i].second);
-        ++jobs_.back().change_count;
+            jobs_.add(database.patches().nodes()[wanted[i].first], node_rows_[wanted[i].first], false);
+        jobs_.add_change(wanted[i].second);
     }
 }
 
 Status LightMaps::update(const VisibilityDatabase& database, std::span<const LightSample> samples,
                          std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
     jobs_.clear();
-    changes_.clear();
     std::vector<std::uint32_t> changed;
-    if (generation_ == database.generation() && find_new_strengths(samples, rows, changed)) {
+    if (generation_ == database.generation() && find_new_strengths(samples, summed_rows_, rows, changed)) {
         job_rows_ = summed_rows_;
         for (const std::uint32_t sample : changed)
             job_rows_.push_back(rows[sample]);
         follow_changes(database, samples, changed);
-        split_jobs();
+        jobs_.split(invocations);
         summed_rows_.assign(rows.begin(), rows.end());
-        counters_.updates = changes_.size();
+        counters_.updates = jobs_.changes().size();
         return {};
     }
     generation_ = database.generation();
@@ -167,7 +114,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     double most = 0.0;
     float bound = 0.0f;
     for (std::size_t i = 0; i < rows.size(); ++i)
-        if (holds(samples[i])) {
+        if (held_by_light_maps(samples[i])) {
             // Of all samples at full strength, so that the steps are the same whatever is blocked.
             const vec3 intensity = samples[i].flux / pi;
             most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(rows[i].position_bound.w);
@@ -179,33 +126,32 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
         if (node_rows_[node].first_texel == shared::no_light_map)
             continue;
-        add_job(database, node, true);
+        jobs_.add(database.patches().nodes()[node], node_rows_[node], true);
         for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
-            if (holds(samples[sample]) && reaches(database.state(node, sample))) {
-                changes_.push_back(sample);
-                ++jobs_.back().change_count;
-            }
+            if (held_by_light_maps(samples[sample]) && reaches(database.state(node, sample)))
+                jobs_.add_change(sample);
     }
-    split_jobs();
-    counters_.updates = changes_.size();
+    jobs_.split(invocations);
+    counters_.updates = jobs_.changes().size();
     return {};
 }
 
 Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
     if (jobs_.empty())
         return {};
-    SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(std::span<const shared::LightMapJob>(jobs_)));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(std::span<const std::uint32_t>(changes_)));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(jobs_.jobs()));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
     graph.add_pass("light maps")
         .write(graph.import_buffer(texels_), gpu::Usage::storage_read_write)
-        .execute([this, jobs, changes, rows, count = std::uint32_t(jobs_.size())](gpu::PassContext& context) -> Status {
+        .execute([this, jobs, changes, rows,
+                  count = std::uint32_t(jobs_.jobs().size())](gpu::PassContext& context) -> Status {
             const gpu::Binding bindings[] = {gpu::Binding::slice(jobs), gpu::Binding::slice(changes),
                                              gpu::Binding::slice(rows), gpu::Binding::buffer(texels_)};
             const std::uint32_t row_length = std::min(count, 32768u);
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel_, bindings));
             context.resources.push(context.commands, *kernel_,
-                                   shared::LightMapConstants{fixed_point_, count, row_length});
+                                   shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f});
             context.device.vk.vkCmdDispatch(context.commands, row_length, (count + row_length - 1) / row_length, 1);
             return {};
         });

@@ -5,16 +5,12 @@
 // summing anew. A texel's first and last columns and rows lie on the patch's border: where neighbouring patches have
 // the same samples, they have the same values there, and no seam shows.
 //
-// Point and spot lights are left out: their irradiance has no bound, and a fixed point needs one. So are samples whose
-// class is directional, which need no map: their irradiance is constant on a plane; and those of emitters that move or
-// vary, whose every change would touch all maps that they reach.
+// Which samples they hold: held_by_light_maps (light_map_jobs.h).
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
-#include "gi_module/many_light/light_maps_shared.h"
-#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/many_light/light_map_jobs.h"
 #include "gi_module/many_light/surface_tables.h"
-#include "gi_module/transport/light_row.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
@@ -41,17 +37,12 @@ public:
     const gpu::Buffer& texels() const { return texels_; }
     // Steps a W/m2.
     float fixed_point() const { return fixed_point_; }
-    static bool holds(const LightSample& sample) { return sample.kind == SampleKind::surface && !sample.dynamic; }
     const LightMapCounters& counters() const { return counters_; }
 
 private:
     explicit LightMaps(gpu::Device& device) : device_(device) {}
     std::uint64_t place_maps(const VisibilityDatabase& database, float texel_side);
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
-    void split_jobs();
-    void add_job(const VisibilityDatabase& database, std::uint32_t node, bool clear);
-    bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
-                            std::vector<std::uint32_t>& changed) const;
     void follow_changes(const VisibilityDatabase& database, std::span<const LightSample> samples,
                         std::span<const std::uint32_t> changed);
 
@@ -62,8 +53,7 @@ private:
     std::uint64_t generation_ = 0;
     std::vector<shared::LightRow> summed_rows_; // what the maps were made with
     std::vector<shared::LightRow> job_rows_;    // those, then the new ones of samples whose strength changed
-    std::vector<shared::LightMapJob> jobs_;
-    std::vector<std::uint32_t> changes_;
+    LightMapJobs jobs_;
     const gpu::Pipeline* kernel_ = nullptr;
     LightMapCounters counters_;
 };

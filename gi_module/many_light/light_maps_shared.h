@@ -20,12 +20,17 @@ struct LightMapJob {
     uint count;
 };
 
-SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // in a change: subtract the sample instead of adding it
+// A change is a sample's row, and perhaps:
+SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // subtract it instead of adding it
+SHARED_CONSTANT uint light_map_test = 0x40000000u;     // baked light: only where the static shadow map lets it pass
+SHARED_CONSTANT uint light_map_sample_mask = 0x3fffffffu;
 
 struct LightMapConstants {
     float fixed_point; // steps per W/m2
     uint jobs;         // work groups lie in rows: a dispatch is limited in each direction
     uint row_length;
+    uint map_resolution;   // baked light
+    float roughness_limit; // baked light
 };
 
 SHARED_END

@@ -5,6 +5,7 @@
 // its own two lists; see pass_optimisation.h for the passes that the thesis's renderer would need.
 #pragma once
 
+#include "gi_module/many_light/baked_light.h"
 #include "gi_module/many_light/light_maps.h"
 #include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
@@ -21,12 +22,13 @@ struct ManyLightOptions {
     bool filter = false;
     bool visibility = true; // off: every sample is tested at every pixel
     bool light_maps = true;
-    std::uint32_t scale = 4; // of the low-resolution pass: 1 (off), 2, 4 or 8
+    bool baked_light = true;          // the static shadow maps of all samples are kept and complete
+    bool static_maps_changed = false; // one of them is redrawn in this frame
+    std::uint32_t scale = 4;          // of the low-resolution pass: 1 (off), 2, 4 or 8
     float contrast = 0.3f;
     float normal_degrees = 12.0f;
     bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
     std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
-    auto operator<=>(const ManyLightOptions&) const = default;
 };
 
 // Of the newest frame that is complete on the GPU.
@@ -55,40 +57,51 @@ public:
 
     const ManyLightCounters& counters() const { return counters_; }
     const LightMaps& light_maps() const { return *light_maps_; }
+    const BakedLight& baked_light() const { return *baked_light_; }
     std::uint64_t memory_bytes() const;
 
 private:
     struct Frame; // what the passes of one frame share
     enum class Stage { low_resolution, repair };
+    enum class Phase : std::uint32_t {
+        plain = shared::phase_plain,
+        rough = shared::phase_rough,
+        baked = shared::phase_baked
+    };
 
     ManyLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
-    Status make_buffers(const shared::ManyLightConstants& constants, std::uint32_t blocks,
-                        gpu::FrameResources& resources);
+    Status make_buffers(const shared::ManyLightConstants& constants, gpu::FrameResources& resources);
     Status make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
                        gpu::FrameResources& resources);
     Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<gpu::BindingKind> bindings,
                                           std::vector<std::uint32_t> specialization);
     Status add_gather(const Frame& frame, Stage stage);
-    Status add_classify(const Frame& frame, Stage stage, const LightBatch& batch);
-    Status add_light(const Frame& frame, Stage stage, const LightBatch& batch, bool last);
+    Status add_lighting(Frame& frame, Stage stage, std::span<const LightBatch> batches);
+    Status add_rough_list(Frame& frame, Stage stage);
+    Status add_classify(const Frame& frame, Stage stage, Phase phase, const LightBatch& batch, bool first);
+    Status add_classify_baked(const Frame& frame, Stage stage, const LightBatch& batch);
+    Status add_light(const Frame& frame, Stage stage, Phase phase, const LightBatch& batch, bool last);
     Status add_reconstruction(const Frame& frame);
     Status add_compaction(const Frame& frame);
     Status add_counters(const Frame& frame);
     Status add_show(const Frame& frame, std::span<const std::uint32_t> map_ages, gpu::FrameResources& resources);
-    void dispatch(gpu::PassContext& context, Stage stage, std::uint32_t command, std::uint32_t groups) const;
+    void dispatch(gpu::PassContext& context, Stage stage, Phase phase, std::uint32_t command,
+                  std::uint32_t groups) const;
     void collect(std::uint64_t completed_serial);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     std::unique_ptr<LightMaps> light_maps_;
+    std::unique_ptr<BakedLight> baked_light_;
     SurfaceTables tables_;
     std::vector<shared::NodeRow> node_rows_;
     std::uint64_t node_rows_generation_ = 0;
-    std::uint32_t words_per_row_ = 0, first_mover_ = 0;
+    std::uint32_t words_per_row_ = 0, state_words_ = 0, flag_words_ = 0, first_mover_ = 0, mover_count_ = 0;
+    gpu::UploadSlice movers_; // spheres
     VkSampler sampler_ = VK_NULL_HANDLE;
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, const gpu::Pipeline*> kernels_;
     gpu::Buffer pixels_, nodes_, slots_, sums_, entries_, counts_, cell_masks_, block_groups_, commands_,
-        unused_texels_;
+        rough_entries_, rough_commands_, unused_texels_;
     struct Readback {
         gpu::Buffer words;
         std::uint64_t serial = 0;

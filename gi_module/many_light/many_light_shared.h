@@ -17,7 +17,13 @@ SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
 // Nodes of a group have slots 0 to 10. Slot 11 is for pixels of any further node, or of none: every sample is tested.
 SHARED_CONSTANT uint group_slots = 12u;
 SHARED_CONSTANT uint any_node_slot = 11u;
-SHARED_CONSTANT uint entry_on_mover = 256u; // beside the slot: the pixel shows a mover
+SHARED_CONSTANT uint entry_on_mover = 256u;    // beside the slot: the pixel shows a mover
+SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for baked light: they are for this pixel
+SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
+
+// Squared distance of the unit normals of a surface and its shading, up to which they count as one: 0.06 degrees, some
+// steps of 16 bits.
+SHARED_CONSTANT float flat_shaded_limit = 1e-6f;
 
 // A list entry: sample (of the batch) in bits 0 to 15; from bit 16 a bit for each slot. In the list with tests the bit
 // says that the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; in
@@ -40,6 +46,12 @@ struct GroupCounts {
     uint tested;
     uint untested;
 };
+
+// Which pixels of a stage's groups a pass is for. With baked light, the rough ones are gathered into groups of their
+// own and lit first; then corrections follow for those that took baked light.
+SHARED_CONSTANT uint phase_plain = 0u; // every pixel of the stage's groups
+SHARED_CONSTANT uint phase_rough = 1u; // a list of entries without baked light
+SHARED_CONSTANT uint phase_baked = 2u; // pixels with baked light, in the stage's groups
 
 struct ManyLightConstants {
     uint width; // of the full picture
@@ -64,7 +76,13 @@ struct ManyLightConstants {
     uint node_count;
     uint group_count; // of the low-resolution picture
     uint first_mover; // nodes from here on are movers
+    uint state_words; // of a row of the visibility database, see VisibilityDatabase::rows
+    uint flag_words;
+    uint entry_blocks; // blocks of groups, for the list of rough entries
+    uint mover_count;
 };
+SHARED_CONSTANT uint groups_per_block = 4u;
+SHARED_CONSTANT uint most_movers = 32u; // that lists are culled by; with more, they are not
 
 // What show.comp shows in place of the irradiance.
 SHARED_CONSTANT uint show_nothing = 0u;
@@ -73,6 +91,8 @@ SHARED_CONSTANT uint show_repaired = 2u;   // pixels that are lit again at full 
 SHARED_CONSTANT uint show_visibility = 3u; // red: partial, green: none, blue: full
 SHARED_CONSTANT uint show_staleness = 4u;  // age of the shadow maps that a surface needs: blue fresh, red eight frames
 SHARED_CONSTANT uint show_light_maps = 5u; // W/m2
+// Green: from baked light, with blue where movers change that; red: lit by all samples; with brightness by the light.
+SHARED_CONSTANT uint show_baked = 6u;
 
 // Places of the indirect commands that the compaction writes, in uints.
 SHARED_CONSTANT uint command_groups = 0u; // a work group for each group
@@ -83,6 +103,6 @@ SHARED_CONSTANT uint command_words = 12u;
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
-static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 88);
+static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 104);
 #endif
 #endif

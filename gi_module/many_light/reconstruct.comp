@@ -46,9 +46,9 @@ Neighbour neighbour_at(ivec2 low, vec2 first) {
     result.exists = sum.a > 0.0;
     result.packed_normal = normals.x;
     result.normal = unpackSnorm2x16(normals.x);
-    const vec2 bend = result.normal - unpackSnorm2x16(normals.y);
-    result.flat_shaded = dot(bend, bend) < 1e-8; // three steps of 16 bits
     const vec3 geometric_normal = unpack_normal(normals.y);
+    const vec3 bend = unpack_normal(normals.x) - geometric_normal;
+    result.flat_shaded = dot(bend, bend) < flat_shaded_limit;
     const vec3 to_point = camera_ray(camera, vec2(pixel) + 0.5) * (camera.position.w / max(depth, 1e-7));
     result.height = dot(geometric_normal, to_point);
     // near * dot(n, ray) / dot(n, point - camera), in the picture's coordinates.

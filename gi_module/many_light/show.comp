@@ -47,6 +47,16 @@ vec3 staleness(uint node) {
     return heat(tested > 0.0 ? age / (tested * 8.0) : 0.0);
 }
 
+vec3 baked(uint node) {
+    if ((node & node_baked) == 0u)
+        return vec3(1.0, 0.15, 0.1);
+    uint movers = 0u;
+    const uint first = (node & ~node_baked) * constants.words_per_row;
+    for (uint i = 0; i < constants.flag_words; ++i)
+        movers += uint(bitCount(rows[first + constants.state_words + i]));
+    return vec3(0.1, 1.0, 4.0 * float(movers) / float(constants.list_stride));
+}
+
 void main() {
     const uvec2 pixel = gl_GlobalInvocationID.xy;
     if (pixel.x >= constants.width || pixel.y >= constants.height)
@@ -68,6 +78,9 @@ void main() {
         colour = again ? vec3(1.0, 0.2, 0.6) : vec3(0.12);
     } else if (view == show_light_maps) {
         colour = sums[entry].rgb;
+    } else if (view == show_baked) {
+        colour = node == no_node ? vec3(0.1) : baked(node);
+        colour *= 0.3 + 0.7 * clamp(sums[entry].g / (sums[entry].g + 1.0), 0.0, 1.0);
     } else if (node != no_node) {
         colour = view == show_visibility ? visibility(node) : staleness(node);
     }

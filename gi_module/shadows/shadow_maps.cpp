@@ -112,8 +112,6 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
     if (layout.keep_static) {
         buffer.name = "static shadow maps";
-        buffer.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-        buffer.texel_format = VK_FORMAT_UNDEFINED;
         SUNFLECK_ASSIGN(static_texels_, gpu::Buffer::create(device_, buffer));
     }
     layers_ = std::uint32_t(std::clamp<std::uint64_t>(

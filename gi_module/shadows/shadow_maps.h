@@ -62,6 +62,8 @@ public:
     std::uint32_t resolution() const { return resolution_; }
     std::uint32_t bits() const { return bits_; }
     const gpu::Buffer& texels() const { return texels_; }
+    // Static geometry alone; empty unless they are kept.
+    const gpu::Buffer& static_texels() const { return static_texels_; }
 
     // Adds passes that draw the requested maps with everything in `scene` as occluders. Faces that no occluder reaches
     // are left empty without being drawn.

@@ -63,35 +63,19 @@ float lag_value(LightRow light, Pixel pixel, float inverse_w) {
     return stale_maps == 0 ? 0.0 : pixel.on_mover * shadow_near * 1.7320508 * light.bitangent.w * inverse_w * inverse_w;
 }
 
-LightFactor directional_factor(LightRow light, Pixel pixel, vec3 v, float along, bool test) {
-    const float cosine = -dot(pixel.normal, light.normal_offset.xyz);
-    const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
-    LightFactor factor = LightFactor(geometric_cosine > 0.0 ? max(cosine, 0.0) : 0.0, 0.0, 1.0);
-    if (maps != maps_none && test) {
-        const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
-        const float bias = orthographic_bias(map_side(), geometric_cosine);
-        const float lag = stale_maps == 0 ? 0.0 : pixel.on_mover * light.bitangent.w;
-        const float receiver = 1.0 - (along - lag) * light.normal_offset.w + depth_step(map_bits);
-        const uint slot = uint(light.intensity_slot.w);
-        if (filtered == 0)
-            factor.visibility = nearest_visibility(slot, uv, receiver + bias);
-        else
-            factor.visibility = filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
-    }
-    return factor;
-}
-
-// `test`: whether the shadow map is asked; a constant where it is inlined.
-LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
+LightFactor unshadowed_factor(LightRow light, Pixel pixel) {
     const vec3 v = pixel.position - light.position_bound.xyz;
     const float along = dot(light.normal_offset.xyz, v);
-    if (light_class == light_class_directional)
-        return directional_factor(light, pixel, v, along, test);
+    LightFactor factor = LightFactor(0.0, 0.0, 1.0);
+    if (light_class == light_class_directional) {
+        const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
+        factor.unshadowed = geometric_cosine > 0.0 ? max(-dot(pixel.normal, light.normal_offset.xyz), 0.0) : 0.0;
+        return factor;
+    }
     const float squared_distance = max(dot(v, v), 1e-12);
     const float receiver_distance = -dot(pixel.normal, v);        // |v| times the receiver's cosine
     const float plane_distance = -dot(pixel.geometric_normal, v); // of the light to the receiver's plane
     const float lit_side = plane_distance > 0.0 ? max(receiver_distance, 0.0) : 0.0;
-    LightFactor factor = LightFactor(0.0, 0.0, 1.0);
     if (light_class == light_class_surface) {
         const float inverse = 1.0 / squared_distance;
         const float term = max(along, 0.0) * lit_side * inverse * inverse;
@@ -102,24 +86,47 @@ LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
         const float cone = clamp(along * inverse_distance * light.tangent_scale.w + light.normal_offset.w, 0.0, 1.0);
         factor.unshadowed = cone * cone * lit_side * inverse_distance * inverse_distance * inverse_distance;
     }
-    if (maps != maps_none && test) {
-        const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
-        const bool hemisphere = light_class == light_class_surface;
-        const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
-        const float reach = hemisphere ? hemisphere_texel_reach(map_side()) : sphere_texel_reach(map_side());
-        const float bias = perspective_bias(reach, plane_distance, place.z);
-        const uint slot = uint(light.intensity_slot.w);
-        if (filtered == 0) {
-            factor.visibility =
-                nearest_visibility(slot, place.xy, min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits) +
-                                                       lag_value(light, pixel, place.z));
-        } else {
-            const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
-                                     dot(light.bitangent.xyz, pixel.geometric_normal),
-                                     dot(light.normal_offset.xyz, pixel.geometric_normal));
-            factor.visibility = filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance,
-                                                          bias, reach, lag_value(light, pixel, place.z));
-        }
-    }
+    return factor;
+}
+
+float directional_visibility(LightRow light, Pixel pixel, vec3 v, float along) {
+    const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
+    const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
+    const float bias = orthographic_bias(map_side(), geometric_cosine);
+    const float lag = stale_maps == 0 ? 0.0 : pixel.on_mover * light.bitangent.w;
+    const float receiver = 1.0 - (along - lag) * light.normal_offset.w + depth_step(map_bits);
+    const uint slot = uint(light.intensity_slot.w);
+    return filtered == 0 ? nearest_visibility(slot, uv, receiver + bias)
+                         : filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
+}
+
+// What the shadow map says, 0 to 1.
+float map_visibility(LightRow light, Pixel pixel) {
+    const vec3 v = pixel.position - light.position_bound.xyz;
+    const float along = dot(light.normal_offset.xyz, v);
+    if (light_class == light_class_directional)
+        return directional_visibility(light, pixel, v, along);
+    const float plane_distance = -dot(pixel.geometric_normal, v);
+    const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
+    const bool hemisphere = light_class == light_class_surface;
+    const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
+    const float reach = hemisphere ? hemisphere_texel_reach(map_side()) : sphere_texel_reach(map_side());
+    const float bias = perspective_bias(reach, plane_distance, place.z);
+    const float lag = lag_value(light, pixel, place.z);
+    const uint slot = uint(light.intensity_slot.w);
+    if (filtered == 0)
+        return nearest_visibility(slot, place.xy,
+                                  min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits) + lag);
+    const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
+                             dot(light.bitangent.xyz, pixel.geometric_normal),
+                             dot(light.normal_offset.xyz, pixel.geometric_normal));
+    return filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
+}
+
+// `test`: whether the shadow map is asked; a constant where it is inlined.
+LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
+    LightFactor factor = unshadowed_factor(light, pixel);
+    if (maps != maps_none && test)
+        factor.visibility = map_visibility(light, pixel);
     return factor;
 }

@@ -375,6 +375,7 @@ void VisibilityDatabase::recount() {
         for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
             const PairState now = state(node, sample);
             write_pair(node, sample, now);
+            write_flags(node, sample);
             if (counts(node))
                 ++count_of(now);
         }

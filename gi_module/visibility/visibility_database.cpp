@@ -2,6 +2,7 @@
 #include "gi_module/visibility/visibility_database.h"
 
 #include "engine/core/jobs.h"
+#include "gi_module/visibility/shadow_cone_shared.h"
 
 #include <algorithm>
 #include <atomic>
@@ -33,7 +34,7 @@ bool may_meet_hull(const Bounds& a, const Bounds& b, const Bounds& sphere_of) {
 }
 
 // Whether anything in the sphere around `mover` may stand between the light and the patch: cheap, and errs on the side
-// of yes. All light travels in the hull of the light's point and a sphere around the patch: a cone that ends in a ball.
+// of yes.
 bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bounds& mover) {
     const vec3 middle = mover.centre();
     const float radius = 0.5f * glm::length(mover.extent()) * 1.0001f + 1e-5f;
@@ -48,23 +49,8 @@ bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bound
     const vec3 to_middle = middle - light.position;
     if (light.kind == SampleKind::surface && glm::dot(light.normal, to_middle) < -radius)
         return false;
-    const vec3 axis = patch.bounds.centre() - light.position;
     const float patch_radius = 0.5f * glm::length(patch.bounds.extent()) * 1.0001f + 1e-5f;
-    const float distance = glm::length(axis);
-    if (distance <= patch_radius)
-        return true;
-    // In the plane of the axis and the mover's middle: distance from the cone's side, from its tip or from the ball.
-    const float along = glm::dot(to_middle, axis) / distance;
-    const float across = std::sqrt(std::max(glm::dot(to_middle, to_middle) - along * along, 0.0f));
-    const float sine = patch_radius / distance, cosine = std::sqrt(1.0f - sine * sine);
-    const float along_side = along * cosine + across * sine;
-    float gap;
-    if (along_side < 0.0f)
-        gap = glm::length(to_middle);
-    else if (along_side > distance * cosine)
-        gap = glm::length(to_middle - axis) - patch_radius;
-    else
-        gap = across * cosine - along * sine;
+    const float gap = shared::shadow_cone_distance(light.position, patch.bounds.centre(), patch_radius, middle);
     return gap <= radius + 1e-4f;
 }
 
@@ -269,8 +255,8 @@ void VisibilityDatabase::apply(std::uint32_t sample, const Footprint& before, co
             count(before[i++], -1);
         if (new_node == node)
             count(after[k++], 1);
-        if (const PairState is = state(node, sample); is != was)
-            changes.push_back({node, sample, was, is});
+        // Also where the state stays: whether any mover is in the way is part of a row.
+        changes.push_back({node, sample, was, state(node, sample)});
     }
 }
 
@@ -389,6 +375,7 @@ std::uint64_t& VisibilityDatabase::count_of(PairState state) {
 }
 
 void VisibilityDatabase::record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after) {
+    write_flags(node, sample);
     if (before == after)
         return;
     write_pair(node, sample, after);
@@ -406,11 +393,32 @@ void VisibilityDatabase::write_pair(std::uint32_t node, std::uint32_t sample, Pa
     dirty_[node] = 1;
 }
 
-std::uint32_t VisibilityDatabase::words_per_row() const {
+void VisibilityDatabase::write_flags(std::uint32_t node, std::uint32_t sample) {
+    std::uint32_t* const flags = rows_.data() + std::size_t(node) * words_per_row() + state_words();
+    const PairState fixed = static_state(node, sample);
+    const auto write = [&](std::uint32_t& word, bool set) {
+        const std::uint32_t bit = 1u << (sample % 32), before = word;
+        word = set ? word | bit : word & ~bit;
+        if (word != before)
+            dirty_[node] = 1;
+    };
+    write(flags[sample / 32], meets_mover(node, sample));
+    write(flags[flag_words() + sample / 32], fixed == PairState::partial || fixed == PairState::full);
+}
+
+std::uint32_t VisibilityDatabase::flag_words() const {
+    return std::uint32_t(samples_.size() + 31) / 32;
+}
+
+std::uint32_t VisibilityDatabase::state_words() const {
     return std::uint32_t(samples_.size() + shared::pairs_per_word - 1) / shared::pairs_per_word;
 }
 
-// Rows of new nodes begin unlit.
+std::uint32_t VisibilityDatabase::words_per_row() const {
+    return state_words() + 2 * flag_words();
+}
+
+// Rows of new nodes begin unlit, and without anything in the way.
 void VisibilityDatabase::grow_rows() {
     static_states_.resize(at(node_count(), 0), std::uint8_t(PairState::unlit));
     full_counts_.resize(at(node_count(), 0));
@@ -418,6 +426,9 @@ void VisibilityDatabase::grow_rows() {
     const std::size_t had = dirty_.size();
     rows_.resize(std::size_t(node_count()) * words_per_row(), 0xffffffffu);
     dirty_.resize(node_count(), 1);
+    for (std::size_t node = had; node < node_count(); ++node)
+        std::fill_n(rows_.begin() + std::ptrdiff_t(node * words_per_row() + state_words()),
+                    words_per_row() - state_words(), 0u);
     for (std::size_t node = std::max(had, patches_.nodes().size()); node < node_count(); ++node)
         counters_.unlit += samples_.size();
 }

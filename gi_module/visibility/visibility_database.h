@@ -113,8 +113,17 @@ public:
     const std::vector<std::uint8_t>& affected_samples() const { return affected_; }
     const VisibilityCounters& counters() const { return counters_; }
 
-    // Rows for shaders: `words_per_row` words a node, two bits a sample. Nodes whose row changed since the last call.
+    // Whether a mover may stand between the two.
+    bool meets_mover(std::uint32_t node, std::uint32_t sample) const {
+        return full_counts_[at(node, sample)] > 0 || partial_counts_[at(node, sample)] > 0;
+    }
+
+    // Rows for shaders: `words_per_row` words a node. First `state_words` of them with two bits a sample, its state;
+    // then `flag_words` with a bit a sample, whether it meets a mover; and as many, whether static geometry may block
+    // it. take_dirty_rows: nodes whose row changed since the last call.
     std::uint32_t words_per_row() const;
+    std::uint32_t state_words() const;
+    std::uint32_t flag_words() const;
     const std::vector<std::uint32_t>& rows() const { return rows_; }
     std::vector<std::uint32_t> take_dirty_rows();
     // Raised by build: everything read before is void.
@@ -174,6 +183,7 @@ private:
     bool counts(std::uint32_t node) const;
     std::uint64_t& count_of(PairState state);
     void write_pair(std::uint32_t node, std::uint32_t sample, PairState state);
+    void write_flags(std::uint32_t node, std::uint32_t sample);
     std::size_t at(std::uint32_t node, std::uint32_t sample) const {
         return std::size_t(node) * samples_.size() + sample;
     }

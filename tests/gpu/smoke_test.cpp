@@ -53,7 +53,7 @@ TEST_F(Smoke, FalseColours) {
     settings.shadow_map_resolution = 32;
     world.set(settings);
     world.request.view = shared::view_false_colours;
-    for (std::uint32_t show = shared::show_tiles; show <= shared::show_light_maps; ++show) {
+    for (std::uint32_t show = shared::show_tiles; show <= shared::show_baked; ++show) {
         world.request.show = show;
         double sum = 0;
         for (const vec4& pixel : world.picture().pixels)

@@ -1,0 +1,68 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+// Adds and subtracts samples in baked light, with the shadows of static geometry where they are partly occluded: a work
+// group for each job, several texels an invocation, so that they share each sample's loads. Contributions are rounded one
+// by one, as in light_maps.comp.
+#include "gi_module/many_light/light_maps_shared.h"
+#include "gi_module/shadows/octahedral_map.h"
+#include "gi_module/transport/light_row_shared.h"
+
+layout(constant_id = 0) const uint filtered = 0;
+layout(constant_id = 1) const uint map_bits = 16;
+const uint light_class = light_class_surface;
+const uint maps = maps_texel_buffer;
+const uint stale_maps = 0;
+const uint lanes = 8u, texels_per_invocation = 8u;
+
+layout(local_size_x = 8) in;
+layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
+layout(set = 0, binding = 1) readonly buffer Changes { uint changes[]; };
+layout(set = 0, binding = 2) readonly buffer Lights { LightRow lights[]; };
+layout(set = 0, binding = 3) uniform samplerBuffer static_maps;
+layout(set = 0, binding = 4) buffer Sums { ivec4 sums[]; };
+layout(push_constant) uniform Constants { LightMapConstants constants; };
+
+float map_side() { return float(constants.map_resolution); }
+float map_value(uint slot, ivec2 texel) {
+    const int side = int(constants.map_resolution);
+    return texelFetch(static_maps, (int(slot) * side + texel.y) * side + texel.x).r;
+}
+#include "gi_module/shadows/shadowed_light.glsl"
+
+void main() {
+    const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
+    if (number >= constants.jobs)
+        return;
+    const LightMapJob job = jobs[number];
+    const uint end = job.first + job.count;
+    for (uint begin = job.first; begin < end; begin += lanes * texels_per_invocation) {
+        Pixel texel[texels_per_invocation];
+        ivec3 sum[texels_per_invocation];
+        [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
+            const uint i = min(begin + k * lanes + gl_LocalInvocationID.x, end - 1u);
+            const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
+            texel[k].position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
+            texel[k].normal = texel[k].geometric_normal = job.normal.xyz;
+            texel[k].on_mover = 0.0;
+            sum[k] = job.clear != 0u ? ivec3(0) : sums[job.first_texel + i].xyz;
+        }
+        for (uint c = 0; c < job.change_count; ++c) {
+            const uint change = changes[job.first_change + c];
+            const LightRow light = lights[change & light_map_sample_mask];
+            const float untested = (change & light_map_test) != 0u ? 0.0 : 1.0;
+            const int direction = (change & light_map_subtract) != 0u ? -1 : 1;
+            [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
+                const LightFactor factor = light_factor(light, texel[k], true);
+                const vec3 arriving =
+                    light.intensity_slot.rgb * (factor.unshadowed * max(factor.visibility, untested));
+                sum[k] += ivec3(arriving * constants.fixed_point + 0.5) * direction;
+            }
+        }
+        [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
+            const uint i = begin + k * lanes + gl_LocalInvocationID.x;
+            if (i < end)
+                sums[job.first_texel + i] = ivec4(sum[k], 0);
+        }
+    }
+}

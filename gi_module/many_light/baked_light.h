@@ -1,0 +1,73 @@
+// Baked light: what light maps hold, with the shadows of static geometry, summed in the same texels while the program
+// runs. This goes beyond the thesis, whose light maps are unshadowed (sec. 4.3.2), so that it tests every partly
+// occluded sample again at every pixel and frame, though static geometry's answer never changes.
+//
+// Between texels, light is interpolated only where it is smooth: a cell of four texels is rough if second differences
+// about its corners exceed a share of the light. Pixels of smooth cells take their light from here, and the only
+// samples evaluated there are those that meet a mover (VisibilityDatabase::meets_mover): what the mover takes away is
+// the difference of the sample's visibility in the static and in the current shadow map. Pixels of rough cells are lit
+// as if nothing was baked.
+//
+// Baking is work of many frames, so much a frame; a patch that waits is rough. A sample that changed its strength is
+// subtracted and added, to the last bit, as in light maps.
+#pragma once
+
+#include "engine/gpu/frame_graph.h"
+#include "gi_module/many_light/light_map_jobs.h"
+#include "gi_module/many_light/light_maps.h"
+#include "gi_module/shadows/shadow_maps.h"
+#include "gi_module/visibility/visibility_database.h"
+
+namespace sunfleck::gi {
+
+struct BakedLightCounters {
+    std::uint64_t updates = 0; // samples added or subtracted at a patch in the last update
+    std::uint64_t waiting = 0; // patches
+};
+
+class BakedLight {
+public:
+    static Result<std::unique_ptr<BakedLight>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+
+    // Follows the light maps, whose update comes first. `static_maps_changed`: a static shadow map of a held sample is
+    // redrawn in this frame, and all is baked anew.
+    Status update(const VisibilityDatabase& database, const LightMaps& light_maps, std::span<const LightSample> samples,
+                  std::span<const shared::LightRow> rows, bool static_maps_changed, gpu::FrameResources& resources);
+    // Nothing is baked, nor used until the next update: shadow maps do not hold what is needed.
+    void forget();
+    bool in_use() const { return in_use_; }
+
+    // Adds the passes that do the frame's share. After those that draw shadow maps.
+    Status add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter, gpu::FrameResources& resources);
+
+    // By texel of the light maps: irradiance, W/m2, of 16-bit floats; alpha 0 if the cell up to the next column and row
+    // is smooth.
+    const gpu::Buffer& texels() const { return texels_; }
+    std::uint64_t memory_bytes() const { return sums_.size() + texels_.size(); }
+    const BakedLightCounters& counters() const { return counters_; }
+
+private:
+    BakedLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    Status start_anew(const VisibilityDatabase& database, const LightMaps& light_maps,
+                      std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
+    bool follow_strengths(const VisibilityDatabase& database, const LightMaps& light_maps,
+                          std::span<const shared::LightRow> rows, std::span<const std::uint32_t> changed);
+    void bake_waiting(const VisibilityDatabase& database, const LightMaps& light_maps,
+                      std::span<const LightSample> samples);
+
+    gpu::Device& device_;
+    gpu::PipelineStore& pipelines_;
+    gpu::Buffer sums_;   // fixed point, as in light maps
+    gpu::Buffer texels_; // what is shown
+    bool in_use_ = false;
+    bool wipe_ = false; // all texels become rough in this frame
+    std::uint64_t generation_ = 0;
+    float fixed_point_ = 0.0f;
+    std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be
+    std::vector<shared::LightRow> job_rows_;   // those, then the new ones of samples whose strength changed
+    std::vector<std::uint32_t> waiting_;       // nodes, the next one last
+    LightMapJobs jobs_, finish_;               // sums; then cells
+    BakedLightCounters counters_;
+};
+
+} // namespace sunfleck::gi

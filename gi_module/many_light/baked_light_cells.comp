@@ -1,0 +1,58 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Baked light as pixels read it, and which cells between four texels are rough.
+#include "gi_module/many_light/light_maps_shared.h"
+
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
+layout(set = 0, binding = 1) readonly buffer Sums { ivec4 sums[]; };
+layout(set = 0, binding = 2) writeonly buffer Texels { uvec2 texels[]; };
+layout(push_constant) uniform Constants { LightMapConstants constants; };
+
+const float largest_half = 65504.0;
+
+vec3 light_at(LightMapJob job, ivec2 texel) {
+    return vec3(sums[job.first_texel + uint(texel.y) * job.columns + uint(texel.x)].xyz);
+}
+
+// By how much a texel is off the line between its neighbours, compared with the brightest of them.
+bool bends(vec3 before, vec3 here, vec3 after) {
+    const vec3 most = max(max(before, here), after);
+    return any(greaterThan(abs(before - 2.0 * here + after), constants.roughness_limit * most + 2.0));
+}
+
+bool is_rough(LightMapJob job, ivec2 cell) {
+    const ivec2 last = ivec2(job.columns, job.rows) - 1;
+    bool rough = false;
+    for (int i = 0; i < 4; ++i) {
+        const ivec2 texel = cell + ivec2(i & 1, i >> 1);
+        const vec3 here = light_at(job, texel);
+        for (int axis = 0; axis < 2; ++axis) {
+            const ivec2 step = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+            if (last[axis] == 1) { // the patch's only cell along this axis
+                const vec3 other = light_at(job, texel[axis] == 0 ? texel + step : texel - step);
+                rough = rough || any(greaterThan(abs(other - here), constants.roughness_limit * max(other, here) + 2.0));
+            } else if (texel[axis] > 0 && texel[axis] < last[axis]) {
+                rough = rough || bends(light_at(job, texel - step), here, light_at(job, texel + step));
+            }
+        }
+    }
+    return rough;
+}
+
+void main() {
+    const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
+    if (number >= constants.jobs)
+        return;
+    const LightMapJob job = jobs[number];
+    for (uint i = job.first + gl_LocalInvocationID.x; i < job.first + job.count; i += 64u) {
+        const ivec2 texel = ivec2(i % job.columns, i / job.columns);
+        const bool inside = texel.x + 1 < int(job.columns) && texel.y + 1 < int(job.rows);
+        const vec3 light = light_at(job, texel) / constants.fixed_point;
+        const bool representable = all(lessThan(light, vec3(largest_half)));
+        const bool rough = !representable || (inside && is_rough(job, texel));
+        texels[job.first_texel + i] =
+            uvec2(packHalf2x16(min(light.rg, vec2(largest_half))),
+                  packHalf2x16(vec2(min(light.b, largest_half), rough ? 1.0 : 0.0)));
+    }
+}

@@ -1,0 +1,64 @@
+#include "gi_module/many_light/light_map_jobs.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace sunfleck::gi {
+namespace {
+
+// Of an invocation's loops in all: llvmpipe ends a shader's loops, silently, after 65,535.
+constexpr std::uint32_t most_iterations = 40000;
+constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
+
+} // namespace
+
+void LightMapJobs::clear() {
+    jobs_.clear();
+    changes_.clear();
+}
+
+void LightMapJobs::add(const SurfacePatch& patch, const shared::NodeRow& row, bool clear) {
+    shared::LightMapJob job{};
+    job.corner = vec4(vec3(patch.corners[0]), 1.0f);
+    job.u_edge = vec4(vec3(patch.corners[1] - patch.corners[0]), 0.0f);
+    job.v_edge = vec4(vec3(patch.corners[3] - patch.corners[0]), 0.0f);
+    job.normal = vec4(vec3(patch.normal), 0.0f);
+    job.first_texel = row.first_texel;
+    job.columns = row.columns;
+    job.rows = row.rows;
+    job.clear = clear;
+    job.first_change = std::uint32_t(changes_.size());
+    jobs_.push_back(job);
+}
+
+// A job's invocations take turns at its texels; each goes through all changes at every texel.
+void LightMapJobs::split(std::uint32_t invocations) {
+    std::vector<shared::LightMapJob> parts;
+    for (shared::LightMapJob job : jobs_) {
+        const std::uint32_t turns = std::max(most_iterations / (job.change_count + 1), 1u);
+        const std::uint32_t all = job.columns * job.rows;
+        for (job.first = 0; job.first < all; job.first += job.count) {
+            job.count = std::min(turns * invocations, all - job.first);
+            parts.push_back(job);
+        }
+    }
+    jobs_ = std::move(parts);
+}
+
+bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
+                        std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
+    if (now.size() != before.size())
+        return false;
+    for (std::uint32_t i = 0; i < now.size(); ++i) {
+        if (!held_by_light_maps(samples[i]) || std::memcmp(&now[i], &before[i], sizeof now[i]) == 0)
+            continue;
+        shared::LightRow like = before[i];
+        like.intensity_slot = now[i].intensity_slot;
+        if (std::memcmp(&now[i], &like, sizeof like) != 0)
+            return false;
+        changed.push_back(i);
+    }
+    return changed.size() <= most_new_strengths;
+}
+
+} // namespace sunfleck::gi
