@@ -65,10 +65,11 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
                                                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryUse::device,
                                                          VK_FORMAT_UNDEFINED}));
     SUNFLECK_ASSIGN(
-        texels_, gpu::Buffer::create(device_, {"baked light", texels * texel_bytes,
-                                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                                   VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                                               gpu::MemoryUse::device, VK_FORMAT_R16G16B16A16_SFLOAT}));
+        texels_,
+        gpu::Buffer::create(device_, {"baked light", texels * texel_bytes,
+                                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                                      gpu::MemoryUse::device, VK_FORMAT_R16G16B16A16_SFLOAT}));
     return {};
 }
 

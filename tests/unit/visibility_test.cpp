@@ -1,6 +1,7 @@
 // Visibility determination and its database, against rays and against a database built from scratch.
 #include "assets/test_rooms.h"
 #include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/visibility/shadow_cone_shared.h"
 #include "gi_module/visibility/visibility_database.h"
 
 #include "engine/core/random.h"
@@ -197,6 +198,18 @@ void expect_equal(const VisibilityDatabase& a, const VisibilityDatabase& b, std:
                 return (d.rows()[node * d.words_per_row() + s / 16] >> (s % 16 * 2)) & 3u;
             };
             wrong += bits(a, n) != std::uint32_t(a.state(n, s)) || bits(b, m) != std::uint32_t(b.state(m, s));
+            if (n >= a.patches().nodes().size())
+                continue;
+            const auto flag = [&](std::uint32_t first) {
+                return ((a.rows()[n * a.words_per_row() + first + s / 32] >> (s % 32)) & 1u) != 0;
+            };
+            bool by_mover = false;
+            for (const auto& blocker : a.blockers(n, s))
+                by_mover |= !blocker.entity.is_null();
+            const PairState fixed = a.static_state(n, s);
+            wrong += flag(a.state_words()) != by_mover;
+            wrong +=
+                flag(a.state_words() + a.flag_words()) != (fixed == PairState::partial || fixed == PairState::full);
         }
     }
     EXPECT_EQ(wrong, 0u);
@@ -211,6 +224,30 @@ mat4 random_place(std::mt19937& random) {
     const mat4 turned = glm::rotate(glm::translate(mat4(1.0f), position), uniform(random, 0, 6.0f),
                                     glm::normalize(vec3(uniform(random, -1, 1), 1.0f, uniform(random, -1, 1))));
     return glm::scale(turned, vec3(scale));
+}
+
+// Against points on segments from the light into the ball: never above the least distance, and not much below.
+TEST(Visibility, DistanceFromAShadowCone) {
+    std::mt19937 random(77);
+    const auto point = [&](float side) {
+        return vec3(uniform(random, -side, side), uniform(random, -side, side), uniform(random, -side, side));
+    };
+    for (int i = 0; i < 2000; ++i) {
+        const vec3 light = point(3.0f), middle = point(3.0f), at = point(4.0f);
+        const float radius = uniform(random, 0.0f, 1.0f);
+        const float distance = shared::shadow_cone_distance(light, middle, radius, at);
+        float least = 1e30f;
+        for (int k = 0; k < 400; ++k) {
+            const vec3 end = middle + radius * glm::normalize(point(1.0f) + vec3(1e-6f));
+            const vec3 along = end - light;
+            const float t = std::clamp(glm::dot(at - light, along) / glm::dot(along, along), 0.0f, 1.0f);
+            least = std::min(least, glm::length(light + t * along - at));
+        }
+        EXPECT_LE(distance, least + 1e-4f);
+        if (glm::length(at - middle) > radius && distance > 0.0f) {
+            EXPECT_GT(distance, least - 0.25f * radius - 1e-4f);
+        }
+    }
 }
 
 TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {

@@ -1,0 +1,174 @@
+// Baked light against rays: what its texels hold, what smooth cells say between them, and what movers leave of it.
+#include "tests/support/gpu_world.h"
+
+#include <glm/gtc/packing.hpp>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+
+namespace sunfleck::tests {
+namespace {
+
+class BakedLightTest : public GpuTest {};
+
+struct Baked {
+    std::vector<vec4> texels;
+    std::vector<shared::NodeRow> nodes;
+};
+
+Baked read_baked(GpuWorld& world) {
+    const gi::ManyLight& many = world.renderer->lighting().many_light();
+    const std::uint64_t texels = many.light_maps().counters().texels;
+    const gpu::Buffer words = read_back(world, many.baked_light().texels(), texels * 8);
+    const auto* halves = reinterpret_cast<const glm::uint64*>(words.mapped());
+    Baked baked;
+    for (std::uint64_t i = 0; i < texels; ++i)
+        baked.texels.push_back(glm::unpackHalf4x16(halves[i]));
+    baked.nodes = many.light_maps().node_rows();
+    return baked;
+}
+
+void bake_all(GpuWorld& world) {
+    for (int i = 0; i < 60; ++i) {
+        world.render();
+        if (world.renderer->lighting().many_light().baked_light().counters().waiting == 0)
+            return;
+    }
+    FAIL() << "patches still wait";
+}
+
+// Irradiance at a point of a patch by all samples that are held, each tested by a ray.
+vec3 irradiance_by_rays(GpuWorld& world, vec3 position, vec3 normal, raytrace::Scope scope) {
+    const gi::System& lighting = world.renderer->lighting();
+    vec3 sum(0.0f);
+    for (const gi::LightSample& sample : lighting.samples()) {
+        const vec3 to_light = sample.position - position;
+        const float cosine = glm::dot(normal, glm::normalize(to_light));
+        const raytrace::Ray ray{position + 1e-4f * normal, to_light, 0.0f, 0.999f};
+        if (cosine <= 0.0f || world.renderer->rays().occluded(ray, scope))
+            continue;
+        const float at_light = std::max(glm::dot(sample.normal, -glm::normalize(to_light)), 0.0f);
+        const float geometry = at_light * cosine / glm::dot(to_light, to_light);
+        sum += sample.flux / pi * std::min(geometry, lighting.geometry_bound());
+    }
+    return sum;
+}
+
+float brightness(vec3 light) {
+    return std::max({light.x, light.y, light.z});
+}
+
+// 3,000 texels, and as many points within smooth cells. Shadow maps of 256 texels put edges off by a texel, which at
+// most shifts one of 300 samples' edges; a tenth of the light is three times what interpolation may be off by itself in
+// the mean over a single edge.
+TEST_F(BakedLightTest, HoldsWhatRaysSay) {
+    for (const auto make : {assets::make_area_room, assets::make_four_pillars}) {
+        GpuWorld world(make, "bench_1");
+        bake_all(world);
+        const Baked baked = read_baked(world);
+        const auto& patches = world.renderer->lighting().visibility().patches().nodes();
+        std::vector<std::uint32_t> leaves;
+        for (std::uint32_t node = 0; node < baked.nodes.size(); ++node)
+            if (baked.nodes[node].first_texel != shared::no_light_map)
+                leaves.push_back(node);
+        std::mt19937 random(5);
+        const auto uniform = [&] { return float(random() >> 8) * 0x1p-24f; };
+        double texel_error = 0.0, total = 0.0, cell_error = 0.0, cell_total = 0.0;
+        int smooth = 0, rough = 0, far_off = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const std::uint32_t node = leaves[std::size_t(uniform() * float(leaves.size()))];
+            const shared::NodeRow& row = baked.nodes[node];
+            const gi::SurfacePatch& patch = patches[node];
+            const std::uint32_t x = std::uint32_t(uniform() * float(row.columns - 1));
+            const std::uint32_t y = std::uint32_t(uniform() * float(row.rows - 1));
+            const auto at = [&](float u, float v) {
+                const glm::dvec3 corner = patch.corners[0];
+                return vec3(corner + (patch.corners[1] - corner) * double(u / float(row.columns - 1)) +
+                            (patch.corners[3] - corner) * double(v / float(row.rows - 1)));
+            };
+            const vec3 normal(patch.normal);
+            const std::uint32_t first = row.first_texel + y * row.columns + x;
+            const vec3 texel(baked.texels[first]);
+            if (baked.texels[first].a != 0.0f) {
+                ++rough; // what stands there is not used
+                continue;
+            }
+            ++smooth;
+            const vec3 rays = irradiance_by_rays(world, at(float(x), float(y)), normal, raytrace::Scope::static_only);
+            if (x > 0 && y > 0) { // rays from a crease between two walls may begin behind either
+                texel_error += double(std::abs(brightness(texel) - brightness(rays)));
+                total += double(brightness(rays));
+            }
+            const float u = uniform(), v = uniform();
+            const vec3 low = glm::mix(texel, vec3(baked.texels[first + 1]), u);
+            const vec3 high =
+                glm::mix(vec3(baked.texels[first + row.columns]), vec3(baked.texels[first + row.columns + 1]), u);
+            const float between = brightness(glm::mix(low, high, v));
+            const float exact = brightness(
+                irradiance_by_rays(world, at(float(x) + u, float(y) + v), normal, raytrace::Scope::static_only));
+            cell_error += double(std::abs(between - exact));
+            cell_total += double(exact);
+            far_off += std::abs(between - exact) > 0.15f * std::max(exact, between);
+        }
+        std::printf("texels %.2f %% off, smooth cells %.2f %%; %d smooth, %d rough, %d off by over 15 %%\n",
+                    100.0 * texel_error / total, 100.0 * cell_error / cell_total, smooth, rough, far_off);
+        EXPECT_LT(texel_error, 0.01 * total);
+        EXPECT_LT(cell_error, 0.01 * cell_total);
+        EXPECT_GT(smooth, 1500);
+        EXPECT_GT(rough, 10);
+        EXPECT_LT(far_off, smooth / 100);
+    }
+}
+
+// A change of strength, of all samples or of a few, ends in what baking from scratch gives.
+TEST_F(BakedLightTest, FollowsStrengths) {
+    GpuWorld world(assets::make_area_room, "bench_1");
+    bake_all(world);
+    const Baked before = read_baked(world);
+    world.request.indirect_scale = 0.25f;
+    bake_all(world);
+    const Baked dim = read_baked(world);
+    double full = 0.0, dimmed = 0.0;
+    for (std::size_t i = 0; i < before.texels.size(); ++i) {
+        full += double(before.texels[i].g);
+        dimmed += double(dim.texels[i].g);
+    }
+    EXPECT_LT(dimmed, 0.9 * full);
+    world.request.indirect_scale = 1.0f;
+    bake_all(world);
+    EXPECT_EQ(std::memcmp(before.texels.data(), read_baked(world).texels.data(), before.texels.size() * sizeof(vec4)),
+              0);
+}
+
+// A mover far from any contact: the picture with baked light against the one without, which asks every sample.
+TEST_F(BakedLightTest, MoversTakeAwayWhatTheyDid) {
+    GpuWorld world(assets::make_four_pillars, "bench_1");
+    world.request.width = 256;
+    world.request.height = 192;
+    gi::Settings settings;
+    settings.low_resolution = 1;
+    settings.map_budget = 10000;
+    world.set(settings);
+    bake_all(world);
+    world.request.step = 9;
+    const io::Picture with = world.picture();
+    settings.baked_light = false;
+    world.set(settings);
+    const io::Picture without = world.picture();
+    double off = 0.0, total = 0.0;
+    int far_off = 0, lit = 0;
+    for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+        const double a = double(with.pixels[i].g), b = double(without.pixels[i].g);
+        off += std::abs(a - b);
+        total += b;
+        lit += b > 0.0;
+        far_off += std::abs(a - b) > 0.1 * std::max(a, b) + 1e-3;
+    }
+    std::printf("%.3f %% off, %d of %d by over a tenth\n", 100.0 * off / total, far_off, lit);
+    EXPECT_LT(off, 0.01 * total);
+    EXPECT_LT(far_off, lit / 200);
+}
+
+} // namespace
+} // namespace sunfleck::tests
