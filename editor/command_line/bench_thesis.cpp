@@ -134,7 +134,7 @@ Status ablation(Experiment& experiment) {
     SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, "area_room", "bench_1", size));
     for (const std::uint32_t lights : {2u, 32u, 100u, 300u}) {
         gi::Settings step = many_light(lights);
-        step.visibility = step.light_maps = step.static_maps = step.map_detail = false;
+        step.visibility = step.light_maps = step.static_maps = step.map_detail = step.baked_light = false;
         step.low_resolution = 1;
         const auto measure = [&](const gi::Settings& settings, const char* what) -> Status {
             SUNFLECK_ASSIGN(const Measurement m,
@@ -149,7 +149,9 @@ Status ablation(Experiment& experiment) {
         SUNFLECK_TRY(measure(step, "+ low resolution"));
         step.light_maps = true;
         SUNFLECK_TRY(measure(step, "+ light maps"));
-        SUNFLECK_TRY(measure(many_light(lights), "full (+ kept static maps, detail)"));
+        step.static_maps = step.map_detail = true;
+        SUNFLECK_TRY(measure(step, "+ kept static maps, detail"));
+        SUNFLECK_TRY(measure(many_light(lights), "full (+ baked light)"));
     }
     return {};
 }

@@ -6,8 +6,9 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr std::uint32_t invocations = 64; // texels that a work group handles at a time: baked_light.comp
-// Samples times texels that a frame evaluates at most, and one patch more: 30 to 60 ms on two cores.
-constexpr std::uint64_t most_evaluations = 16000000;
+// Samples times texels that a frame evaluates at most, and one patch more: 30 to 60 ms on two cores. More at first: the
+// frame that builds the visibility database is long anyway.
+constexpr std::uint64_t most_evaluations = 16000000, most_evaluations_at_first = 400000000;
 // Of the light: by so much may second differences of neighbouring texels exceed a straight line. Interpolation is off
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
@@ -107,11 +108,11 @@ bool BakedLight::follow_strengths(const VisibilityDatabase& database, const Ligh
 }
 
 void BakedLight::bake_waiting(const VisibilityDatabase& database, const LightMaps& light_maps,
-                              std::span<const LightSample> samples) {
+                              std::span<const LightSample> samples, std::uint64_t most) {
     const std::uint32_t now = std::uint32_t(job_rows_.size()); // the rows as they are at present
     job_rows_.insert(job_rows_.end(), baked_rows_.begin(), baked_rows_.end());
     std::uint64_t evaluations = 0;
-    while (!waiting_.empty() && evaluations < most_evaluations) {
+    while (!waiting_.empty() && evaluations < most) {
         const std::uint32_t node = waiting_.back();
         waiting_.pop_back();
         const shared::NodeRow& row = light_maps.node_rows()[node];
@@ -137,8 +138,8 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
     wipe_ = false;
     in_use_ = true;
     std::vector<std::uint32_t> changed;
-    const bool same = !static_maps_changed && generation_ == database.generation() &&
-                      fixed_point_ == light_maps.fixed_point() &&
+    const bool first = generation_ != database.generation();
+    const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
                       find_new_strengths(samples, baked_rows_, rows, changed);
     if (!same || !follow_strengths(database, light_maps, rows, changed)) {
         jobs_.clear();
@@ -146,7 +147,7 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
         job_rows_.clear();
         SUNFLECK_TRY(start_anew(database, light_maps, rows, resources));
     }
-    bake_waiting(database, light_maps, samples);
+    bake_waiting(database, light_maps, samples, first ? most_evaluations_at_first : most_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(invocations);
     finish_.split(invocations);

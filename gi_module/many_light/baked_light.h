@@ -53,7 +53,7 @@ private:
     bool follow_strengths(const VisibilityDatabase& database, const LightMaps& light_maps,
                           std::span<const shared::LightRow> rows, std::span<const std::uint32_t> changed);
     void bake_waiting(const VisibilityDatabase& database, const LightMaps& light_maps,
-                      std::span<const LightSample> samples);
+                      std::span<const LightSample> samples, std::uint64_t most);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;

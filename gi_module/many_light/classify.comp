@@ -3,7 +3,10 @@
 #extension GL_EXT_control_flow_attributes : require
 // Merges the visibility rows of a group's nodes into its two lists for one batch of samples. An invocation a group: lists
 // come out in the order of samples, whatever the device does.
+#include "engine/core/octahedral.h"
+#include "engine/scene/camera_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/transport/light_row_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 layout(local_size_x = 8) in;
@@ -12,6 +15,7 @@ layout(constant_id = 1) const uint light_maps = 1; // this class of samples is i
 layout(constant_id = 2) const uint visibility = 1; // 0: every sample is tested everywhere
 layout(constant_id = 3) const uint phase = phase_plain;
 layout(constant_id = 4) const uint first_batch = 1; // pixels are lit from here on
+layout(constant_id = 5) const uint light_class = light_class_surface;
 
 layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
@@ -23,7 +27,29 @@ layout(set = 0, binding = 6) writeonly buffer Counts { GroupCounts counts[]; };
 layout(set = 0, binding = 7) readonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = 8) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 9) readonly buffer RoughEntries { uint rough_entries[]; };
+layout(set = 0, binding = 10) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 11) uniform sampler2D depth_image;
+layout(set = 0, binding = 12) uniform usampler2D normals_image;
+layout(set = 0, binding = 13) uniform Lights { LightRow light_rows[lights_per_batch]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+#include "gi_module/many_light/group_bounds.glsl"
+
+vec3 normal_at(ivec2 pixel) { return unpack_normal(texelFetch(normals_image, pixel, 0).r); }
+
+ivec2 pixel_of(uint entry) { return ivec2(pixels[entry] & 0xffffu, pixels[entry] >> 16); }
+
+// The cone about the mean of all normals, given their sum.
+void find_cone(uint group, inout GroupBounds bounds) {
+    const float size = length(bounds.axis);
+    bounds.axis /= max(size, 1e-6);
+    bounds.cosine = size > 0.0 ? 1.0 : -1.0;
+    for (uint i = 0; i < group_pixels; ++i) {
+        const uint entry = rough_entries[group * group_pixels + i];
+        if (entry != no_pixel)
+            bounds.cosine = min(bounds.cosine, dot(bounds.axis, normal_at(pixel_of(entry))));
+    }
+}
 
 void main() {
     const uint group = gl_GlobalInvocationID.x;
@@ -34,6 +60,7 @@ void main() {
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
         slot_nodes[s] = no_node;
     bool any_pixel = false, any_node = false;
+    GroupBounds bounds = no_bounds();
     for (uint i = 0; i < group_pixels; ++i) {
         const uint place = group * group_pixels + i;
         uint entry = place;
@@ -54,12 +81,21 @@ void main() {
             }
         }
         any_pixel = any_pixel || exists;
+        if (phase == phase_rough && exists) {
+            const ivec2 pixel = pixel_of(entry);
+            const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, texelFetch(depth_image, pixel, 0).r);
+            bounds.low = min(bounds.low, position);
+            bounds.high = max(bounds.high, position);
+            bounds.axis += normal_at(pixel);
+        }
         any_node = any_node || (exists && slot == any_node_slot);
         entry_slots[place] = slot | (node != no_node && node >= constants.first_mover ? entry_on_mover : 0u);
         // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
         if (slot == any_node_slot && first_batch != 0u && exists)
             sums[entry] = vec4(0.0, 0.0, 0.0, 1.0);
     }
+    if (phase == phase_rough)
+        find_cone(group, bounds);
     bool mapped[any_node_slot];
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
         mapped[s] = light_maps != 0 && slot_nodes[s] != no_node && node_rows[min(slot_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
@@ -98,6 +134,8 @@ void main() {
                     to_add |= (none[s] & bit) != 0u ? 1u << s : 0u;
             }
             const uint sample_bits = sample_index - constants.batch_first;
+            if (phase == phase_rough && !may_light(light_rows[sample_bits], bounds))
+                continue;
             if ((any_partial & bit) != 0u)
                 entries[first + tested++] = sample_bits | (in_map << entry_slots_shift);
             else

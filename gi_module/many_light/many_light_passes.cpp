@@ -66,7 +66,7 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                               storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
                               storage_buffer, storage_buffer, texel_buffer},
                              {stage == Stage::repair, maps, frame.baked}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "rp gather" : "low-resolution pixels");
+    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution pixels");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);
     pass.read(frame.g_buffer.depth, gpu::Usage::sampled)
@@ -110,7 +110,7 @@ Status ManyLight::add_rough_list(Frame& frame, Stage stage) {
     for (std::uint32_t action = 0; action < 3; ++action) {
         SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("compact.comp", std::vector(7, storage_buffer),
                                                               {action, frame.options.scale, 1u, repair}));
-        frame.graph.add_pass(repair ? "rp list" : "lo list")
+        frame.graph.add_pass(repair ? "repair" : "tiles")
             .read(frame.commands, gpu::Usage::storage_read)
             .read(frame.pixels, gpu::Usage::storage_read)
             .read(frame.nodes, gpu::Usage::storage_read)
@@ -136,32 +136,44 @@ Status ManyLight::add_rough_list(Frame& frame, Stage stage) {
 Status ManyLight::add_classify(const Frame& frame, Stage stage, Phase phase, const LightBatch& batch, bool first) {
     const bool rough = phase == Phase::rough;
     const bool counted = stage == Stage::repair || rough;
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("classify.comp", std::vector(10, storage_buffer),
-                                                          {counted, frame.is_held(batch), frame.options.visibility,
-                                                           rough ? shared::phase_rough : shared::phase_plain, first}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "rp classify" : "lo classify");
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
+                    pipeline("classify.comp",
+                             {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
+                              storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
+                              uniform_buffer, sampled_image, sampled_image, uniform_buffer},
+                             {counted, frame.is_held(batch), frame.options.visibility,
+                              rough ? shared::phase_rough : shared::phase_plain, first, batch.light_class}));
+    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");
     const gpu::ResourceId commands = rough ? frame.rough_commands : frame.commands;
     if (counted)
         pass.read(commands, gpu::Usage::indirect_read);
     for (const gpu::ResourceId list : {commands, frame.pixels, frame.nodes, frame.rough_entries})
         pass.read(list, gpu::Usage::storage_read);
-    pass.read(frame.graph.import_buffer(tables_.nodes()), gpu::Usage::storage_read)
+    pass.read(frame.g_buffer.depth, gpu::Usage::sampled)
+        .read(frame.g_buffer.normals, gpu::Usage::sampled)
+        .read(frame.graph.import_buffer(tables_.nodes()), gpu::Usage::storage_read)
         .read(frame.graph.import_buffer(tables_.rows()), gpu::Usage::storage_read)
         .write(frame.slots, gpu::Usage::storage_write)
         .write(frame.entries, gpu::Usage::storage_write)
         .write(frame.counts, gpu::Usage::storage_write)
         .write(frame.sums, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, phase, constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::buffer(pixels_),
-                                             gpu::Binding::buffer(nodes_),
-                                             gpu::Binding::buffer(tables_.nodes()),
-                                             gpu::Binding::buffer(tables_.rows()),
-                                             gpu::Binding::buffer(slots_),
-                                             gpu::Binding::buffer(entries_),
-                                             gpu::Binding::buffer(counts_),
-                                             gpu::Binding::buffer(phase == Phase::rough ? rough_commands_ : commands_),
-                                             gpu::Binding::buffer(sums_),
-                                             gpu::Binding::buffer(rough_entries_)};
+        .execute([this, kernel, stage, phase, batch, camera = frame.camera, g_buffer = frame.g_buffer,
+                  constants = frame.constants](gpu::PassContext& context) -> Status {
+            const gpu::Binding bindings[] = {
+                gpu::Binding::buffer(pixels_),
+                gpu::Binding::buffer(nodes_),
+                gpu::Binding::buffer(tables_.nodes()),
+                gpu::Binding::buffer(tables_.rows()),
+                gpu::Binding::buffer(slots_),
+                gpu::Binding::buffer(entries_),
+                gpu::Binding::buffer(counts_),
+                gpu::Binding::buffer(phase == Phase::rough ? rough_commands_ : commands_),
+                gpu::Binding::buffer(sums_),
+                gpu::Binding::buffer(rough_entries_),
+                gpu::Binding::slice(camera),
+                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
+                gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
+                gpu::Binding::slice(batch.rows)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             dispatch(context, stage, phase, shared::command_packed, divide_up(constants.group_count, 8));
@@ -177,7 +189,7 @@ Status ManyLight::add_classify_baked(const Frame& frame, Stage stage, const Ligh
                  {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
                   storage_buffer, uniform_buffer, sampled_image, uniform_buffer, storage_buffer},
                  {stage == Stage::repair}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "rp classify baked" : "lo classify baked");
+    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);
     for (const gpu::ResourceId list : {frame.commands, frame.pixels, frame.nodes})
@@ -220,9 +232,7 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, Phase phase, const 
                               frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
                               filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes,
                               frame.options.stale_maps, std::uint32_t(phase)}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair  ? (phase == Phase::rough ? "rp light rough" : "rp light")
-                                     : phase == Phase::rough ? "lo light rough"
-                                                             : "lo light");
+    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution light");
     if (stage == Stage::repair || phase == Phase::rough)
         pass.read(phase == Phase::rough ? frame.rough_commands : frame.commands, gpu::Usage::indirect_read);
     if (phase == Phase::baked)

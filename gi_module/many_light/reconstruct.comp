@@ -118,21 +118,27 @@ void main() {
     const float height = max(max(heights.x, heights.y), max(heights.z, heights.w));
     const vec3 plane = neighbours[0].depth_plane;
     uvec2 again_mask = uvec2(0u), others = uvec2(0u);
-    for (int y = 0; y < scale; ++y) {
-        [[unroll]] for (int x = 0; x < scale; ++x) {
-            const ivec2 pixel = first + ivec2(x, y);
-            if (any(lessThan(pixel, ivec2(0))) || pixel.x >= int(constants.width) || pixel.y >= int(constants.height))
-                continue;
-            const float depth = texelFetch(depth_image, pixel, 0).r;
-            const bool on_plane = height * abs(dot(plane, vec3(1.0, x, y)) - depth) < 0.5 * tolerance;
-            const bool easy = flat_cell && on_plane && depth > 0.0;
-            const uint bit = uint(y * scale + x);
-            if (easy)
-                imageStore(output_image, pixel, vec4(blend(neighbours, weights_at(vec2(x, y))), 1.0));
-            if (easy && all_differ)
-                again_mask = with_bit(again_mask, bit);
-            if (!easy)
-                others = with_bit(others, bit);
+    const vec2 picture = vec2(constants.width, constants.height);
+    for (int y = 0; y < scale; y += 2) {
+        [[unroll]] for (int x = 0; x < scale; x += 2) {
+            // Four pixels at once: below, below right, right, and the pixel itself.
+            const vec4 depths = textureGather(depth_image, (vec2(first + ivec2(x, y)) + 1.0) / picture);
+            [[unroll]] for (int i = 0; i < 4; ++i) {
+                const ivec2 inside = ivec2(x + (i == 1 || i == 2 ? 1 : 0), y + (i < 2 ? 1 : 0));
+                const ivec2 pixel = first + inside;
+                if (any(lessThan(pixel, ivec2(0))) || pixel.x >= int(constants.width) ||
+                    pixel.y >= int(constants.height))
+                    continue;
+                const bool on_plane = height * abs(dot(plane, vec3(1.0, vec2(inside))) - depths[i]) < 0.5 * tolerance;
+                const bool easy = flat_cell && on_plane && depths[i] > 0.0;
+                const uint bit = uint(inside.y * scale + inside.x);
+                if (easy)
+                    imageStore(output_image, pixel, vec4(blend(neighbours, weights_at(vec2(inside))), 1.0));
+                if (easy && all_differ)
+                    again_mask = with_bit(again_mask, bit);
+                if (!easy)
+                    others = with_bit(others, bit);
+            }
         }
     }
     while ((others.x | others.y) != 0u) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace sunfleck::gi {
 namespace {
@@ -38,6 +39,7 @@ struct ShadowMaps::Chunk {
     // The last commands draw surfaces with holes, each with its texture.
     std::vector<std::int32_t> hole_textures;
     std::vector<std::uint32_t> slots; // by layer
+    std::vector<MapAreas> areas;      // that occluders cover, by layer; then, that is copied
 };
 
 Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
@@ -126,6 +128,7 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     SUNFLECK_ASSIGN(staging_, gpu::Image::create(device_, image));
     slots_ = slots;
+    movers_shown_.assign(slots, {}); // of maps that hold nothing yet: their static part comes first
     return true;
 }
 
@@ -155,6 +158,7 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     Chunk chunk;
     for (const ShadowRequest& request : requests)
         chunk.slots.push_back(request.slot);
+    chunk.areas.resize(requests.size());
     std::vector<shared::ShadowJob> jobs;
     std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands, hole_commands;
     std::vector<std::uint32_t> seen(requests.size());
@@ -169,6 +173,9 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                 continue;
             const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
             seen[layer] |= faces;
+            if (occluders == Occluders::movers)
+                chunk.areas[layer].add(
+                    covered_area(requests[layer].light, requests[layer].light_class, faces, item.bounds, resolution_));
             const bool has_holes = item.kind == scene::surface_kind_holes;
             const std::size_t level = has_holes ? 0
                                                 : (detail ? detail_level(requests[layer], item) : 0) * 2 +
@@ -243,8 +250,9 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
                                bool over_static) -> Status {
         for (std::size_t first = 0; first < all.size(); first += layers_) {
             const auto part = all.subspan(first, std::min<std::size_t>(layers_, all.size() - first));
-            SUNFLECK_ASSIGN(const Chunk chunk,
+            SUNFLECK_ASSIGN(Chunk chunk,
                             prepare_chunk(scene, resources, part, occluders, options.detail && over_static, counters));
+            find_copied_areas(part, over_static, chunk);
             SUNFLECK_TRY(add_drawing(graph, scene, chunk, target, over_static));
         }
         return {};
@@ -256,6 +264,22 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
                  [](const ShadowRequest& request) { return request.redraw_static; });
     SUNFLECK_TRY(in_chunks(anew, Occluders::static_only, static_texels_, false));
     return in_chunks(requests, Occluders::movers, texels_, true);
+}
+
+// What movers cover now or covered when the map was drawn last: the rest is as static geometry left it. Notes the new.
+void ShadowMaps::find_copied_areas(std::span<const ShadowRequest> requests, bool over_static, Chunk& chunk) {
+    for (std::size_t layer = 0; layer < requests.size(); ++layer) {
+        MapAreas& areas = chunk.areas[layer];
+        if (!over_static) {
+            areas.add(MapArea::all(resolution_));
+            continue;
+        }
+        MapAreas& shown = movers_shown_[requests[layer].slot];
+        const MapAreas before = std::exchange(shown, areas);
+        areas.add(before);
+        if (requests[layer].redraw_static)
+            areas.add(MapArea::all(resolution_));
+    }
 }
 
 // Draws a chunk in the staging image, over the kept static layers or from nothing, and copies it to its slots.
@@ -344,14 +368,21 @@ Status ShadowMaps::copy_chunk(gpu::PassContext& context, const Chunk& chunk, con
                               bool to_buffer) const {
     const VkDeviceSize bytes_per_map = VkDeviceSize(resolution_) * resolution_ * bits_ / 8;
     std::vector<VkBufferImageCopy> regions;
-    for (std::uint32_t layer = 0; layer < chunk.slots.size(); ++layer) {
-        VkBufferImageCopy region{};
-        region.bufferOffset = bytes_per_map * chunk.slots[layer];
-        region.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, layer, 1};
-        region.imageExtent = {resolution_, resolution_, 1};
-        regions.push_back(region);
-    }
+    for (std::uint32_t layer = 0; layer < chunk.slots.size(); ++layer)
+        for (const MapArea& area : chunk.areas[layer].areas()) {
+            VkBufferImageCopy region{};
+            region.bufferOffset =
+                bytes_per_map * chunk.slots[layer] + (VkDeviceSize(area.low.y) * resolution_ + area.low.x) * bits_ / 8;
+            region.bufferRowLength = resolution_;
+            region.bufferImageHeight = resolution_;
+            region.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, layer, 1};
+            region.imageOffset = {std::int32_t(area.low.x), std::int32_t(area.low.y), 0};
+            region.imageExtent = {area.high.x - area.low.x, area.high.y - area.low.y, 1};
+            regions.push_back(region);
+        }
     const std::uint32_t count = std::uint32_t(regions.size());
+    if (count == 0)
+        return {};
     if (to_buffer)
         context.device.vk.vkCmdCopyImageToBuffer(context.commands, staging_.handle(),
                                                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer.handle(), count,

@@ -5,6 +5,7 @@
 
 #include "engine/scene/gpu_scene.h"
 #include "gi_module/settings.h"
+#include "gi_module/shadows/map_area.h"
 #include "gi_module/shadows/shadow_map_shared.h"
 #include "gi_module/transport/light_row.h"
 
@@ -80,6 +81,7 @@ private:
     Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
                                 std::span<const ShadowRequest> requests, Occluders occluders, bool detail,
                                 ShadowCounters& counters) const;
+    void find_copied_areas(std::span<const ShadowRequest> requests, bool over_static, Chunk& chunk);
     std::size_t detail_level(const ShadowRequest& request, const scene::DrawItem& item) const;
     static bool shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item);
     Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
@@ -93,6 +95,7 @@ private:
     const gpu::Pipeline* pipelines32_[2] = {};
     const gpu::Pipeline* hole_pipelines_[2] = {}; // 16 bits, 32 bits
     gpu::Buffer texels_, static_texels_;
+    std::vector<MapAreas> movers_shown_; // by slot: where the map may differ from its static part
     MapLayout layout_;
     gpu::Image staging_;
     std::uint32_t resolution_ = 0, bits_ = 0, slots_ = 0, layers_ = 0;

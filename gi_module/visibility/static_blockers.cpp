@@ -16,8 +16,8 @@ float half_area(const Bounds& bounds) {
 
 } // namespace
 
-void StaticBlockers::add(const FlatMesh& mesh, bool porous) {
-    std::uint32_t body = 0xffffffffu;
+std::uint32_t StaticBlockers::add(const FlatMesh& mesh, bool porous) {
+    std::uint32_t body = no_body;
     if (std::vector<Plane> planes = planes_of_convex_body(mesh); !planes.empty() && !porous) {
         body = std::uint32_t(bodies_.size());
         bodies_.push_back(std::move(planes));
@@ -35,8 +35,9 @@ void StaticBlockers::add(const FlatMesh& mesh, bool porous) {
             polygons_.push_back(std::move(polygon));
             body_of_.push_back(body);
             porous_.push_back(porous ? 1 : 0);
-            sizes_.push_back(porous ? 0.0f : glm::length((body != 0xffffffffu ? whole : bounds).extent()));
+            sizes_.push_back(porous ? 0.0f : glm::length((body != no_body ? whole : bounds).extent()));
         }
+    return body;
 }
 
 void StaticBlockers::build() {
@@ -187,20 +188,25 @@ bool is_inside(const OcclusionPyramid& pyramid, const Bounds& bounds) {
 
 } // namespace
 
-bool StaticBlockers::any_enters(const OcclusionPyramid& pyramid) const {
+bool StaticBlockers::any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body) const {
     bool found = false;
     const auto meets = [&](const Node& node) {
         if (found || !may_enter(pyramid, node.bounds))
             return false;
         // What lies inside the region altogether enters it, without a look at its polygons.
-        found = is_inside(pyramid, node.bounds);
+        found = own_body == no_body && is_inside(pyramid, node.bounds);
         return !found;
     };
-    return visit_leaves(meets, [&](std::uint32_t polygon) { return enters(pyramid, polygons_[polygon]); }) || found;
+    return visit_leaves(meets,
+                        [&](std::uint32_t polygon) {
+                            return (own_body == no_body || body_of_[polygon] != own_body) &&
+                                   enters(pyramid, polygons_[polygon]);
+                        }) ||
+           found;
 }
 
-Blocking StaticBlockers::test(const OcclusionPyramid& pyramid) const {
-    if (!any_enters(pyramid))
+Blocking StaticBlockers::test(const OcclusionPyramid& pyramid, std::uint32_t own_body) const {
+    if (!any_enters(pyramid, own_body))
         return Blocking::none;
     return covers(pyramid) ? Blocking::full : Blocking::partial;
 }
@@ -268,8 +274,8 @@ bool StaticBlockers::covers(const OcclusionPyramid& pyramid) const {
     };
     return visit_crossing(middle, along, large_enough, [&](std::uint32_t polygon) {
         const std::uint32_t body = body_of_[polygon];
-        return !porous_[polygon] && (covers_gate(pyramid, polygons_[polygon]) ||
-                                     (body != 0xffffffffu && covers_gate(pyramid, bodies_[body])));
+        return !porous_[polygon] &&
+               (covers_gate(pyramid, polygons_[polygon]) || (body != no_body && covers_gate(pyramid, bodies_[body])));
     });
 }
 

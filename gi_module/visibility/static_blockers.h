@@ -8,12 +8,17 @@ namespace sunfleck::gi {
 // All static geometry: a tree of polygons.
 class StaticBlockers {
 public:
-    // Adds a mesh of static geometry; opaque on both sides, or porous: with holes, never all that blocks.
-    void add(const FlatMesh& mesh, bool porous = false);
+    static constexpr std::uint32_t no_body = 0xffffffffu;
+
+    // Adds a mesh of static geometry; opaque on both sides, or porous: with holes, never all that blocks. Returns the
+    // number of its body if it is convex and closed.
+    std::uint32_t add(const FlatMesh& mesh, bool porous = false);
     // Builds the tree. Nothing can be tested before.
     void build();
 
-    Blocking test(const OcclusionPyramid& pyramid) const;
+    // `own_body`: that the receiver is a part of. It does not count: a convex body lies behind each of its faces that
+    // the light can see.
+    Blocking test(const OcclusionPyramid& pyramid, std::uint32_t own_body = no_body) const;
     // Whether one polygon or body surely takes all light: what `test` calls full. It then takes the light to the middle
     // of the gate, so that only what a single segment crosses has to be looked at.
     bool covers(const OcclusionPyramid& pyramid) const;
@@ -30,7 +35,7 @@ private:
     };
     std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth);
     std::uint32_t split(std::uint32_t first, std::uint32_t count, const Bounds& centres, std::uint32_t depth);
-    bool any_enters(const OcclusionPyramid& pyramid) const;
+    bool any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body) const;
     // Calls `visit` with the polygons of all leaves that `meets` accepts, as all nodes above them, until it returns
     // true.
     template <typename Meets, typename Visit>
@@ -41,7 +46,7 @@ private:
 
     std::vector<Polygon> polygons_;
     std::vector<std::vector<Plane>> bodies_; // convex closed bodies, by their planes (inside is positive)
-    std::vector<std::uint32_t> body_of_;     // of a polygon; 0xffffffff: none
+    std::vector<std::uint32_t> body_of_;     // of a polygon; no_body: none
     std::vector<std::uint8_t> porous_;       // of polygons
     std::vector<float> sizes_;               // of polygons, or of the body that they belong to: a bound of the diameter
     std::vector<Bounds> bounds_;

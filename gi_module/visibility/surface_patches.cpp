@@ -72,14 +72,16 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
             if (!(flat.area > 0.0))
                 return;
             const scene::Material* material = registry.try_get<scene::Material>(entity);
-            blockers.add(flat, material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
-            add_instance(entity, flat, options);
+            const std::uint32_t body =
+                blockers.add(flat, material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
+            add_instance(entity, flat, body, options);
         });
     blockers.build();
     roots_ = std::uint32_t(nodes_.size());
 }
 
-void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, const PatchOptions& options) {
+void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body,
+                                  const PatchOptions& options) {
     shared::SurfaceInstance instance{};
     instance.first_chart = std::uint32_t(charts_.size());
     instance.first_box_node = shared::no_node;
@@ -96,7 +98,7 @@ void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, cons
     }
     instance.chart_count = std::uint32_t(charts_.size()) - instance.first_chart;
     if (charted < mesh.area * (1.0 - 1e-6))
-        add_boxes(entity, mesh, instance);
+        add_boxes(entity, mesh, body, instance);
     instances_[entity] = instance;
 }
 
@@ -138,7 +140,8 @@ SurfacePatch SurfacePatches::patch_of(const Chart& chart, std::uint32_t chart_in
     return patch;
 }
 
-void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, shared::SurfaceInstance& instance) {
+void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body,
+                               shared::SurfaceInstance& instance) {
     Bounds bounds;
     for (const dvec3& position : mesh.positions)
         bounds.add(vec3(position));
@@ -154,6 +157,7 @@ void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, shared:
             ((octant >> axis) & 1 ? part.minimum : part.maximum)[axis] = centre[axis];
         SurfacePatch patch;
         patch.planar = false;
+        patch.body = body;
         patch.box = OrientedBox::of(part);
         patch.bounds = part;
         patch.entity = entity;

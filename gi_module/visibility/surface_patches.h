@@ -19,11 +19,12 @@ struct SurfacePatch {
     std::uint32_t first_child = shared::no_node; // four in a row; no_node in leaves
     std::uint32_t level = 0;
     bool planar = true;
-    std::uint32_t chart = 0;      // planar
-    vec4 place{0.0f};             // planar: lowest u, v and their extents, in the chart
-    std::array<dvec3, 4> corners; // planar, counter-clockwise about the normal
-    dvec3 normal{0.0};            // planar
-    OrientedBox box;              // not planar
+    std::uint32_t chart = 0;                      // planar
+    vec4 place{0.0f};                             // planar: lowest u, v and their extents, in the chart
+    std::array<dvec3, 4> corners;                 // planar, counter-clockwise about the normal
+    dvec3 normal{0.0};                            // planar
+    OrientedBox box;                              // not planar
+    std::uint32_t body = StaticBlockers::no_body; // not planar: the convex body that it is a part of
     Bounds bounds;
     ecs::Entity entity;
 
@@ -74,10 +75,10 @@ public:
     std::uint32_t node_at(ecs::Entity entity, vec3 position, vec3 geometric_normal) const;
 
 private:
-    void add_instance(ecs::Entity entity, const FlatMesh& mesh, const PatchOptions& options);
+    void add_instance(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body, const PatchOptions& options);
     void add_chart(ecs::Entity entity, const FlatMesh& mesh, const PlanarFace& face, bool reversed,
                    const PatchOptions& options);
-    void add_boxes(ecs::Entity entity, const FlatMesh& mesh, shared::SurfaceInstance& instance);
+    void add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body, shared::SurfaceInstance& instance);
     SurfacePatch patch_of(const Chart& chart, std::uint32_t chart_index, vec4 place) const;
 
     std::vector<SurfacePatch> nodes_;

@@ -164,7 +164,7 @@ PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sa
     if (parent == PairState::full || parent == PairState::unlit)
         return parent;
     if (!patch.planar)
-        return decide_box(patch.box, samples_[sample]);
+        return decide_box(patch, samples_[sample]);
     const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal);
     if (!pyramid)
         return PairState::unlit;
@@ -241,9 +241,9 @@ void VisibilityDatabase::decide_roots(std::uint32_t group, PairState state, std:
     }
 }
 
-PairState VisibilityDatabase::decide_box(const OrientedBox& box, const LightSample& sample) const {
-    const auto pyramid = pyramid_of_box(sample, box);
-    return pyramid ? state_of(static_blockers_.test(*pyramid)) : PairState::unlit;
+PairState VisibilityDatabase::decide_box(const SurfacePatch& patch, const LightSample& sample) const {
+    const auto pyramid = pyramid_of_box(sample, patch.box);
+    return pyramid ? state_of(static_blockers_.test(*pyramid, patch.body)) : PairState::unlit;
 }
 
 // Movers shadow themselves, so all that static geometry can add is to hide them: if their middle is in sight, it does

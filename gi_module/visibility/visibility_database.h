@@ -161,7 +161,7 @@ private:
     std::vector<PairState> decide_all_static(std::uint32_t sample) const;
     void decide_group(std::uint32_t group, const LightSample& sample, std::vector<PairState>& states) const;
     void decide_roots(std::uint32_t group, PairState state, std::vector<PairState>& states) const;
-    PairState decide_box(const OrientedBox& box, const LightSample& sample) const;
+    PairState decide_box(const SurfacePatch& patch, const LightSample& sample) const;
     PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();
     std::uint32_t make_group(std::vector<std::uint32_t> roots);

@@ -330,6 +330,98 @@ TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     EXPECT_EQ(std::memcmp(spread.pixels.data(), at_once.pixels.data(), spread.pixels.size() * sizeof(vec4)), 0);
 }
 
+// Of maps that are redrawn only what movers cover, or covered, is copied. After movers wandered and left, maps equal
+// those of a system that knows the present alone.
+TEST_F(ShadowMapTest, CopiedAreasLeaveNothingBehind) {
+    GpuWorld world(assets::make_four_pillars, "view"), fresh(assets::make_four_pillars, "view");
+    gi::Settings settings;
+    settings.lights = 100;
+    settings.shadow_map_resolution = 64;
+    settings.map_budget = 37;
+    world.set(settings);
+    for (world.request.step = 0; world.request.step < 40; ++world.request.step)
+        world.render();
+    for (GpuWorld* each : {&world, &fresh})
+        each->request.step = 100;
+    settings.map_budget = 1000;
+    world.set(settings);
+    fresh.set(settings);
+    world.render();
+    fresh.render();
+    ASSERT_EQ(world.renderer->lighting().counters().shadow_maps_stale, 0u);
+    const Maps kept(world, 16), anew(fresh, 16);
+    EXPECT_EQ(kept.values, anew.values);
+}
+
+// What can be seen of a box through a face lies in its area.
+TEST(OctahedralMap, AreasCoverTheirBoxes) {
+    RandomSequence random(SequenceKind::pseudo_random, 8, 5);
+    const auto number = [&] { return 2.0f * random.next() - 1.0f; };
+    int checked = 0, small = 0;
+    for (int i = 0; i < 3000; ++i) {
+        gi::LightSample sample;
+        sample.normal = glm::normalize(vec3(number(), number(), number()));
+        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional}[i % 3u];
+        Bounds scene, box;
+        scene.add(vec3(-2.0f));
+        scene.add(vec3(2.0f));
+        const vec3 middle = 1.5f * vec3(number(), number(), number());
+        box.add(middle - 0.3f * vec3(random.next(), random.next(), random.next()));
+        box.add(middle + 0.3f * vec3(random.next(), random.next(), random.next()));
+        const std::uint32_t kind = gi::light_class(sample.kind);
+        const LightRow light = gi::make_light_row(sample, 0, 1e30f, scene);
+        const gi::ShadowRequest request{0, kind, light, true, 0.5f, {}};
+        const std::uint32_t faces = gi::ShadowMaps::faces_that_see(request, box);
+        const gi::MapArea area = gi::covered_area(light, kind, faces, box, 64);
+        small += !area.empty() && (area.high.x - area.low.x) * (area.high.y - area.low.y) < 2048;
+        for (int k = 0; k < 50; ++k) {
+            const vec3 v = glm::mix(box.minimum, box.maximum, vec3(random.next(), random.next(), random.next())) -
+                           vec3(light.position_bound);
+            const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
+                         glm::dot(vec3(light.normal_offset), v));
+            vec2 uv = vec2(d) * light.tangent_scale.w;
+            if (kind == light_class_surface && d.z <= 0.0f)
+                continue;
+            if (kind == light_class_surface)
+                uv = vec2(hemisphere_map(d));
+            if (kind == light_class_point)
+                uv = vec2(sphere_map(d));
+            const vec2 texel = (uv * 0.5f + 0.5f) * 64.0f;
+            if (texel.x < 0.0f || texel.y < 0.0f || texel.x >= 64.0f || texel.y >= 64.0f)
+                continue;
+            ++checked;
+            const glm::uvec2 place(texel);
+            ASSERT_TRUE(glm::all(glm::greaterThanEqual(place, area.low)) && glm::all(glm::lessThan(place, area.high)));
+        }
+    }
+    EXPECT_GT(checked, 50000);
+    EXPECT_GT(small, 1000);
+}
+
+TEST(OctahedralMap, JoinedAreasDoNotOverlap) {
+    RandomSequence random(SequenceKind::pseudo_random, 4, 6);
+    for (int i = 0; i < 200; ++i) {
+        gi::MapAreas areas;
+        std::vector<std::uint8_t> wanted(64 * 64, 0), covered(64 * 64, 0);
+        for (int k = 0; k < 6; ++k) {
+            const glm::uvec2 low(vec2(random.next(), random.next()) * 60.0f);
+            const glm::uvec2 high = glm::min(low + glm::uvec2(vec2(random.next(), random.next()) * 16.0f), 64u);
+            areas.add(gi::MapArea{low, high});
+            for (std::uint32_t y = low.y; y < high.y; ++y)
+                for (std::uint32_t x = low.x; x < high.x; ++x)
+                    wanted[y * 64 + x] = 1;
+        }
+        for (const gi::MapArea& area : areas.areas())
+            for (std::uint32_t y = area.low.y; y < area.high.y; ++y)
+                for (std::uint32_t x = area.low.x; x < area.high.x; ++x)
+                    ++covered[y * 64 + x];
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            ASSERT_LE(covered[k], 1);
+            ASSERT_LE(wanted[k], covered[k]);
+        }
+    }
+}
+
 // The numbers that vertices are given place points of an occluder where the definition does.
 TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
     RandomSequence random(SequenceKind::pseudo_random, 8, 1);

@@ -1,0 +1,79 @@
+#include "gi_module/shadows/map_area.h"
+
+#include "gi_module/shadows/octahedral_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::gi {
+namespace {
+
+// On the map, [-1, 1]^2 if it is on it at all; false if the point is behind the projection.
+bool place_on_map(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t face, vec3 point, vec2& uv) {
+    const vec3 v = point - vec3(light.position_bound);
+    const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
+                 glm::dot(vec3(light.normal_offset), v));
+    if (light_class == shared::light_class_directional) {
+        uv = vec2(d) * light.tangent_scale.w;
+        return true;
+    }
+    const vec3 clip = light_class == shared::light_class_surface ? shared::hemisphere_face_clip(d, face)
+                                                                 : shared::sphere_face_clip(d, face);
+    uv = vec2(clip) / clip.z;
+    return clip.z > 1e-3f;
+}
+
+} // namespace
+
+bool MapArea::meets(const MapArea& other) const {
+    return glm::all(glm::lessThan(low, other.high)) && glm::all(glm::lessThan(other.low, high));
+}
+
+void MapAreas::add(MapArea area) {
+    if (area.empty())
+        return;
+    for (std::size_t i = 0; i < areas_.size();) {
+        if (!areas_[i].meets(area)) {
+            ++i;
+            continue;
+        }
+        // The joined one may meet others that neither met.
+        area = {glm::min(area.low, areas_[i].low), glm::max(area.high, areas_[i].high)};
+        areas_.erase(areas_.begin() + std::ptrdiff_t(i));
+        i = 0;
+    }
+    areas_.push_back(area);
+}
+
+void MapAreas::add(const MapAreas& other) {
+    for (const MapArea& area : other.areas_)
+        add(area);
+}
+
+MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t faces,
+                     const Bounds& bounds, std::uint32_t resolution) {
+    vec2 low(1.0f), high(-1.0f);
+    for (std::uint32_t face = 0; faces >> face; ++face) {
+        if (((faces >> face) & 1u) == 0)
+            continue;
+        for (int corner = 0; corner < 8; ++corner) {
+            const vec3 point(corner & 1 ? bounds.maximum.x : bounds.minimum.x,
+                             corner & 2 ? bounds.maximum.y : bounds.minimum.y,
+                             corner & 4 ? bounds.maximum.z : bounds.minimum.z);
+            vec2 uv;
+            if (!place_on_map(light, light_class, face, point, uv))
+                return MapArea::all(resolution);
+            low = glm::min(low, uv);
+            high = glm::max(high, uv);
+        }
+    }
+    const auto texel = [&](float place, float beyond) {
+        return std::clamp((place * 0.5f + 0.5f) * float(resolution) + beyond, 0.0f, float(resolution));
+    };
+    const glm::uvec2 first(std::uint32_t(texel(low.x, -1.0f)) & ~1u, std::uint32_t(texel(low.y, -1.0f)));
+    const glm::uvec2 end((std::uint32_t(std::ceil(texel(high.x, 1.0f))) + 1u) & ~1u,
+                         std::uint32_t(std::ceil(texel(high.y, 1.0f))));
+    return {first, glm::min(end, glm::uvec2(resolution))};
+}
+
+} // namespace sunfleck::gi
