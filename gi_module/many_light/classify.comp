@@ -56,7 +56,7 @@ void main() {
     const uint group_count = indirect != 0 ? commands[command_totals + 2u] : constants.group_count;
     if (group >= group_count)
         return;
-    uint slot_nodes[any_node_slot];
+    uint slot_nodes[any_node_slot]; // with node_bent, as entries have it
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
         slot_nodes[s] = no_node;
     bool any_pixel = false, any_node = false;
@@ -89,7 +89,7 @@ void main() {
             bounds.axis += normal_at(pixel);
         }
         any_node = any_node || (exists && slot == any_node_slot);
-        entry_slots[place] = slot | (node != no_node && node >= constants.first_mover ? entry_on_mover : 0u);
+        entry_slots[place] = slot | (node != no_node && (node & node_mask) >= constants.first_mover ? entry_on_mover : 0u);
         // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
         if (slot == any_node_slot && first_batch != 0u && exists)
             sums[entry] = vec4(0.0, 0.0, 0.0, 1.0);
@@ -98,7 +98,7 @@ void main() {
         find_cone(group, bounds);
     bool mapped[any_node_slot];
     [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
-        mapped[s] = light_maps != 0 && slot_nodes[s] != no_node && node_rows[min(slot_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
+        mapped[s] = light_maps != 0 && slot_nodes[s] != no_node && (slot_nodes[s] & node_bent) == 0u && node_rows[min(slot_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
 
     const uint first = group * constants.list_stride;
     uint tested = 0u, untested = 0u;
@@ -110,7 +110,7 @@ void main() {
         [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
             partial[s] = none[s] = 0u;
             if (slot_nodes[s] != no_node) {
-                const uint states = rows[slot_nodes[s] * constants.words_per_row + word];
+                const uint states = rows[(slot_nodes[s] & node_mask) * constants.words_per_row + word];
                 const uint low = states & 0x55555555u, high = (states >> 1) & 0x55555555u;
                 partial[s] = high & ~low;
                 none[s] = low & ~high;

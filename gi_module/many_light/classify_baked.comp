@@ -56,9 +56,9 @@ void main() {
         last = node;
         bool known = false;
         for (uint k = 0; k < node_count; ++k)
-            known = known || nodes[k] == (node & ~node_baked);
+            known = known || nodes[k] == (node & node_mask);
         if (!known && node_count < most_nodes)
-            nodes[node_count++] = node & ~node_baked;
+            nodes[node_count++] = node & node_mask;
         else
             more = more || !known;
     }

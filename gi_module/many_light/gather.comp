@@ -98,16 +98,13 @@ void main() {
             const NodeRow row = node_rows[node];
             if (row.first_texel != no_light_map) {
                 const TexelPlace place = texel_place(row, position);
-                if (baked != 0) {
-                    // Texels know the patch's normal alone.
-                    const vec3 bend = unpack_normal(normals.r) - geometric_normal;
-                    const vec4 light = baked_light(row, place);
-                    if (light.a == 0.0 && dot(bend, bend) < flat_shaded_limit) {
-                        sum = light.rgb;
-                        node |= node_baked;
-                    } else {
-                        sum = light_map(row, place);
-                    }
+                const vec3 bend = unpack_normal(normals.r) - geometric_normal;
+                const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
+                if (dot(bend, bend) >= flat_shaded_limit) {
+                    node |= node_bent; // texels know the patch's normal alone
+                } else if (light.a == 0.0) {
+                    sum = light.rgb;
+                    node |= node_baked;
                 } else {
                     sum = light_map(row, place);
                 }

@@ -20,6 +20,8 @@ SHARED_CONSTANT uint any_node_slot = 11u;
 SHARED_CONSTANT uint entry_on_mover = 256u;    // beside the slot: the pixel shows a mover
 SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for baked light: they are for this pixel
 SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
+SHARED_CONSTANT uint node_bent = 0x40000000u;  // shaded by another normal than its light map knows, which is not used
+SHARED_CONSTANT uint node_mask = 0x3fffffffu;
 
 // Squared distance of the unit normals of a surface and its shading, up to which they count as one: 0.06 degrees, some
 // steps of 16 bits.

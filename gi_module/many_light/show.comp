@@ -82,7 +82,7 @@ void main() {
         colour = node == no_node ? vec3(0.1) : baked(node);
         colour *= 0.3 + 0.7 * clamp(sums[entry].g / (sums[entry].g + 1.0), 0.0, 1.0);
     } else if (node != no_node) {
-        colour = view == show_visibility ? visibility(node) : staleness(node);
+        colour = view == show_visibility ? visibility(node & node_mask) : staleness(node & node_mask);
     }
     imageStore(output_image, ivec2(pixel), vec4(colour, 1.0));
 }

@@ -287,6 +287,33 @@ TEST_F(ManyLightTest, UmbraStaysDark) {
     EXPECT_GT(dark, 2000);
 }
 
+// A flat floor that is shaded as if it were wavy: what light maps know of it is of no use.
+TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
+    const auto make = [](assets::SceneBuilder& s) {
+        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+        s.room(vec3(-3, -0.01f, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
+               {{"lamp", vec2(-2.0f), 0.5f, 0.5f, vec3(40.0f)}});
+        scene::Mesh floor = scene::make_rectangle(6.0f, 6.0f, 24, 24);
+        for (std::size_t i = 0; i < floor.normals.size(); ++i) {
+            floor.positions[i] = vec3(floor.positions[i].x, 0.0f, -floor.positions[i].y);
+            floor.normals[i] = glm::normalize(vec3(0.6f * std::sin(3.0f * floor.positions[i].x), 1.0f, 0.0f));
+        }
+        s.add("floor", std::move(floor), assets::diffuse(vec3(0.6f)));
+        s.camera("view", vec3(2.5f, 2.0f, 2.5f), vec3(0.0f), 60.0f);
+    };
+    Pair pair(make, "view");
+    pair.size(192, 144);
+    gi::Settings settings;
+    settings.lights = 100;
+    settings.low_resolution = 1;
+    pair.set(settings);
+    pair.run_to(1, 0.0f);
+    const Difference difference = compare(pair);
+    std::printf("%.4f off, of %.4f W/m2\n", difference.mean, difference.mean_brightness);
+    EXPECT_LT(difference.mean, 0.01 * difference.mean_brightness);
+    EXPECT_GT(difference.mean_brightness, 0.1);
+}
+
 std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps) {
     const std::uint64_t bytes = maps.counters().texels * 16;
     const gpu::Buffer target = read_back(world, maps.texels(), bytes);
