@@ -26,14 +26,25 @@ layout(set = 0, binding = 9) writeonly buffer NodeOfEntry { uint entry_nodes[]; 
 layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
 layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
+layout(set = 0, binding = 13) uniform samplerBuffer chart_vectors; // the charts again: a CPU device reads texels faster
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+// The chart without its cells.
+SurfaceChart chart_plane_at(uint i) {
+    SurfaceChart chart;
+    const int first = int(i) * 4;
+    chart.plane = texelFetch(chart_vectors, first);
+    chart.u_axis = texelFetch(chart_vectors, first + 1);
+    chart.v_axis = texelFetch(chart_vectors, first + 2);
+    return chart;
+}
 
 uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
     const SurfaceInstance instance = instances[surface_row(surface)];
-    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count; ++i)
-        if (on_chart(charts[i], position, geometric_normal))
-            return cells[chart_cell(charts[i], position)];
-    return box_node(instance, position);
+    uint found = no_node;
+    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && found == no_node; ++i)
+        found = on_chart(chart_plane_at(i), position, geometric_normal) ? i : no_node;
+    return found != no_node ? cells[chart_cell(charts[found], position)] : box_node(instance, position);
 }
 
 // Where a point lies in a patch's grid of texels.
@@ -43,7 +54,7 @@ struct TexelPlace {
 };
 
 TexelPlace texel_place(NodeRow row, vec3 position) {
-    const SurfaceChart chart = charts[row.chart];
+    const SurfaceChart chart = chart_plane_at(row.chart);
     const vec2 place = vec2(dot(chart.u_axis.xyz, position) + chart.u_axis.w, dot(chart.v_axis.xyz, position) + chart.v_axis.w);
     const vec2 texel = clamp((place - row.place.xy) / row.place.zw, 0.0, 1.0) * vec2(row.columns - 1u, row.rows - 1u);
     const uvec2 corner = uvec2(min(texel, vec2(row.columns - 2u, row.rows - 2u)));
@@ -100,13 +111,14 @@ void main() {
                 const TexelPlace place = texel_place(row, position);
                 const vec3 bend = unpack_normal(normals.r) - geometric_normal;
                 const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
-                if (dot(bend, bend) >= flat_shaded_limit) {
-                    node |= node_bent; // texels know the patch's normal alone
-                } else if (light.a == 0.0) {
-                    sum = light.rgb;
-                    node |= node_baked;
-                } else {
+                const bool bent = dot(bend, bend) >= flat_shaded_limit; // texels know the patch's normal alone
+                bool unshadowed = !bent && light.a != 0.0;
+                node |= bent ? node_bent : unshadowed ? 0u : node_baked;
+                sum = bent ? vec3(0.0) : light.rgb;
+                // A loop of one turn at most: unlike a branch, a CPU device leaves it out where no pixel needs it.
+                while (unshadowed) {
                     sum = light_map(row, place);
+                    unshadowed = false;
                 }
             }
         }

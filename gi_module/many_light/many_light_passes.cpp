@@ -64,7 +64,7 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                     pipeline("gather.comp",
                              {uniform_buffer, sampled_image, sampled_image, sampled_image, storage_buffer,
                               storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_buffer, texel_buffer},
+                              storage_buffer, storage_buffer, texel_buffer, texel_buffer},
                              {stage == Stage::repair, maps, frame.baked}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution pixels");
     if (stage == Stage::repair)
@@ -74,7 +74,8 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
         .read(frame.g_buffer.surface, gpu::Usage::sampled);
     for (const gpu::Buffer* table : {&tables_.charts(), &tables_.cells(), &tables_.nodes(), &light_maps_->texels()})
         pass.read(frame.graph.import_buffer(*table), gpu::Usage::storage_read);
-    pass.read(frame.graph.import_buffer(baked_light_->texels()), gpu::Usage::texel_read)
+    pass.read(frame.graph.import_buffer(tables_.charts()), gpu::Usage::texel_read)
+        .read(frame.graph.import_buffer(baked_light_->texels()), gpu::Usage::texel_read)
         .write(frame.pixels, gpu::Usage::storage_read_write)
         .write(frame.nodes, gpu::Usage::storage_write)
         .write(frame.sums, gpu::Usage::storage_write)
@@ -93,7 +94,8 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                 gpu::Binding::buffer(nodes_),
                 gpu::Binding::buffer(sums_),
                 gpu::Binding::buffer(light_maps_->texels()),
-                gpu::Binding::texels(baked_light_->texels())};
+                gpu::Binding::texels(baked_light_->texels()),
+                gpu::Binding::texels(tables_.charts())};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             dispatch(context, stage, Phase::plain, shared::command_groups, constants.group_count);

@@ -3,17 +3,20 @@
 namespace sunfleck::gi {
 
 Result<bool> UploadedBuffer::reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name,
-                                     std::uint64_t bytes) {
+                                     std::uint64_t bytes, VkFormat texel_format) {
     if (buffer_ && buffer_.size() >= bytes)
         return false;
     if (buffer_)
         resources.retire(std::move(buffer_));
     pieces_.clear();
     const std::uint64_t roomy = buffer_ ? bytes + bytes / 2 : bytes;
-    SUNFLECK_ASSIGN(
-        buffer_,
-        gpu::Buffer::create(device, {name, roomy, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                     gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    SUNFLECK_ASSIGN(buffer_,
+                    gpu::Buffer::create(device, {name, roomy,
+                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                                     VkBufferUsageFlags(texel_format != VK_FORMAT_UNDEFINED
+                                                                            ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
+                                                                            : 0),
+                                                 gpu::MemoryUse::device, texel_format}));
     return true;
 }
 
@@ -48,7 +51,8 @@ Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, 
     if (fresh) {
         const auto charts = std::as_bytes(std::span(patches.chart_rows()));
         const auto cells = std::as_bytes(std::span(patches.cells()));
-        SUNFLECK_TRY(charts_.reserve(device, resources, "surface charts", charts.size()));
+        SUNFLECK_TRY(charts_.reserve(device, resources, "surface charts", std::max<std::size_t>(charts.size(), 1),
+                                     VK_FORMAT_R32G32B32A32_SFLOAT));
         SUNFLECK_TRY(cells_.reserve(device, resources, "surface cells", cells.size()));
         SUNFLECK_TRY(charts_.write(resources, 0, charts));
         SUNFLECK_TRY(cells_.write(resources, 0, cells));

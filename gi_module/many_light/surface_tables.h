@@ -13,7 +13,9 @@ namespace sunfleck::gi {
 class UploadedBuffer {
 public:
     // Makes room for `bytes`; content is lost when it grows (returns true then).
-    Result<bool> reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name, std::uint64_t bytes);
+    // `texel_format`: it is a texel buffer, too.
+    Result<bool> reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name, std::uint64_t bytes,
+                         VkFormat texel_format = VK_FORMAT_UNDEFINED);
     // Queues a piece to be copied by the next add_pass.
     Status write(gpu::FrameResources& resources, std::uint64_t offset, std::span<const std::byte> bytes);
     // Adds the copies, if there are any.
