@@ -78,6 +78,8 @@ struct Counters {
     std::uint64_t surface_patches = 0;
     std::uint64_t light_map_updates = 0;
     std::uint64_t light_map_texels = 0;
+    std::uint64_t baked_light_updates = 0; // samples added or subtracted at a patch
+    std::uint64_t baked_light_waiting = 0; // patches without baked light yet
     ManyLightCounters pixels;
     std::uint64_t render_passes = 0, render_passes_unoptimised = 0; // with Settings::count_passes
     std::uint64_t transfer_vertices = 0;                            // lit by precomputed transfer

@@ -153,6 +153,8 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     counters_.surface_patches = database_.patches().leaves();
     counters_.light_map_updates = many_light_->light_maps().counters().updates;
     counters_.light_map_texels = many_light_->light_maps().counters().texels;
+    counters_.baked_light_updates = many_light_->baked_light().counters().updates;
+    counters_.baked_light_waiting = many_light_->baked_light().counters().waiting;
     counters_.pixels = many_light_->counters();
     count_passes();
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;

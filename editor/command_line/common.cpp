@@ -229,6 +229,8 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
                         {"surface_patches", counters.surface_patches},
                         {"light_map_updates", counters.light_map_updates},
                         {"light_map_texels", counters.light_map_texels},
+                        {"baked_light_updates", counters.baked_light_updates},
+                        {"baked_light_waiting", counters.baked_light_waiting},
                         {"pixels_low_resolution", counters.pixels.pixels_low_resolution},
                         {"pixels_repaired", counters.pixels.pixels_repaired},
                         {"pixels_not_repaired", counters.pixels.pixels_not_repaired}};

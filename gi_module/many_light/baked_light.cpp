@@ -132,6 +132,10 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, const LightMap
 Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& light_maps,
                           std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
                           bool static_maps_changed, gpu::FrameResources& resources) {
+    if (light_maps.counters().texels > device_.traits().max_texel_elements) {
+        forget();
+        return {};
+    }
     jobs_.clear();
     finish_.clear();
     job_rows_.clear();

@@ -29,8 +29,9 @@ class BakedLight {
 public:
     static Result<std::unique_ptr<BakedLight>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
-    // Follows the light maps, whose update comes first. `static_maps_changed`: a static shadow map of a held sample is
-    // redrawn in this frame, and all is baked anew.
+    // Follows the light maps, whose update comes first. Not in use afterwards if the device's texel buffers are too
+    // small for them. `static_maps_changed`: a static shadow map of a held sample is redrawn in this frame, and all is
+    // baked anew.
     Status update(const VisibilityDatabase& database, const LightMaps& light_maps, std::span<const LightSample> samples,
                   std::span<const shared::LightRow> rows, bool static_maps_changed, gpu::FrameResources& resources);
     // Nothing is baked, nor used until the next update: shadow maps do not hold what is needed.

@@ -1,5 +1,6 @@
 // The many-light system's lighting of pixels (thesis sec. 4.3): lists of samples by tile from the visibility database,
-// light maps, a low-resolution pass, reconstruction, and repair at full resolution.
+// light maps, a low-resolution pass, reconstruction, and repair at full resolution. Beyond the thesis: baked light, so
+// that what static geometry lets pass is evaluated once, and by pixel only where it is rough or a mover is in the way.
 //
 // The thesis merges objects and samples into render passes (sec. 4.3.5). Here a dispatch handles all tiles, each with
 // its own two lists; see pass_optimisation.h for the passes that the thesis's renderer would need.

@@ -141,6 +141,42 @@ TEST_F(BakedLightTest, FollowsStrengths) {
               0);
 }
 
+// Pixels without baked light get what they get without it anywhere: samples that their lists leave out add nothing.
+// Where a group lies on more nodes than it has slots for, light maps are not used, and what they interpolate is exact
+// instead.
+TEST_F(BakedLightTest, RoughPixelsAreAsWithoutIt) {
+    for (const auto make : {assets::make_area_room, assets::make_four_pillars}) {
+        GpuWorld world(make, "bench_2");
+        world.request.width = 256;
+        world.request.height = 192;
+        gi::Settings settings;
+        settings.low_resolution = 1;
+        settings.map_budget = 10000;
+        world.set(settings);
+        bake_all(world);
+        const io::Picture with = world.picture();
+        world.request.view = shared::view_false_colours;
+        world.request.show = shared::show_baked;
+        const io::Picture kinds = world.picture();
+        world.request.view = shared::view_irradiance;
+        world.request.show = shared::show_nothing;
+        settings.baked_light = false;
+        world.set(settings);
+        const io::Picture without = world.picture();
+        int rough = 0, other = 0;
+        for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+            if (!(kinds.pixels[i].r > kinds.pixels[i].g) || without.pixels[i].a == 0.0f)
+                continue;
+            ++rough;
+            const vec3 a(with.pixels[i]), b(without.pixels[i]);
+            other += brightness(glm::abs(a - b)) > 2e-3f * brightness(b);
+        }
+        std::printf("%d rough pixels, %d not as without\n", rough, other);
+        EXPECT_GT(rough, 1000);
+        EXPECT_LT(other, rough / 50);
+    }
+}
+
 // A mover far from any contact: the picture with baked light against the one without, which asks every sample.
 TEST_F(BakedLightTest, MoversTakeAwayWhatTheyDid) {
     GpuWorld world(assets::make_four_pillars, "bench_1");
