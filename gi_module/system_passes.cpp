@@ -125,10 +125,17 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     options.filter = settings_.shadow_filter;
     options.visibility = settings_.visibility;
     options.light_maps = settings_.light_maps && settings_.visibility;
-    // Maps whose static part is stale are all redrawn in this frame.
-    options.baked_light = settings_.baked_light && settings_.static_maps && shadow_maps_->slots() >= samples_.size();
-    for (const std::uint32_t sample : to_draw_)
-        options.static_maps_changed |= scheduler_.is_static_stale(sample) && held_by_light_maps(samples_[sample]);
+    // A host may draw the first maps over many frames (FrameInput::map_budget): baking begins when all are there.
+    const auto waits = [this](std::uint32_t sample) {
+        return scheduler_.is_static_stale(sample) && held_by_light_maps(samples_[sample]);
+    };
+    std::size_t waiting = 0;
+    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+        waiting += waits(sample);
+    const std::size_t drawn = std::size_t(std::count_if(to_draw_.begin(), to_draw_.end(), waits));
+    options.baked_light =
+        settings_.baked_light && settings_.static_maps && waiting == drawn && shadow_maps_->slots() >= samples_.size();
+    options.static_maps_changed = drawn > 0;
     options.scale = settings_.low_resolution;
     options.contrast = settings_.repair_contrast;
     options.normal_degrees = settings_.repair_angle;

@@ -121,6 +121,24 @@ TEST_F(BakedLightTest, HoldsWhatRaysSay) {
     }
 }
 
+// While a host draws the first maps over many frames, nothing is baked that would be baked again; then all is, once.
+TEST_F(BakedLightTest, WaitsForTheMaps) {
+    GpuWorld world(assets::make_area_room, "bench_1");
+    gi::Settings settings;
+    settings.lights = 60;
+    settings.shadow_map_resolution = 64;
+    world.set(settings);
+    world.request.map_budget = 20;
+    int bakes = 0;
+    for (int frame = 0; frame < 6; ++frame) {
+        world.render();
+        const gi::Counters& counters = world.renderer->lighting().counters();
+        bakes += counters.baked_light_updates > 0;
+        EXPECT_EQ(bakes, frame < 2 ? 0 : 1);
+        EXPECT_EQ(world.renderer->lighting().many_light().baked_light().in_use(), frame >= 2);
+    }
+}
+
 // A change of strength, of all samples or of a few, ends in what baking from scratch gives.
 TEST_F(BakedLightTest, FollowsStrengths) {
     GpuWorld world(assets::make_area_room, "bench_1");
