@@ -18,11 +18,7 @@ std::uint64_t texels_of(const shared::NodeRow& row) {
     return std::uint64_t(row.columns) * row.rows;
 }
 
-// What a sample's change is, by static geometry alone; nothing if none of its light comes there.
-bool reaches(PairState state) {
-    return state == PairState::none || state == PairState::partial;
-}
-
+// Beside a sample in a change: some of its light is blocked.
 std::uint32_t test_flag(PairState state) {
     return state == PairState::partial ? shared::light_map_test : 0u;
 }

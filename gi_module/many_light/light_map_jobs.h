@@ -5,7 +5,7 @@
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/transport/light_row.h"
 #include "gi_module/transport/light_sample.h"
-#include "gi_module/visibility/surface_patches.h"
+#include "gi_module/visibility/visibility_database.h"
 
 #include <span>
 #include <vector>
@@ -37,6 +37,11 @@ private:
 // every change of those that move or vary would touch all maps that they reach.
 inline bool held_by_light_maps(const LightSample& sample) {
     return sample.kind == SampleKind::surface && !sample.dynamic;
+}
+
+// Whether any of a sample's light comes to a patch.
+inline bool reaches(PairState state) {
+    return state == PairState::none || state == PairState::partial;
 }
 
 // Finds the held samples whose strength alone changed since `before`. False if something else changed, or the strengths

@@ -13,10 +13,6 @@ constexpr std::uint32_t most_texels = 256;    // along a patch's side
 constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
 
-bool reaches(PairState state) {
-    return state == PairState::none || state == PairState::partial;
-}
-
 } // namespace
 
 Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
