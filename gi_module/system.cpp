@@ -16,6 +16,8 @@ std::span<const EmbeddedShader> sunfleck_gi_shaders();
 namespace sunfleck::gi {
 namespace {
 
+constexpr std::uint64_t most_curved_points = std::uint64_t(1) << 20; // of baked light: 56 MiB
+
 // Adds the time until its end to a stage.
 class StageTimer {
 public:
@@ -295,6 +297,7 @@ Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore
         database_samples_ = 0; // should it be stopped
         if (!database_.build(registry, meshes, samples_, options, input_.progress))
             return Error{"the lighting's preparation was stopped"};
+        curved_charts_.build(registry, meshes, database_.patches(), light_map_texel(bound_), most_curved_points);
         database_options_ = options;
         database_samples_ = sample_generation_;
         changed_samples_.clear();

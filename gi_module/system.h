@@ -125,6 +125,7 @@ public:
     // Empty unless the technique is light_samples.
     const VisibilityDatabase& visibility() const { return database_; }
     const ManyLight& many_light() const { return *many_light_; }
+    const CurvedCharts& curved_charts() const { return curved_charts_; }
     const MapScheduler& map_scheduler() const { return scheduler_; }
     // The bound of the geometry term in use, 1/m2 (see transport/clamping.h).
     float geometry_bound() const { return bound_; }
@@ -160,6 +161,7 @@ private:
     std::unique_ptr<ShadowMaps> shadow_maps_;
     std::unique_ptr<BruteForce> brute_force_;
     std::unique_ptr<ManyLight> many_light_;
+    CurvedCharts curved_charts_; // of the database\'s static geometry
     std::unique_ptr<TransferPass> transfer_pass_;
     TransferLighting transfer_;
     std::filesystem::path cache_folder_;

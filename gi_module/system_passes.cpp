@@ -140,7 +140,7 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
     options.contrast = settings_.repair_contrast;
     options.normal_degrees = settings_.repair_angle;
     options.show = input_.show;
-    SUNFLECK_TRY(many_light_->update(database_, gpu_scene, samples_, rows_, options, input_.serial,
+    SUNFLECK_TRY(many_light_->update(database_, curved_charts_, gpu_scene, samples_, rows_, options, input_.serial,
                                      input_.completed_serial, resources_));
     ShadowCounters shadow_counters;
     if (settings_.shadows && !to_draw_.empty()) {

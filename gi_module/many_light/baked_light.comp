@@ -4,6 +4,8 @@
 // Adds and subtracts samples in baked light, with the shadows of static geometry where they are partly occluded: a work
 // group for each job, several texels an invocation, so that they share each sample's loads. Contributions are rounded one
 // by one, as in light_maps.comp.
+#include "engine/core/octahedral.h"
+#include "gi_module/many_light/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/transport/light_row_shared.h"
@@ -21,6 +23,7 @@ layout(set = 0, binding = 1) readonly buffer Changes { uint changes[]; };
 layout(set = 0, binding = 2) readonly buffer Lights { LightRow lights[]; };
 layout(set = 0, binding = 3) uniform samplerBuffer static_maps;
 layout(set = 0, binding = 4) buffer Sums { ivec4 sums[]; };
+layout(set = 0, binding = 5) readonly buffer Points { CurvedPoint points[]; };
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
 float map_side() { return float(constants.map_resolution); }
@@ -29,6 +32,22 @@ float map_value(uint slot, ivec2 texel) {
     return texelFetch(static_maps, (int(slot) * side + texel.y) * side + texel.x).r;
 }
 #include "gi_module/shadows/shadowed_light.glsl"
+
+Pixel pixel_at(LightMapJob job, uint i) {
+    Pixel pixel;
+    pixel.on_mover = 0.0;
+    if (job.first_point != no_points) {
+        const CurvedPoint point = points[job.first_point + i];
+        pixel.position = point.position.xyz;
+        pixel.normal = unpack_normal(point.normal);
+        pixel.geometric_normal = unpack_normal(point.geometric_normal);
+    } else {
+        const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
+        pixel.position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
+        pixel.normal = pixel.geometric_normal = job.normal.xyz;
+    }
+    return pixel;
+}
 
 void main() {
     const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
@@ -41,10 +60,7 @@ void main() {
         ivec3 sum[texels_per_invocation];
         [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
             const uint i = min(begin + k * lanes + gl_LocalInvocationID.x, end - 1u);
-            const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
-            texel[k].position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
-            texel[k].normal = texel[k].geometric_normal = job.normal.xyz;
-            texel[k].on_mover = 0.0;
+            texel[k] = pixel_at(job, i);
             sum[k] = job.clear != 0u ? ivec3(0) : sums[job.first_texel + i].xyz;
         }
         for (uint c = 0; c < job.change_count; ++c) {

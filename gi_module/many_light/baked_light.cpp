@@ -1,6 +1,8 @@
 #include "gi_module/many_light/baked_light.h"
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 namespace sunfleck::gi {
 namespace {
@@ -14,13 +16,19 @@ constexpr std::uint64_t most_evaluations = 16000000, most_evaluations_at_first =
 constexpr float roughness_limit = 0.2f;
 constexpr std::uint64_t texel_bytes = 8;
 
-std::uint64_t texels_of(const shared::NodeRow& row) {
-    return std::uint64_t(row.columns) * row.rows;
-}
-
-// Beside a sample in a change: some of its light is blocked.
-std::uint32_t test_flag(PairState state) {
-    return state == PairState::partial ? shared::light_map_test : 0u;
+// What static geometry lets pass of a sample's light to some nodes: nothing, or a sample's change (light_maps_shared.h)
+// with the flag for shadow tests if some of it is blocked.
+std::optional<std::uint32_t> test_flag(const VisibilityDatabase& database, std::span<const std::uint32_t> nodes,
+                                       std::uint32_t sample) {
+    bool any = false, blocked = false;
+    for (const std::uint32_t node : nodes) {
+        const PairState state = database.static_state(node, sample);
+        any = any || reaches(state);
+        blocked = blocked || state == PairState::partial || state == PairState::full;
+    }
+    if (!any)
+        return std::nullopt;
+    return blocked ? shared::light_map_test : 0u;
 }
 
 } // namespace
@@ -43,17 +51,61 @@ void BakedLight::forget() {
     counters_ = {};
 }
 
+void BakedLight::find_pieces(const VisibilityDatabase& database, const LightMaps& light_maps,
+                             const CurvedCharts& curved) {
+    pieces_.clear();
+    for (std::uint32_t node = 0; node < light_maps.node_rows().size(); ++node)
+        if (const shared::NodeRow& row = light_maps.node_rows()[node]; row.first_texel != shared::no_light_map)
+            pieces_.push_back({LightMapJobs::job_of(database.patches().nodes()[node], row), {node}});
+    for (const CurvedChart& chart : curved.charts()) {
+        if (chart.columns == 0)
+            continue;
+        shared::LightMapJob job{};
+        const float scale = chart.row.size.w;
+        const float side = chart.direction % 2 == 0 ? 1.0f : -1.0f;
+        job.height[int(chart.direction / 2)] = side * scale;
+        job.height.w = -chart.row.place.z * scale;
+        job.cell = scale / chart.row.place.w;
+        job.first_point = chart.first_point;
+        job.first_texel = std::uint32_t(light_maps.counters().texels) + chart.first_point;
+        job.columns = chart.columns;
+        job.rows = chart.rows;
+        const std::span<const std::uint32_t> nodes = curved.nodes(chart);
+        pieces_.push_back({job, {nodes.begin(), nodes.end()}});
+    }
+}
+
+Status BakedLight::upload_charts(std::uint64_t first_texel, const CurvedCharts& curved,
+                                 gpu::FrameResources& resources) {
+    std::vector<shared::CurvedChartRow> rows;
+    for (const CurvedChart& chart : curved.charts()) {
+        rows.push_back(chart.row);
+        rows.back().size.z += float(first_texel); // whole numbers below 2^24 are exact
+    }
+    const auto row_bytes = std::as_bytes(std::span(rows)), point_bytes = std::as_bytes(std::span(curved.points()));
+    SUNFLECK_TRY(curved_rows_.reserve(device_, resources, "curved charts",
+                                      std::max(row_bytes.size(), sizeof(shared::CurvedChartRow)),
+                                      VK_FORMAT_R32G32B32A32_SFLOAT));
+    SUNFLECK_TRY(points_.reserve(device_, resources, "points of curved surfaces",
+                                 std::max(point_bytes.size(), sizeof(shared::CurvedPoint))));
+    SUNFLECK_TRY(curved_rows_.write(resources, 0, row_bytes));
+    return points_.write(resources, 0, point_bytes);
+}
+
 Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMaps& light_maps,
-                              std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
+                              const CurvedCharts& curved, std::span<const shared::LightRow> rows,
+                              gpu::FrameResources& resources) {
+    if (generation_ != database.generation()) {
+        find_pieces(database, light_maps, curved);
+        SUNFLECK_TRY(upload_charts(light_maps.counters().texels, curved, resources));
+    }
     generation_ = database.generation();
     fixed_point_ = light_maps.fixed_point();
     baked_rows_.assign(rows.begin(), rows.end());
-    waiting_.clear();
-    for (std::uint32_t node = std::uint32_t(light_maps.node_rows().size()); node-- > 0;)
-        if (light_maps.node_rows()[node].first_texel != shared::no_light_map)
-            waiting_.push_back(node);
+    waiting_.resize(pieces_.size());
+    std::iota(waiting_.rbegin(), waiting_.rend(), 0u);
     wipe_ = true;
-    const std::uint64_t texels = std::max<std::uint64_t>(light_maps.counters().texels, 1);
+    const std::uint64_t texels = std::max<std::uint64_t>(light_maps.counters().texels + curved.points().size(), 1);
     if (sums_.size() >= texels * sizeof(glm::ivec4))
         return {};
     resources.retire(std::move(sums_));
@@ -71,64 +123,63 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
 }
 
 // False if it would be too much for a frame.
-bool BakedLight::follow_strengths(const VisibilityDatabase& database, const LightMaps& light_maps,
-                                  std::span<const shared::LightRow> rows, std::span<const std::uint32_t> changed) {
+bool BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
+                                  std::span<const std::uint32_t> changed) {
     job_rows_ = baked_rows_;
     for (const std::uint32_t sample : changed)
         job_rows_.push_back(rows[sample]);
-    std::vector<std::uint8_t> waits(light_maps.node_rows().size(), 0);
-    for (const std::uint32_t node : waiting_)
-        waits[node] = 1;
+    std::vector<std::uint8_t> waits(pieces_.size(), 0);
+    for (const std::uint32_t piece : waiting_)
+        waits[piece] = 1;
     std::uint64_t evaluations = 0;
-    for (std::uint32_t node = 0; node < light_maps.node_rows().size() && !changed.empty(); ++node) {
-        const shared::NodeRow& row = light_maps.node_rows()[node];
-        if (row.first_texel == shared::no_light_map || waits[node])
-            continue;
+    for (std::uint32_t i = 0; i < pieces_.size() && !changed.empty(); ++i) {
+        const Piece& piece = pieces_[i];
         bool begun = false;
-        for (std::uint32_t k = 0; k < changed.size(); ++k) {
-            const PairState state = database.static_state(node, changed[k]);
-            if (!reaches(state))
+        for (std::uint32_t k = 0; k < changed.size() && !waits[i]; ++k) {
+            const auto flag = test_flag(database, piece.nodes, changed[k]);
+            if (!flag)
                 continue;
             if (!begun) {
-                jobs_.add(database.patches().nodes()[node], row, false);
-                finish_.add(database.patches().nodes()[node], row, false);
+                jobs_.add(piece.job, false);
+                finish_.add(piece.job, false);
             }
             begun = true;
-            jobs_.add_change(changed[k] | test_flag(state) | shared::light_map_subtract);
-            jobs_.add_change((std::uint32_t(baked_rows_.size()) + k) | test_flag(state));
-            evaluations += 2 * texels_of(row);
+            jobs_.add_change(changed[k] | *flag | shared::light_map_subtract);
+            jobs_.add_change((std::uint32_t(baked_rows_.size()) + k) | *flag);
+            evaluations += 2 * piece.texels();
         }
     }
     baked_rows_.assign(rows.begin(), rows.end());
     return evaluations <= most_evaluations;
 }
 
-void BakedLight::bake_waiting(const VisibilityDatabase& database, const LightMaps& light_maps,
-                              std::span<const LightSample> samples, std::uint64_t most) {
+void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                              std::uint64_t most) {
     const std::uint32_t now = std::uint32_t(job_rows_.size()); // the rows as they are at present
     job_rows_.insert(job_rows_.end(), baked_rows_.begin(), baked_rows_.end());
     std::uint64_t evaluations = 0;
     while (!waiting_.empty() && evaluations < most) {
-        const std::uint32_t node = waiting_.back();
+        const Piece& piece = pieces_[waiting_.back()];
         waiting_.pop_back();
-        const shared::NodeRow& row = light_maps.node_rows()[node];
-        jobs_.add(database.patches().nodes()[node], row, true);
-        finish_.add(database.patches().nodes()[node], row, false);
+        jobs_.add(piece.job, true);
+        finish_.add(piece.job, false);
         for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
-            const PairState state = database.static_state(node, sample);
-            if (!held_by_light_maps(samples[sample]) || !reaches(state))
+            if (!held_by_light_maps(samples[sample]))
                 continue;
-            jobs_.add_change((now + sample) | test_flag(state));
-            evaluations += texels_of(row);
+            const auto flag = test_flag(database, piece.nodes, sample);
+            if (!flag)
+                continue;
+            jobs_.add_change((now + sample) | *flag);
+            evaluations += piece.texels();
         }
-        evaluations += texels_of(row);
+        evaluations += piece.texels();
     }
 }
 
-Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& light_maps,
+Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
                           std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
                           bool static_maps_changed, gpu::FrameResources& resources) {
-    if (light_maps.counters().texels > device_.traits().max_texel_elements) {
+    if (light_maps.counters().texels + curved.points().size() > device_.traits().max_texel_elements) {
         forget();
         return {};
     }
@@ -141,13 +192,13 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
     const bool first = generation_ != database.generation();
     const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
                       find_new_strengths(samples, baked_rows_, rows, changed);
-    if (!same || !follow_strengths(database, light_maps, rows, changed)) {
+    if (!same || !follow_strengths(database, rows, changed)) {
         jobs_.clear();
         finish_.clear();
         job_rows_.clear();
-        SUNFLECK_TRY(start_anew(database, light_maps, rows, resources));
+        SUNFLECK_TRY(start_anew(database, light_maps, curved, rows, resources));
     }
-    bake_waiting(database, light_maps, samples, first ? most_evaluations_at_first : most_evaluations);
+    bake_waiting(database, samples, first ? most_evaluations_at_first : most_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(invocations);
     finish_.split(invocations);
@@ -157,6 +208,8 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
 Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter,
                               gpu::FrameResources& resources) {
     const gpu::ResourceId texels = graph.import_buffer(texels_);
+    points_.add_pass(graph);
+    curved_rows_.add_pass(graph);
     if (wipe_)
         graph.add_pass("baked light")
             .write(texels, gpu::Usage::transfer_destination)
@@ -171,12 +224,12 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     description.shader = "gi_module/many_light/baked_light.comp";
     description.bindings = {gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer,
                             gpu::BindingKind::storage_buffer, gpu::BindingKind::texel_buffer,
-                            gpu::BindingKind::storage_buffer};
+                            gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer};
     description.push_constant_bytes = sizeof(shared::LightMapConstants);
     description.specialization = {filter, maps.bits()};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const bake, pipelines_.compute(description));
     description.shader = "gi_module/many_light/baked_light_cells.comp";
-    description.bindings.assign(3, gpu::BindingKind::storage_buffer);
+    description.bindings.assign(4, gpu::BindingKind::storage_buffer);
     description.specialization = {};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const finish, pipelines_.compute(description));
 
@@ -199,11 +252,12 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     constants.jobs = std::uint32_t(jobs_.jobs().size());
     graph.add_pass("baked light")
         .read(graph.import_buffer(maps.static_texels()), gpu::Usage::texel_read)
+        .read(graph.import_buffer(points_.buffer()), gpu::Usage::storage_read)
         .write(sums, gpu::Usage::storage_read_write)
         .execute([this, bake, jobs, changes, rows, constants, dispatch, &maps](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::slice(jobs), gpu::Binding::slice(changes),
-                                             gpu::Binding::slice(rows), gpu::Binding::texels(maps.static_texels()),
-                                             gpu::Binding::buffer(sums_)};
+            const gpu::Binding bindings[] = {gpu::Binding::slice(jobs),   gpu::Binding::slice(changes),
+                                             gpu::Binding::slice(rows),   gpu::Binding::texels(maps.static_texels()),
+                                             gpu::Binding::buffer(sums_), gpu::Binding::buffer(points_.buffer())};
             SUNFLECK_TRY(context.resources.bind(context.commands, *bake, bindings));
             dispatch(context, *bake, constants);
             return {};
@@ -211,10 +265,11 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     constants.jobs = std::uint32_t(finish_.jobs().size());
     graph.add_pass("baked light")
         .read(sums, gpu::Usage::storage_read)
+        .read(graph.import_buffer(points_.buffer()), gpu::Usage::storage_read)
         .write(texels, gpu::Usage::storage_write)
         .execute([this, finish, finish_jobs, constants, dispatch](gpu::PassContext& context) -> Status {
             const gpu::Binding bindings[] = {gpu::Binding::slice(finish_jobs), gpu::Binding::buffer(sums_),
-                                             gpu::Binding::buffer(texels_)};
+                                             gpu::Binding::buffer(texels_), gpu::Binding::buffer(points_.buffer())};
             SUNFLECK_TRY(context.resources.bind(context.commands, *finish, bindings));
             dispatch(context, *finish, constants);
             return {};

@@ -6,15 +6,17 @@
 // about its corners exceed a share of the light. Pixels of smooth cells take their light from here, and the only
 // samples evaluated there are those that meet a mover (VisibilityDatabase::meets_mover): what the mover takes away is
 // the difference of the sample's visibility in the static and in the current shadow map. Pixels of rough cells are lit
-// as if nothing was baked.
+// as if nothing was baked. Curved surfaces have texels of their own (curved_charts.h), after those of the light maps.
 //
-// Baking is work of many frames, so much a frame; a patch that waits is rough. A sample that changed its strength is
-// subtracted and added, to the last bit, as in light maps.
+// Baking is work of many frames, so much a frame; a patch or chart that waits is rough. A sample that changed its
+// strength is subtracted and added, to the last bit, as in light maps.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
+#include "gi_module/many_light/curved_charts.h"
 #include "gi_module/many_light/light_map_jobs.h"
 #include "gi_module/many_light/light_maps.h"
+#include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -22,7 +24,7 @@ namespace sunfleck::gi {
 
 struct BakedLightCounters {
     std::uint64_t updates = 0; // samples added or subtracted at a patch in the last update
-    std::uint64_t waiting = 0; // patches
+    std::uint64_t waiting = 0; // patches and charts
 };
 
 class BakedLight {
@@ -30,10 +32,11 @@ public:
     static Result<std::unique_ptr<BakedLight>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
     // Follows the light maps, whose update comes first. Not in use afterwards if the device's texel buffers are too
-    // small for them. `static_maps_changed`: a static shadow map of a held sample is redrawn in this frame, and all is
-    // baked anew.
-    Status update(const VisibilityDatabase& database, const LightMaps& light_maps, std::span<const LightSample> samples,
-                  std::span<const shared::LightRow> rows, bool static_maps_changed, gpu::FrameResources& resources);
+    // small for them. `curved` are charts of the database's generation. `static_maps_changed`: a static shadow map of a
+    // held sample is redrawn in this frame, and all is baked anew.
+    Status update(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
+                  std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
+                  bool static_maps_changed, gpu::FrameResources& resources);
     // Nothing is baked, nor used until the next update: shadow maps do not hold what is needed.
     void forget();
     bool in_use() const { return in_use_; }
@@ -42,31 +45,46 @@ public:
     Status add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter, gpu::FrameResources& resources);
 
     // By texel of the light maps: irradiance, W/m2, of 16-bit floats; alpha 0 if the cell up to the next column and row
-    // is smooth.
+    // is smooth. Then those of the curved charts' points: alpha is the mean height of the cell, or
+    // shared::curved_rough.
     const gpu::Buffer& texels() const { return texels_; }
-    std::uint64_t memory_bytes() const { return sums_.size() + texels_.size(); }
+    // shared::CurvedChartRows, as texels of four floats.
+    const gpu::Buffer& curved_rows() const { return curved_rows_.buffer(); }
+    std::uint64_t memory_bytes() const {
+        return sums_.size() + texels_.size() + points_.buffer().size() + curved_rows_.buffer().size();
+    }
     const BakedLightCounters& counters() const { return counters_; }
 
 private:
     BakedLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
-    Status start_anew(const VisibilityDatabase& database, const LightMaps& light_maps,
+    // A patch, or a chart of a curved surface.
+    struct Piece {
+        shared::LightMapJob job;          // but for its changes
+        std::vector<std::uint32_t> nodes; // of the database, that it lies on
+
+        std::uint64_t texels() const { return std::uint64_t(job.columns) * job.rows; }
+    };
+    void find_pieces(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved);
+    Status start_anew(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
                       std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
-    bool follow_strengths(const VisibilityDatabase& database, const LightMaps& light_maps,
-                          std::span<const shared::LightRow> rows, std::span<const std::uint32_t> changed);
-    void bake_waiting(const VisibilityDatabase& database, const LightMaps& light_maps,
-                      std::span<const LightSample> samples, std::uint64_t most);
+    Status upload_charts(std::uint64_t first_texel, const CurvedCharts& curved, gpu::FrameResources& resources);
+    bool follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
+                          std::span<const std::uint32_t> changed);
+    void bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples, std::uint64_t most);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     gpu::Buffer sums_;   // fixed point, as in light maps
     gpu::Buffer texels_; // what is shown
+    UploadedBuffer points_, curved_rows_;
+    std::vector<Piece> pieces_;
     bool in_use_ = false;
     bool wipe_ = false; // all texels become rough in this frame
     std::uint64_t generation_ = 0;
     float fixed_point_ = 0.0f;
     std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be
     std::vector<shared::LightRow> job_rows_;   // those, then the new ones of samples whose strength changed
-    std::vector<std::uint32_t> waiting_;       // nodes, the next one last
+    std::vector<std::uint32_t> waiting_;       // pieces, the next one last
     LightMapJobs jobs_, finish_;               // sums; then cells
     BakedLightCounters counters_;
 };

@@ -1,12 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Baked light as pixels read it, and which cells between four texels are rough.
+#include "gi_module/many_light/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
 layout(set = 0, binding = 1) readonly buffer Sums { ivec4 sums[]; };
 layout(set = 0, binding = 2) writeonly buffer Texels { uvec2 texels[]; };
+layout(set = 0, binding = 3) readonly buffer Points { CurvedPoint points[]; };
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
 const float largest_half = 65504.0;
@@ -21,23 +23,54 @@ bool bends(vec3 before, vec3 here, vec3 after) {
     return any(greaterThan(abs(before - 2.0 * here + after), constants.roughness_limit * most + 2.0));
 }
 
+bool differ(vec3 a, vec3 b) {
+    return any(greaterThan(abs(a - b), constants.roughness_limit * max(a, b) + 2.0));
+}
+
+// Whether a texel of the map, or of the chart's surface, is there.
+bool exists(LightMapJob job, ivec2 texel) {
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(job.columns, job.rows))))
+        return false;
+    return job.first_point == no_points || points[job.first_point + uint(texel.y) * job.columns + uint(texel.x)].exists != 0u;
+}
+
 bool is_rough(LightMapJob job, ivec2 cell) {
-    const ivec2 last = ivec2(job.columns, job.rows) - 1;
     bool rough = false;
     for (int i = 0; i < 4; ++i) {
         const ivec2 texel = cell + ivec2(i & 1, i >> 1);
         const vec3 here = light_at(job, texel);
         for (int axis = 0; axis < 2; ++axis) {
             const ivec2 step = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
-            if (last[axis] == 1) { // the patch's only cell along this axis
-                const vec3 other = light_at(job, texel[axis] == 0 ? texel + step : texel - step);
-                rough = rough || any(greaterThan(abs(other - here), constants.roughness_limit * max(other, here) + 2.0));
-            } else if (texel[axis] > 0 && texel[axis] < last[axis]) {
+            const bool before = exists(job, texel - step), after = exists(job, texel + step);
+            if (before && after) {
                 rough = rough || bends(light_at(job, texel - step), here, light_at(job, texel + step));
+            } else if (job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u) {
+                // A curved surface's rim, or the patch's only cell along this axis.
+                rough = rough || differ(light_at(job, before ? texel - step : texel + step), here);
             }
         }
     }
     return rough;
+}
+
+float height_at(LightMapJob job, ivec2 texel) {
+    return dot(job.height, points[job.first_point + uint(texel.y) * job.columns + uint(texel.x)].position);
+}
+
+// The mean height of a curved surface's cell; curved_rough if it is not all there, or has a step.
+float cell_height(LightMapJob job, ivec2 cell) {
+    float low = 1e30, high = -1e30, sum = 0.0;
+    bool whole = true;
+    for (int i = 0; i < 4; ++i) {
+        const ivec2 corner = cell + ivec2(i & 1, i >> 1);
+        const bool there = exists(job, corner);
+        const float height = height_at(job, there ? corner : cell);
+        whole = whole && there;
+        low = min(low, height);
+        high = max(high, height);
+        sum += height;
+    }
+    return whole && high - low <= curved_cell_span * job.cell ? 0.25 * sum : curved_rough;
 }
 
 void main() {
@@ -51,8 +84,11 @@ void main() {
         const vec3 light = light_at(job, texel) / constants.fixed_point;
         const bool representable = all(lessThan(light, vec3(largest_half)));
         const bool rough = !representable || (inside && is_rough(job, texel));
+        float shown = rough ? 1.0 : 0.0;
+        if (job.first_point != no_points)
+            shown = rough || !inside ? curved_rough : cell_height(job, texel);
         texels[job.first_texel + i] =
             uvec2(packHalf2x16(min(light.rg, vec2(largest_half))),
-                  packHalf2x16(vec2(min(light.b, largest_half), rough ? 1.0 : 0.0)));
+                  packHalf2x16(vec2(min(light.b, largest_half), shown)));
     }
 }

@@ -5,6 +5,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
+#include "gi_module/many_light/curved_charts_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
@@ -27,6 +28,7 @@ layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
 layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
 layout(set = 0, binding = 13) uniform samplerBuffer chart_vectors; // the charts again: a CPU device reads texels faster
+layout(set = 0, binding = 14) uniform samplerBuffer curved_rows; // CurvedChartRows
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 // The chart without its cells.
@@ -39,8 +41,7 @@ SurfaceChart chart_plane_at(uint i) {
     return chart;
 }
 
-uint find_node(uint surface, vec3 position, vec3 geometric_normal) {
-    const SurfaceInstance instance = instances[surface_row(surface)];
+uint find_node(SurfaceInstance instance, vec3 position, vec3 geometric_normal) {
     uint found = no_node;
     for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && found == no_node; ++i)
         found = on_chart(chart_plane_at(i), position, geometric_normal) ? i : no_node;
@@ -79,6 +80,24 @@ vec4 baked_light(NodeRow row, TexelPlace place) {
     return vec4(mix(low, high, place.weight.y), corner.a);
 }
 
+// The same on a curved surface, in the chart that its normal looks to. Rough, too, what is not on the chart's surface.
+vec4 curved_light(uint first_chart, vec3 position, vec3 geometric_normal) {
+    const uint direction = curved_direction(geometric_normal);
+    const int chart = int(first_chart + direction) * 2;
+    const vec4 chart_place = texelFetch(curved_rows, chart), size = texelFetch(curved_rows, chart + 1);
+    const vec3 point = curved_place(direction, position) - chart_place.xyz;
+    const vec2 texel = point.xy * chart_place.w;
+    const vec2 corner = clamp(floor(texel), vec2(0.0), max(size.xy - 2.0, 0.0));
+    const vec2 weight = texel - corner;
+    const int first = int(size.z) + int(corner.y) * int(size.x) + int(corner.x), below = first + int(size.x);
+    const vec4 light = texelFetch(baked_texels, first);
+    const vec3 low = mix(light.rgb, texelFetch(baked_texels, first + 1).rgb, weight.x);
+    const vec3 high = mix(texelFetch(baked_texels, below).rgb, texelFetch(baked_texels, below + 1).rgb, weight.x);
+    const bool found = size.x > 0.0 && abs(weight.x - 0.5) <= 0.5 && abs(weight.y - 0.5) <= 0.5 &&
+                       abs(point.z * size.w - light.a) <= curved_point_span * size.w / chart_place.w;
+    return vec4(mix(low, high, weight.y), found ? 0.0 : 1.0);
+}
+
 void main() {
     const uint entry = gl_WorkGroupID.x * group_pixels + gl_LocalInvocationID.x;
     ivec2 pixel;
@@ -104,7 +123,9 @@ void main() {
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
         const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
         const vec3 geometric_normal = unpack_normal(normals.g);
-        node = find_node(surface, position, geometric_normal);
+        const SurfaceInstance instance = instances[surface_row(surface)];
+        node = find_node(instance, position, geometric_normal);
+        bool curved = false; // or shaded so
         if (light_maps != 0 && node != no_node) {
             const NodeRow row = node_rows[node];
             if (row.first_texel != no_light_map) {
@@ -115,12 +136,21 @@ void main() {
                 bool unshadowed = !bent && light.a != 0.0;
                 node |= bent ? node_bent : unshadowed ? 0u : node_baked;
                 sum = bent ? vec3(0.0) : light.rgb;
+                curved = bent && baked != 0 && instance.first_curved_chart != no_node;
                 // A loop of one turn at most: unlike a branch, a CPU device leaves it out where no pixel needs it.
                 while (unshadowed) {
                     sum = light_map(row, place);
                     unshadowed = false;
                 }
+            } else {
+                curved = baked != 0 && instance.first_curved_chart != no_node;
             }
+        }
+        while (curved) {
+            const vec4 light = curved_light(instance.first_curved_chart, position, geometric_normal);
+            node |= light.a == 0.0 ? node_baked : 0u;
+            sum = light.a == 0.0 ? light.rgb : vec3(0.0);
+            curved = false;
         }
     }
     if (from_list == 0)

@@ -17,15 +17,20 @@ void LightMapJobs::clear() {
     changes_.clear();
 }
 
-void LightMapJobs::add(const SurfacePatch& patch, const shared::NodeRow& row, bool clear) {
+shared::LightMapJob LightMapJobs::job_of(const SurfacePatch& patch, const shared::NodeRow& row) {
     shared::LightMapJob job{};
     job.corner = vec4(vec3(patch.corners[0]), 1.0f);
     job.u_edge = vec4(vec3(patch.corners[1] - patch.corners[0]), 0.0f);
     job.v_edge = vec4(vec3(patch.corners[3] - patch.corners[0]), 0.0f);
     job.normal = vec4(vec3(patch.normal), 0.0f);
+    job.first_point = shared::no_points;
     job.first_texel = row.first_texel;
     job.columns = row.columns;
     job.rows = row.rows;
+    return job;
+}
+
+void LightMapJobs::add(shared::LightMapJob job, bool clear) {
     job.clear = clear;
     job.first_change = std::uint32_t(changes_.size());
     jobs_.push_back(job);

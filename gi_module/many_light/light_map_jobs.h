@@ -16,7 +16,9 @@ class LightMapJobs {
 public:
     void clear();
     // A job for a patch's whole map: what is there is cleared or kept. Changes added next are its own.
-    void add(const SurfacePatch& patch, const shared::NodeRow& row, bool clear);
+    void add(const SurfacePatch& patch, const shared::NodeRow& row, bool clear) { add(job_of(patch, row), clear); }
+    void add(shared::LightMapJob job, bool clear);
+    static shared::LightMapJob job_of(const SurfacePatch& patch, const shared::NodeRow& row);
     void add_change(std::uint32_t change) {
         changes_.push_back(change);
         ++jobs_.back().change_count;

@@ -15,6 +15,11 @@ constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 lea
 
 } // namespace
 
+float light_map_texel(float bound) {
+    const float radius = bound > 0.0f ? 1.0f / std::sqrt(bound) : 1.0f;
+    return std::clamp(radius / texels_per_radius, smallest_texel, largest_texel);
+}
+
 Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<LightMaps> maps(new LightMaps(device));
     gpu::ComputeDescription description;
@@ -117,8 +122,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
             bound = std::max(bound, rows[i].position_bound.w);
         }
     fixed_point_ = most > 0.0 ? float(double(highest_sum) / most) : 1.0f;
-    const float radius = bound > 0.0f ? 1.0f / std::sqrt(bound) : 1.0f;
-    SUNFLECK_TRY(lay_out(database, std::clamp(radius / texels_per_radius, smallest_texel, largest_texel), resources));
+    SUNFLECK_TRY(lay_out(database, light_map_texel(bound), resources));
     for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
         if (node_rows_[node].first_texel == shared::no_light_map)
             continue;

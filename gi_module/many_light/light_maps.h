@@ -15,6 +15,9 @@
 
 namespace sunfleck::gi {
 
+// The side of a texel, m, where samples' geometry terms are bounded by `bound`, 1/m2 (0: by nothing).
+float light_map_texel(float bound);
+
 struct LightMapCounters {
     std::uint64_t updates = 0; // single contributions added or subtracted in the last update
     std::uint64_t texels = 0;

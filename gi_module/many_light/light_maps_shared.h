@@ -3,13 +3,17 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// What happens to a part of one patch's light map: its texels are cleared or kept, then samples are added and
-// subtracted.
+// What happens to a part of one patch's light map, or of a chart of a curved surface (baked light): its texels are
+// cleared or kept, then samples are added and subtracted.
 struct LightMapJob {
-    vec4 corner; // world space
+    vec4 corner; // flat: world space
     vec4 u_edge;
     vec4 v_edge;
     vec4 normal;
+    vec4 height;      // curved: what of a point's place counts as height, and what is added
+    uint first_point; // curved: of its SurfacePoints; flat: no_points
+    float cell;       // curved: side of a cell in units of height
+    uint unused[2];
     uint first_texel;
     uint columns;
     uint rows;
@@ -19,6 +23,8 @@ struct LightMapJob {
     uint first; // which of its texels: large maps with many changes are several jobs
     uint count;
 };
+
+SHARED_CONSTANT uint no_points = 0xffffffffu;
 
 // A change is a sample's row, and perhaps:
 SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // subtract it instead of adding it
@@ -35,6 +41,6 @@ struct LightMapConstants {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::LightMapJob) == 96);
+static_assert(sizeof(sunfleck::shared::LightMapJob) == 128);
 #endif
 #endif

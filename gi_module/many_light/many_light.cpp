@@ -30,7 +30,7 @@ ManyLight::~ManyLight() {
     device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
-Status ManyLight::update(VisibilityDatabase& database, const scene::GpuScene& scene,
+Status ManyLight::update(VisibilityDatabase& database, const CurvedCharts& curved, const scene::GpuScene& scene,
                          std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
                          const ManyLightOptions& options, std::uint64_t serial, std::uint64_t completed_serial,
                          gpu::FrameResources& resources) {
@@ -40,8 +40,8 @@ Status ManyLight::update(VisibilityDatabase& database, const scene::GpuScene& sc
     if (options.light_maps && options.visibility)
         SUNFLECK_TRY(light_maps_->update(database, samples, rows, resources));
     if (options.baked_light && options.light_maps && options.visibility && options.shadows)
-        SUNFLECK_TRY(
-            baked_light_->update(database, *light_maps_, samples, rows, options.static_maps_changed, resources));
+        SUNFLECK_TRY(baked_light_->update(database, *light_maps_, curved, samples, rows, options.static_maps_changed,
+                                          resources));
     else
         baked_light_->forget();
     shared::NodeRow bare{};
@@ -63,7 +63,7 @@ Status ManyLight::update(VisibilityDatabase& database, const scene::GpuScene& sc
     mover_count_ = std::uint32_t(spheres.size());
     spheres.resize(std::clamp<std::size_t>(spheres.size(), 1, shared::most_movers));
     SUNFLECK_ASSIGN(movers_, resources.upload(std::span<const vec4>(spheres)));
-    return tables_.update(device_, database, scene, node_rows_, changed, resources);
+    return tables_.update(device_, database, curved, scene, node_rows_, changed, resources);
 }
 
 Status ManyLight::make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,

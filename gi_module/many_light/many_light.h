@@ -47,9 +47,10 @@ public:
     ~ManyLight();
 
     // Follows the database; call once a frame before add_passes.
-    Status update(VisibilityDatabase& database, const scene::GpuScene& scene, std::span<const LightSample> samples,
-                  std::span<const shared::LightRow> rows, const ManyLightOptions& options, std::uint64_t serial,
-                  std::uint64_t completed_serial, gpu::FrameResources& resources);
+    Status update(VisibilityDatabase& database, const CurvedCharts& curved, const scene::GpuScene& scene,
+                  std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
+                  const ManyLightOptions& options, std::uint64_t serial, std::uint64_t completed_serial,
+                  gpu::FrameResources& resources);
     // Adds the frame's passes, which write all of `output`. `map_ages`: by sample, frames that its map is out of date.
     Status add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                       const ShadowMaps& maps, std::span<const LightBatch> batches,

@@ -64,8 +64,9 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                     pipeline("gather.comp",
                              {uniform_buffer, sampled_image, sampled_image, sampled_image, storage_buffer,
                               storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_buffer, texel_buffer, texel_buffer},
+                              storage_buffer, storage_buffer, texel_buffer, texel_buffer, texel_buffer},
                              {stage == Stage::repair, maps, frame.baked}));
+    const gpu::Buffer& curved_rows = frame.baked ? baked_light_->curved_rows() : unused_texels_;
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution pixels");
     if (stage == Stage::repair)
         pass.read(frame.commands, gpu::Usage::indirect_read);
@@ -76,10 +77,11 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
         pass.read(frame.graph.import_buffer(*table), gpu::Usage::storage_read);
     pass.read(frame.graph.import_buffer(tables_.charts()), gpu::Usage::texel_read)
         .read(frame.graph.import_buffer(baked_light_->texels()), gpu::Usage::texel_read)
+        .read(frame.graph.import_buffer(curved_rows), gpu::Usage::texel_read)
         .write(frame.pixels, gpu::Usage::storage_read_write)
         .write(frame.nodes, gpu::Usage::storage_write)
         .write(frame.sums, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, camera = frame.camera, g_buffer = frame.g_buffer,
+        .execute([this, kernel, stage, &curved_rows, camera = frame.camera, g_buffer = frame.g_buffer,
                   constants = frame.constants](gpu::PassContext& context) -> Status {
             const gpu::Binding bindings[] = {
                 gpu::Binding::slice(camera),
@@ -95,7 +97,8 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                 gpu::Binding::buffer(sums_),
                 gpu::Binding::buffer(light_maps_->texels()),
                 gpu::Binding::texels(baked_light_->texels()),
-                gpu::Binding::texels(tables_.charts())};
+                gpu::Binding::texels(tables_.charts()),
+                gpu::Binding::texels(curved_rows)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             dispatch(context, stage, Phase::plain, shared::command_groups, constants.group_count);

@@ -42,9 +42,9 @@ void UploadedBuffer::add_pass(gpu::FrameGraph& graph) {
     pieces_.clear();
 }
 
-Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, const scene::GpuScene& scene,
-                             std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
-                             gpu::FrameResources& resources) {
+Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, const CurvedCharts& curved,
+                             const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows,
+                             bool node_rows_changed, gpu::FrameResources& resources) {
     const SurfacePatches& patches = database.patches();
     const bool fresh = generation_ != database.generation();
     generation_ = database.generation();
@@ -73,6 +73,7 @@ Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, 
             row = *known;
         else
             row.first_box_node = database.mover_node(item.entity);
+        row.first_curved_chart = item.is_static ? curved.first_chart(item.entity) : shared::no_node;
     }
     SUNFLECK_ASSIGN(instances_, resources.upload(std::span<const shared::SurfaceInstance>(instances)));
     return {};

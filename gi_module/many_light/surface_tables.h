@@ -4,6 +4,7 @@
 
 #include "engine/gpu/frame_graph.h"
 #include "engine/scene/gpu_scene.h"
+#include "gi_module/many_light/curved_charts.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -35,8 +36,9 @@ class SurfaceTables {
 public:
     // Uploads what changed in the database. `node_rows` are by node; a change of their number or of the database's
     // generation uploads all.
-    Status update(gpu::Device& device, VisibilityDatabase& database, const scene::GpuScene& scene,
-                  std::span<const shared::NodeRow> node_rows, bool node_rows_changed, gpu::FrameResources& resources);
+    Status update(gpu::Device& device, VisibilityDatabase& database, const CurvedCharts& curved,
+                  const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
+                  gpu::FrameResources& resources);
     void add_passes(gpu::FrameGraph& graph);
 
     const gpu::UploadSlice& instances() const { return instances_; } // SurfaceInstance by instance row, of this frame

@@ -13,7 +13,9 @@ struct SurfaceInstance {
     uint chart_count;
     uint first_box_node; // for what lies in no chart; no_node if there is none
     uint octants;        // 1: eight box nodes, by the octant about `centre`
-    vec4 centre;
+    vec3 centre;
+    uint first_curved_chart; // of baked light (curved_charts.h); no_node if there is none. Filled in by whoever uploads
+                             // it
 };
 
 // A flat rectangle: place (u, v) in [0, 1]^2 = (dot(u_axis, (p, 1)), dot(v_axis, (p, 1))).

@@ -99,7 +99,7 @@ void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, std:
     instance.chart_count = std::uint32_t(charts_.size()) - instance.first_chart;
     if (charted < mesh.area * (1.0 - 1e-6))
         add_boxes(entity, mesh, body, instance);
-    instances_[entity] = instance;
+    instances_[entity] = {instance, mesh.closed};
 }
 
 void SurfacePatches::add_chart(ecs::Entity entity, const FlatMesh& mesh, const PlanarFace& face, bool reversed,
@@ -149,7 +149,7 @@ void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::ui
     bounds.maximum += vec3(1e-4f);
     const vec3 centre = bounds.centre();
     instance.first_box_node = std::uint32_t(nodes_.size());
-    instance.centre = vec4(centre, 0.0f);
+    instance.centre = centre;
     instance.octants = double(glm::length(bounds.extent())) > octants_from ? 1 : 0;
     for (int octant = 0; octant < (instance.octants ? 8 : 1); ++octant) {
         Bounds part = bounds;
@@ -213,7 +213,12 @@ void SurfacePatches::finish() {
 
 const shared::SurfaceInstance* SurfacePatches::instance(ecs::Entity entity) const {
     const auto found = instances_.find(entity);
-    return found == instances_.end() ? nullptr : &found->second;
+    return found == instances_.end() ? nullptr : &found->second.row;
+}
+
+bool SurfacePatches::is_closed(ecs::Entity entity) const {
+    const auto found = instances_.find(entity);
+    return found != instances_.end() && found->second.closed;
 }
 
 std::uint32_t SurfacePatches::node_at(ecs::Entity entity, vec3 position, vec3 geometric_normal) const {

@@ -70,6 +70,8 @@ public:
     const std::vector<std::uint32_t>& cells() const { return cells_; }
     // Nothing if the entity is not static geometry.
     const shared::SurfaceInstance* instance(ecs::Entity entity) const;
+    // Whether the entity's mesh encloses a volume; if not, it can be seen from behind.
+    bool is_closed(ecs::Entity entity) const;
 
     // The node at a point of a surface, as shaders find it; no_node if there is none.
     std::uint32_t node_at(ecs::Entity entity, vec3 position, vec3 geometric_normal) const;
@@ -86,7 +88,11 @@ private:
     std::uint32_t roots_ = 0;
     std::vector<shared::SurfaceChart> chart_rows_;
     std::vector<std::uint32_t> cells_;
-    std::unordered_map<ecs::Entity, shared::SurfaceInstance> instances_;
+    struct Instance {
+        shared::SurfaceInstance row;
+        bool closed = false;
+    };
+    std::unordered_map<ecs::Entity, Instance> instances_;
 };
 
 } // namespace sunfleck::gi
