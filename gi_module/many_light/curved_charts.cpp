@@ -10,9 +10,9 @@
 namespace sunfleck::gi {
 namespace {
 
-// Small things change their light within their size: so many texels along them, but no finer than a share of the side
-// that large surfaces have.
-constexpr float texels_per_extent = 32.0f, finest_share = 0.125f;
+// Small things change their light within their size, thin ones within their thickness: so many texels along and across
+// them, but no finer than a share of the side that large surfaces have.
+constexpr float texels_along = 32.0f, texels_across = 16.0f, finest_share = 0.125f;
 constexpr std::uint32_t most_columns = 256;
 constexpr float outside = 1.5f;     // texels: so far beyond its rim a surface still gives its nearest point
 constexpr float same_layer = 0.1f;  // texels: triangles that meet give the same height within this
@@ -28,7 +28,6 @@ struct Triangle {
 struct CurvedMesh {
     ecs::Entity entity;
     std::vector<Triangle> triangles;
-    Bounds bounds;
 };
 
 bool has_normal_map(const ecs::Registry& registry, ecs::Entity entity) {
@@ -66,8 +65,6 @@ CurvedMesh curved_part(ecs::Entity entity, const scene::Mesh& mesh, const mat4& 
         if (node == shared::no_node || (patches.nodes()[node].planar && is_flat_shaded(triangle)))
             continue;
         part.triangles.push_back(triangle);
-        for (const vec3& corner : triangle.corners)
-            part.bounds.add(corner);
     }
     return part;
 }
@@ -99,11 +96,14 @@ Grid find_facing(const CurvedMesh& mesh, bool closed, std::uint32_t direction) {
     return grid;
 }
 
-void lay_out(Grid& grid, float texel) {
+void lay_out(Grid& grid, float texel_side) {
     if (grid.triangles.empty())
         return;
     const vec2 extent(grid.high - grid.low);
-    grid.texel = std::max(texel, std::max(extent.x, extent.y) / float(most_columns - 2 * margin - 2));
+    const float longer = std::max(extent.x, extent.y), shorter = std::min(extent.x, extent.y);
+    const float texel =
+        std::clamp(std::min(longer / texels_along, shorter / texels_across), finest_share * texel_side, texel_side);
+    grid.texel = std::max(texel, longer / float(most_columns - 2 * margin - 2));
     const auto texels = [&](float side) { return std::uint32_t(std::ceil(side / grid.texel)) + 1 + 2 * margin; };
     grid.columns = texels(extent.x);
     grid.rows = texels(extent.y);
@@ -245,11 +245,8 @@ void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes
     do {
         total = 0;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const vec3 extent = parts[i].bounds.extent();
-            const float texel = std::clamp(std::max({extent.x, extent.y, extent.z}) / texels_per_extent,
-                                           finest_share * texel_side, texel_side);
             for (Grid& grid : grids[i]) {
-                lay_out(grid, texel);
+                lay_out(grid, texel_side);
                 total += std::uint64_t(grid.columns) * grid.rows;
             }
         }
