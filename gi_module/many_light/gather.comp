@@ -18,34 +18,51 @@ layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform usampler2D surface_image;
-layout(set = 0, binding = 4) readonly buffer Instances { SurfaceInstance instances[]; };
-layout(set = 0, binding = 5) readonly buffer Charts { SurfaceChart charts[]; };
-layout(set = 0, binding = 6) readonly buffer Cells { uint cells[]; };
-layout(set = 0, binding = 7) readonly buffer Nodes { NodeRow node_rows[]; };
+// Tables as texels, which a CPU device reads faster than storage buffers; of uints, since floats may lose their bits.
+layout(set = 0, binding = 4) uniform usamplerBuffer instances; // SurfaceInstances
+layout(set = 0, binding = 5) uniform usamplerBuffer charts;    // SurfaceCharts
+layout(set = 0, binding = 6) uniform usamplerBuffer cells;
+layout(set = 0, binding = 7) uniform usamplerBuffer node_rows; // NodeRows
 layout(set = 0, binding = 8) buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 9) writeonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
 layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
-layout(set = 0, binding = 13) uniform samplerBuffer chart_vectors; // the charts again: a CPU device reads texels faster
-layout(set = 0, binding = 14) uniform samplerBuffer curved_rows; // CurvedChartRows
+layout(set = 0, binding = 13) uniform samplerBuffer curved_rows; // CurvedChartRows
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 // The chart without its cells.
 SurfaceChart chart_plane_at(uint i) {
     SurfaceChart chart;
     const int first = int(i) * 4;
-    chart.plane = texelFetch(chart_vectors, first);
-    chart.u_axis = texelFetch(chart_vectors, first + 1);
-    chart.v_axis = texelFetch(chart_vectors, first + 2);
+    chart.plane = uintBitsToFloat(texelFetch(charts, first));
+    chart.u_axis = uintBitsToFloat(texelFetch(charts, first + 1));
+    chart.v_axis = uintBitsToFloat(texelFetch(charts, first + 2));
     return chart;
+}
+
+SurfaceInstance instance_at(uint i) {
+    const uvec4 numbers = texelFetch(instances, int(i) * 2), rest = texelFetch(instances, int(i) * 2 + 1);
+    return SurfaceInstance(numbers.x, numbers.y, numbers.z, numbers.w, uintBitsToFloat(rest.xyz), rest.w);
+}
+
+NodeRow node_row_at(uint i) {
+    const uvec4 numbers = texelFetch(node_rows, int(i) * 2 + 1);
+    return NodeRow(uintBitsToFloat(texelFetch(node_rows, int(i) * 2)), numbers.x, numbers.y, numbers.z, numbers.w);
 }
 
 uint find_node(SurfaceInstance instance, vec3 position, vec3 geometric_normal) {
     uint found = no_node;
     for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && found == no_node; ++i)
         found = on_chart(chart_plane_at(i), position, geometric_normal) ? i : no_node;
-    return found != no_node ? cells[chart_cell(charts[found], position)] : box_node(instance, position);
+    if (found == no_node)
+        return box_node(instance, position);
+    SurfaceChart chart = chart_plane_at(found);
+    const uvec4 grid = texelFetch(charts, int(found) * 4 + 3);
+    chart.first_cell = grid.x;
+    chart.columns = grid.y;
+    chart.rows = grid.z;
+    return texelFetch(cells, int(chart_cell(chart, position))).r;
 }
 
 // Where a point lies in a patch's grid of texels.
@@ -123,11 +140,11 @@ void main() {
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
         const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
         const vec3 geometric_normal = unpack_normal(normals.g);
-        const SurfaceInstance instance = instances[surface_row(surface)];
+        const SurfaceInstance instance = instance_at(surface_row(surface));
         node = find_node(instance, position, geometric_normal);
         bool curved = false; // or shaded so
         if (light_maps != 0 && node != no_node) {
-            const NodeRow row = node_rows[node];
+            const NodeRow row = node_row_at(node);
             if (row.first_texel != no_light_map) {
                 const TexelPlace place = texel_place(row, position);
                 const vec3 bend = unpack_normal(normals.r) - geometric_normal;

@@ -62,9 +62,9 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
     const bool maps = frame.options.light_maps && frame.options.visibility;
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
                     pipeline("gather.comp",
-                             {uniform_buffer, sampled_image, sampled_image, sampled_image, storage_buffer,
-                              storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_buffer, texel_buffer, texel_buffer, texel_buffer},
+                             {uniform_buffer, sampled_image, sampled_image, sampled_image, texel_buffer, texel_buffer,
+                              texel_buffer, texel_buffer, storage_buffer, storage_buffer, storage_buffer,
+                              storage_buffer, texel_buffer, texel_buffer},
                              {stage == Stage::repair, maps, frame.baked}));
     const gpu::Buffer& curved_rows = frame.baked ? baked_light_->curved_rows() : unused_texels_;
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution pixels");
@@ -73,11 +73,10 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
     pass.read(frame.g_buffer.depth, gpu::Usage::sampled)
         .read(frame.g_buffer.normals, gpu::Usage::sampled)
         .read(frame.g_buffer.surface, gpu::Usage::sampled);
-    for (const gpu::Buffer* table : {&tables_.charts(), &tables_.cells(), &tables_.nodes(), &light_maps_->texels()})
-        pass.read(frame.graph.import_buffer(*table), gpu::Usage::storage_read);
-    pass.read(frame.graph.import_buffer(tables_.charts()), gpu::Usage::texel_read)
-        .read(frame.graph.import_buffer(baked_light_->texels()), gpu::Usage::texel_read)
-        .read(frame.graph.import_buffer(curved_rows), gpu::Usage::texel_read)
+    for (const gpu::Buffer* table : {&tables_.instances(), &tables_.charts(), &tables_.cells(), &tables_.nodes(),
+                                     &baked_light_->texels(), &curved_rows})
+        pass.read(frame.graph.import_buffer(*table), gpu::Usage::texel_read);
+    pass.read(frame.graph.import_buffer(light_maps_->texels()), gpu::Usage::storage_read)
         .write(frame.pixels, gpu::Usage::storage_read_write)
         .write(frame.nodes, gpu::Usage::storage_write)
         .write(frame.sums, gpu::Usage::storage_write)
@@ -88,16 +87,15 @@ Status ManyLight::add_gather(const Frame& frame, Stage stage) {
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_),
-                gpu::Binding::slice(tables_.instances()),
-                gpu::Binding::buffer(tables_.charts()),
-                gpu::Binding::buffer(tables_.cells()),
-                gpu::Binding::buffer(tables_.nodes()),
+                gpu::Binding::texels(tables_.instances()),
+                gpu::Binding::texels(tables_.charts()),
+                gpu::Binding::texels(tables_.cells()),
+                gpu::Binding::texels(tables_.nodes()),
                 gpu::Binding::buffer(pixels_),
                 gpu::Binding::buffer(nodes_),
                 gpu::Binding::buffer(sums_),
                 gpu::Binding::buffer(light_maps_->texels()),
                 gpu::Binding::texels(baked_light_->texels()),
-                gpu::Binding::texels(tables_.charts()),
                 gpu::Binding::texels(curved_rows)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);

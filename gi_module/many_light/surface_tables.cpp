@@ -1,5 +1,7 @@
 #include "gi_module/many_light/surface_tables.h"
 
+#include <cstring>
+
 namespace sunfleck::gi {
 
 Result<bool> UploadedBuffer::reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name,
@@ -52,13 +54,15 @@ Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, 
         const auto charts = std::as_bytes(std::span(patches.chart_rows()));
         const auto cells = std::as_bytes(std::span(patches.cells()));
         SUNFLECK_TRY(charts_.reserve(device, resources, "surface charts", std::max<std::size_t>(charts.size(), 1),
-                                     VK_FORMAT_R32G32B32A32_SFLOAT));
-        SUNFLECK_TRY(cells_.reserve(device, resources, "surface cells", cells.size()));
+                                     VK_FORMAT_R32G32B32A32_UINT));
+        SUNFLECK_TRY(cells_.reserve(device, resources, "surface cells", std::max<std::size_t>(cells.size(), 4),
+                                    VK_FORMAT_R32_UINT));
         SUNFLECK_TRY(charts_.write(resources, 0, charts));
         SUNFLECK_TRY(cells_.write(resources, 0, cells));
     }
     SUNFLECK_ASSIGN(const bool nodes_grew,
-                    nodes_.reserve(device, resources, "surface nodes", std::as_bytes(node_rows).size()));
+                    nodes_.reserve(device, resources, "surface nodes", std::as_bytes(node_rows).size(),
+                                   VK_FORMAT_R32G32B32A32_UINT));
     if (fresh || nodes_grew || node_rows_changed)
         SUNFLECK_TRY(nodes_.write(resources, 0, std::as_bytes(node_rows)));
     SUNFLECK_ASSIGN(const bool rows_grew, rows_.reserve(device, resources, "visibility rows",
@@ -75,8 +79,19 @@ Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, 
             row.first_box_node = database.mover_node(item.entity);
         row.first_curved_chart = item.is_static ? curved.first_chart(item.entity) : shared::no_node;
     }
-    SUNFLECK_ASSIGN(instances_, resources.upload(std::span<const shared::SurfaceInstance>(instances)));
-    return {};
+    return upload_instances(device, std::move(instances), resources);
+}
+
+Status SurfaceTables::upload_instances(gpu::Device& device, std::vector<shared::SurfaceInstance> rows,
+                                       gpu::FrameResources& resources) {
+    const auto bytes = std::as_bytes(std::span(rows));
+    SUNFLECK_ASSIGN(const bool grew, instances_.reserve(device, resources, "surface instances", bytes.size(),
+                                                        VK_FORMAT_R32G32B32A32_UINT));
+    if (!grew && rows.size() == instance_rows_.size() &&
+        std::memcmp(rows.data(), instance_rows_.data(), bytes.size()) == 0)
+        return {};
+    instance_rows_ = std::move(rows);
+    return instances_.write(resources, 0, std::as_bytes(std::span(instance_rows_)));
 }
 
 // Neighbouring dirty rows travel together.
@@ -98,12 +113,13 @@ Status SurfaceTables::upload_rows(VisibilityDatabase& database, bool all, gpu::F
 }
 
 void SurfaceTables::add_passes(gpu::FrameGraph& graph) {
-    for (UploadedBuffer* table : {&charts_, &cells_, &nodes_, &rows_})
+    for (UploadedBuffer* table : {&instances_, &charts_, &cells_, &nodes_, &rows_})
         table->add_pass(graph);
 }
 
 std::uint64_t SurfaceTables::memory_bytes() const {
-    return charts_.buffer().size() + cells_.buffer().size() + nodes_.buffer().size() + rows_.buffer().size();
+    return instances_.buffer().size() + charts_.buffer().size() + cells_.buffer().size() + nodes_.buffer().size() +
+           rows_.buffer().size();
 }
 
 } // namespace sunfleck::gi

@@ -41,7 +41,8 @@ public:
                   gpu::FrameResources& resources);
     void add_passes(gpu::FrameGraph& graph);
 
-    const gpu::UploadSlice& instances() const { return instances_; } // SurfaceInstance by instance row, of this frame
+    // Storage buffers, and texel buffers of uints.
+    const gpu::Buffer& instances() const { return instances_.buffer(); } // SurfaceInstance by instance row
     const gpu::Buffer& charts() const { return charts_.buffer(); }
     const gpu::Buffer& cells() const { return cells_.buffer(); }
     const gpu::Buffer& nodes() const { return nodes_.buffer(); }
@@ -51,8 +52,11 @@ public:
 private:
     Status upload_rows(VisibilityDatabase& database, bool all, gpu::FrameResources& resources);
 
-    UploadedBuffer charts_, cells_, nodes_, rows_;
-    gpu::UploadSlice instances_;
+    Status upload_instances(gpu::Device& device, std::vector<shared::SurfaceInstance> rows,
+                            gpu::FrameResources& resources);
+
+    UploadedBuffer instances_, charts_, cells_, nodes_, rows_;
+    std::vector<shared::SurfaceInstance> instance_rows_; // uploaded
     std::uint64_t generation_ = 0;
 };
 
