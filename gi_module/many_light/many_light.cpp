@@ -67,13 +67,13 @@ Status ManyLight::update(VisibilityDatabase& database, const CurvedCharts& curve
 }
 
 Status ManyLight::make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
-                              gpu::FrameResources& resources) {
+                              gpu::FrameResources& resources, VkFormat texel_format) {
     if (buffer && buffer.size() >= bytes)
         return {};
     if (buffer)
         resources.retire(std::move(buffer));
     SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device_, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage,
-                                                          gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+                                                          gpu::MemoryUse::device, texel_format}));
     return {};
 }
 
@@ -83,7 +83,8 @@ Status ManyLight::make_buffers(const shared::ManyLightConstants& constants, gpu:
     SUNFLECK_TRY(make_buffer(pixels_, "pixels of groups", pixels * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(nodes_, "nodes of groups", pixels * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(slots_, "slots of groups", pixels * 4, 0, resources));
-    SUNFLECK_TRY(make_buffer(sums_, "sums of groups", pixels * 16, 0, resources));
+    SUNFLECK_TRY(make_buffer(sums_, "sums of groups", pixels * 16, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, resources,
+                             VK_FORMAT_R32G32B32A32_SFLOAT));
     SUNFLECK_TRY(make_buffer(entries_, "lists of groups", groups * constants.list_stride * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(counts_, "list lengths", groups * sizeof(shared::GroupCounts), 0, resources));
     SUNFLECK_TRY(make_buffer(cell_masks_, "repair masks",

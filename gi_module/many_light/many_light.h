@@ -74,7 +74,7 @@ private:
     ManyLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
     Status make_buffers(const shared::ManyLightConstants& constants, gpu::FrameResources& resources);
     Status make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
-                       gpu::FrameResources& resources);
+                       gpu::FrameResources& resources, VkFormat texel_format = VK_FORMAT_UNDEFINED);
     Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<gpu::BindingKind> bindings,
                                           std::vector<std::uint32_t> specialization);
     Status add_gather(const Frame& frame, Stage stage);

@@ -274,13 +274,13 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, Phase phase, const 
 
 Status ManyLight::add_reconstruction(const Frame& frame) {
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("reconstruct.comp",
-                                                          {uniform_buffer, sampled_image, sampled_image, storage_buffer,
+                                                          {uniform_buffer, sampled_image, sampled_image, texel_buffer,
                                                            storage_image, storage_buffer},
                                                           {frame.options.scale}));
     frame.graph.add_pass("reconstruction")
         .read(frame.g_buffer.depth, gpu::Usage::sampled)
         .read(frame.g_buffer.normals, gpu::Usage::sampled)
-        .read(frame.sums, gpu::Usage::storage_read)
+        .read(frame.sums, gpu::Usage::texel_read)
         .write(frame.output, gpu::Usage::storage_write)
         .write(frame.cell_masks, gpu::Usage::storage_write)
         .execute([this, kernel, camera = frame.camera, g_buffer = frame.g_buffer, output = frame.output,
@@ -289,7 +289,7 @@ Status ManyLight::add_reconstruction(const Frame& frame) {
                 gpu::Binding::slice(camera),
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                gpu::Binding::buffer(sums_),
+                gpu::Binding::texels(sums_),
                 gpu::Binding::storage_image(context.graph.view(output)),
                 gpu::Binding::buffer(cell_masks_)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));

@@ -18,7 +18,7 @@ const float least_share = 0.3;
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
-layout(set = 0, binding = 3) readonly buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 3) uniform samplerBuffer sums; // as texels: a CPU device reads them faster
 layout(set = 0, binding = 4) writeonly uniform image2D output_image;
 layout(set = 0, binding = 5) writeonly buffer CellMasks { uvec2 cell_masks[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
@@ -37,7 +37,7 @@ struct Neighbour {
 Neighbour neighbour_at(ivec2 low, vec2 first) {
     low = clamp(low, ivec2(0), ivec2(constants.low_width, constants.low_height) - 1);
     const uint group = uint(low.y) / group_side * constants.group_columns + uint(low.x) / group_side;
-    const vec4 sum = sums[group * group_pixels + uint(low.y) % group_side * group_side + uint(low.x) % group_side];
+    const vec4 sum = texelFetch(sums, int(group * group_pixels + uint(low.y) % group_side * group_side + uint(low.x) % group_side));
     const ivec2 pixel = min(low * scale + scale / 2, ivec2(constants.width, constants.height) - 1);
     const float depth = texelFetch(depth_image, pixel, 0).r;
     const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
