@@ -260,7 +260,11 @@ void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
     rows_.resize(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
         const bool few = samples_[i].dynamic && samples_[i].bounce > 0;
+        const float map_scale = rows_[i].position_bound.w;
         rows_[i] = make_light_row(samples_[i], i % slots, few ? dynamic_bound : bound_, scene_bounds_);
+        // A spot's map covers its cone, whose angle may change where the light stays.
+        if (samples_[i].kind == SampleKind::spot && rows_[i].position_bound.w != map_scale)
+            scheduler_.mark_static(i);
         const float share = blocked_paths_.is_blocked(i) ? 0.0f : input_.indirect_scale;
         if (samples_[i].bounce > 0)
             rows_[i].intensity_slot *= vec4(vec3(share), 1.0f);

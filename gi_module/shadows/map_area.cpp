@@ -18,6 +18,7 @@ bool place_on_map(const shared::LightRow& light, std::uint32_t light_class, std:
         return true;
     }
     const vec3 clip = light_class == shared::light_class_surface ? shared::hemisphere_face_clip(d, face)
+                      : face == shared::cone_face                ? shared::cone_clip(d, light.position_bound.w)
                                                                  : shared::sphere_face_clip(d, face);
     uv = vec2(clip) / clip.z;
     return clip.z > 1e-3f;

@@ -6,7 +6,9 @@
 // (u, v) = (x + y, x - y) / w in [-1, 1]^2. On each face the map is a plane projection with w as its homogeneous
 // coordinate, so 1/w is linear across the map: planes are exact and rasterisation needs no subdivision. Faces meet on
 // the square's diagonals. Sphere (point and spot lights): all eight faces; the upper four in the inner diamond, the
-// lower four folded out to the corners. Orthographic (directional lights): (u, v) = (x, y) / radius.
+// lower four folded out to the corners. Cone (spot lights whose cone is narrow): one plane projection, w = z, (u, v) =
+// scale * (x, y) / w, since the sphere would give a cone of 17 degrees one texel of forty. Orthographic (directional
+// lights): (u, v) = (x, y) / radius.
 //
 // Stored value: near / w, reverse: 1 at the near distance, 0 at infinity; orthographic: 1 - z / (2 radius).
 #ifndef SUNFLECK_GI_SHADOWS_OCTAHEDRAL_MAP_H
@@ -32,6 +34,14 @@ SHARED_FUNCTION vec3 sphere_map(vec3 d) {
     return vec3(p, inverse_w);
 }
 
+// What is beside the light or behind it lies far outside the map.
+SHARED_FUNCTION vec3 cone_map(vec3 d, float scale) {
+    float inverse_w = 1.0f / max(d.z, 1e-4f);
+    return vec3(d.x * scale * inverse_w, d.y * scale * inverse_w, inverse_w);
+}
+
+SHARED_CONSTANT uint cone_face = 8u; // the only face of a cone's map, beside the sphere's
+
 // Signs of x, y, z on a face: hemisphere faces 0 to 3, sphere faces 0 to 7. Bit 0: x, bit 1: y, bit 2: z; set is
 // negative.
 SHARED_FUNCTION vec3 face_signs(uint face) {
@@ -42,6 +52,10 @@ SHARED_FUNCTION vec3 face_signs(uint face) {
 SHARED_FUNCTION vec3 hemisphere_face_clip(vec3 d, uint face) {
     vec3 s = face_signs(face);
     return vec3(d.x + d.y, d.x - d.y, s.x * d.x + s.y * d.y + d.z);
+}
+
+SHARED_FUNCTION vec3 cone_clip(vec3 d, float scale) {
+    return vec3(d.x * scale, d.y * scale, d.z);
 }
 
 SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
@@ -62,7 +76,8 @@ SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
 // plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at
 // most |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x -
 // y, z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the
-// sphere map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that. Where
+// sphere map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that; on a
+// cone's map t / (scale * sqrt(2)). Where
 // the light grazes the receiver, 1/h grows without bound while the light that arrives vanishes; a bias that followed
 // would let light pass under walls. It stops at a slope of 8 (83 degrees): beyond, a surface may shadow itself a
 // little. A receiver is lit if  near / w + bias + step >= stored,  bias = near * texel_reach * min(1 / h, 8 / w).  A
@@ -76,6 +91,9 @@ SHARED_FUNCTION float hemisphere_texel_reach(float resolution) {
 }
 SHARED_FUNCTION float sphere_texel_reach(float resolution) {
     return 2.44948974f / resolution;
+}
+SHARED_FUNCTION float cone_texel_reach(float resolution, float scale) {
+    return 1.41421356f / (resolution * scale);
 }
 // Orthographic: the plane's depth changes by tan(angle) a unit of length across the map, at most 1/cos(angle); half a
 // texel's diagonal is sqrt(2) * radius / resolution, in units of the stored value sqrt(1/2) / resolution.
@@ -102,6 +120,9 @@ SHARED_FUNCTION vec3 sphere_direction(vec2 uv) {
     q.x += q.x >= 0.0f ? -fold : fold;
     q.y += q.y >= 0.0f ? -fold : fold;
     return q;
+}
+SHARED_FUNCTION vec3 cone_direction(vec2 uv, float scale) {
+    return vec3(uv.x / scale, uv.y / scale, 1.0f);
 }
 
 // Value that a receiver is held against at a texel centre with direction `centre`. `receiver`: near / w at the

@@ -37,6 +37,10 @@ shared::ShadowJob make_shadow_job(const shared::LightRow& light, std::uint32_t l
                 layer_face,
                 row};
     }
+    if (face == shared::cone_face) {
+        const double scale = double(light.position_bound.w);
+        return {vec4(x * scale), vec4(y * scale), vec4(z), vec4(z), layer_face, row};
+    }
     const dvec3 s(shared::face_signs(face));
     const dvec4 w = s.x * x + s.y * y + s.z * z;
     if (light_class == shared::light_class_surface)

@@ -1,6 +1,7 @@
 #include "gi_module/shadows/shadow_maps.h"
 
 #include "engine/gpu/rendering.h"
+#include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_jobs.h"
 
 #include <algorithm>
@@ -19,6 +20,10 @@ constexpr std::uint32_t jobs_buffer = 1;
 
 VkFormat depth_format(std::uint32_t bits) {
     return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
+}
+
+bool has_cone_map(const ShadowRequest& request) {
+    return request.light_class == shared::light_class_point && request.light.position_bound.w > 0.0f;
 }
 
 // Largest value of dot(axis, p - origin) over the box.
@@ -138,6 +143,12 @@ std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bou
         return 1;
     const vec3 origin(light.position_bound);
     const vec3 axes[3] = {vec3(light.tangent_scale), vec3(light.bitangent), vec3(light.normal_offset)};
+    if (has_cone_map(request)) {
+        for (const vec3 side : {axes[0], -axes[0], axes[1], -axes[1]})
+            if (support(bounds, origin, axes[2] - light.position_bound.w * side) <= 0.0f)
+                return 0;
+        return support(bounds, origin, axes[2]) > 0.0f ? 1u << shared::cone_face : 0;
+    }
     // Whether the box reaches the negative and the positive side of each axis.
     bool reaches[3][2];
     for (int i = 0; i < 3; ++i) {
@@ -226,6 +237,8 @@ std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::
         const float radius = 0.5f * glm::length(item.bounds.extent());
         const float distance = glm::length(item.bounds.centre() - vec3(request.light.position_bound)) - radius;
         texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
+        if (has_cone_map(request))
+            texel /= std::max(request.light.position_bound.w, 1.0f);
     }
     std::size_t level = 0;
     while (level + 1 < item.details.size() &&

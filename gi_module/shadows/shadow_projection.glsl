@@ -21,6 +21,10 @@ void project_on_map() {
         return;
     }
     gl_Position = vec4(x, y, shadow_near, w);
+    if (face == cone_face) {
+        gl_ClipDistance[0] = gl_ClipDistance[1] = gl_ClipDistance[2] = 1.0;
+        return;
+    }
     // Light-space x and y again from the face's projection.
     const vec3 s = face_signs(face);
     const bool hemisphere = kind == light_class_surface;

@@ -39,17 +39,18 @@ float filtered_visibility(uint slot, vec2 uv, float receiver) {
     return blend(lit, place - floor(place));
 }
 
-// The same for octahedral maps: each texel against the receiver's plane at the texel's centre.
-float filtered_plane_visibility(uint slot, vec2 uv, float receiver, vec3 light_space_normal, float plane_distance,
-                                float bias, float reach, float lag) {
+// The same for other maps: each texel against the receiver's plane at the texel's centre. `scale`: of a cone's map, or 0.
+float filtered_plane_visibility(uint slot, float scale, vec2 uv, float receiver, vec3 light_space_normal,
+                                float plane_distance, float bias, float reach, float lag) {
     const vec2 place = map_place(uv) - 0.5;
     const ivec2 corner = ivec2(floor(place));
     vec4 lit;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
         const vec2 centre_uv = (vec2(texel) + 0.5) / map_side() * 2.0 - 1.0;
-        const vec3 centre =
-            light_class == light_class_surface ? hemisphere_direction(centre_uv) : sphere_direction(centre_uv);
+        vec3 centre = hemisphere_direction(centre_uv);
+        if (light_class == light_class_point)
+            centre = scale > 0.0 ? cone_direction(centre_uv, scale) : sphere_direction(centre_uv);
         const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
         lit[i] = min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, texel) ? 1.0 : 0.0;
     }
@@ -109,8 +110,12 @@ float map_visibility(LightRow light, Pixel pixel) {
     const float plane_distance = -dot(pixel.geometric_normal, v);
     const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
     const bool hemisphere = light_class == light_class_surface;
-    const vec3 place = hemisphere ? hemisphere_map(d) : sphere_map(d);
-    const float reach = hemisphere ? hemisphere_texel_reach(map_side()) : sphere_texel_reach(map_side());
+    const float scale = light.position_bound.w;
+    const bool cone = !hemisphere && scale > 0.0;
+    const vec3 place = hemisphere ? hemisphere_map(d) : cone ? cone_map(d, scale) : sphere_map(d);
+    const float reach = hemisphere ? hemisphere_texel_reach(map_side())
+                        : cone     ? cone_texel_reach(map_side(), scale)
+                                   : sphere_texel_reach(map_side());
     const float bias = perspective_bias(reach, plane_distance, place.z);
     const float lag = lag_value(light, pixel, place.z);
     const uint slot = uint(light.intensity_slot.w);
@@ -120,7 +125,7 @@ float map_visibility(LightRow light, Pixel pixel) {
     const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
                              dot(light.bitangent.xyz, pixel.geometric_normal),
                              dot(light.normal_offset.xyz, pixel.geometric_normal));
-    return filtered_plane_visibility(slot, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
+    return filtered_plane_visibility(slot, scale, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
 }
 
 // `test`: whether the shadow map is asked; a constant where it is inlined.

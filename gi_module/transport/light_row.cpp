@@ -1,6 +1,26 @@
 #include "gi_module/transport/light_row.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sunfleck::gi {
+namespace {
+
+constexpr float cone_margin = 1.02f; // for the texels beside the cone's edge that a blended look-up reads
+
+// Of the map of a spot's cone; 0 if a spherical one shows it as well: half angles above 45 degrees.
+float cone_map_scale(const LightSample& sample) {
+    if (!(sample.cone_scale > 0.0f))
+        return 0.0f;
+    const float cosine = std::clamp(-sample.cone_offset / sample.cone_scale, -1.0f, 1.0f);
+    if (cosine < 0.70710678f)
+        return 0.0f;
+    const float tangent = std::sqrt(std::max(1.0f - cosine * cosine, 0.0f)) / cosine;
+    return 1.0f / (cone_margin * std::max(tangent, 1e-3f));
+}
+
+} // namespace
+
 std::uint32_t light_class(SampleKind kind) {
     switch (kind) {
     case SampleKind::surface:
@@ -35,11 +55,13 @@ shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, f
     case SampleKind::point:
         intensity = sample.flux / (4.0f * pi);
         row.normal_offset.w = 1.0f; // no cone: clamp(0 * cos + 1)^2
+        row.position_bound.w = 0.0f;
         break;
     case SampleKind::spot:
         intensity = sample.flux;
         row.normal_offset.w = sample.cone_offset;
         row.tangent_scale.w = sample.cone_scale;
+        row.position_bound.w = cone_map_scale(sample);
         break;
     case SampleKind::directional: {
         intensity = sample.flux;

@@ -6,11 +6,12 @@ SHARED_BEGIN
 
 // Samples are grouped by how they radiate; a dispatch handles one class, so that its inner loop has no branch.
 SHARED_CONSTANT uint light_class_surface = 0u;     // cosine lobe, hemispherical map
-SHARED_CONSTANT uint light_class_point = 1u;       // point and spot lights, spherical map
+SHARED_CONSTANT uint light_class_point = 1u;       // point and spot lights, spherical map or that of a cone
 SHARED_CONSTANT uint light_class_directional = 2u; // parallel light, orthographic map
 
 struct LightRow {
-    vec4 position_bound; //  0: xyz; w: bound of the geometry term, 1/m2 (surface class)
+    vec4 position_bound; //  0: xyz; w: bound of the geometry term, 1/m2 (surface class); scale of the cone's map, 0:
+                         //  spherical map (point class)
     vec4 normal_offset;  // 16: xyz: axis; w: cone offset (point class), 1 / (2 * radius) (directional class)
     vec4 intensity_slot; // 32: rgb: radiant intensity on the axis W/sr, or irradiance W/m2; w: map slot
     vec4 tangent_scale;  // 48: xyz: first axis of the map; w: cone scale (point), 1 / radius (directional)

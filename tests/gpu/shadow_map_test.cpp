@@ -50,9 +50,11 @@ struct Maps {
         const vec3 v = position - vec3(rows[light].position_bound);
         const vec3 d = to_light_space(light, v);
         Look result;
-        result.place = hemisphere[light] ? hemisphere_map(d) : sphere_map(d);
-        const float reach =
-            hemisphere[light] ? hemisphere_texel_reach(float(resolution)) : sphere_texel_reach(float(resolution));
+        const float side = float(resolution), scale = cone_scale(light);
+        result.place = hemisphere[light] ? hemisphere_map(d) : scale > 0.0f ? cone_map(d, scale) : sphere_map(d);
+        const float reach = hemisphere[light] ? hemisphere_texel_reach(side)
+                            : scale > 0.0f    ? cone_texel_reach(side, scale)
+                                              : sphere_texel_reach(side);
         result.bias = perspective_bias(reach, -glm::dot(normal, v), result.place.z) + depth_step(bits);
         result.receiver = std::min(shadow_near * result.place.z, 1.0f);
         const vec2 at = (vec2(result.place) * 0.5f + 0.5f) * float(resolution);
@@ -76,8 +78,13 @@ struct Maps {
     // Light-space direction with w = 1 through a texel's centre, or a little beside it (in texels).
     vec3 centre(std::size_t light, ivec2 texel, vec2 beside = vec2(0.0f)) const {
         const vec2 uv = (vec2(texel) + 0.5f + beside) / float(resolution) * 2.0f - 1.0f;
-        return hemisphere[light] ? hemisphere_direction(uv) : sphere_direction(uv);
+        const float scale = cone_scale(light);
+        return hemisphere[light] ? hemisphere_direction(uv)
+               : scale > 0.0f    ? cone_direction(uv, scale)
+                                 : sphere_direction(uv);
     }
+    // Of a narrow spot light's map; 0 for others.
+    float cone_scale(std::size_t light) const { return hemisphere[light] ? 0.0f : rows[light].position_bound.w; }
     // The same in world space; false outside the map.
     bool centre_direction(std::size_t light, ivec2 texel, vec2 beside, vec3& direction) const {
         if (texel.x < 0 || texel.y < 0 || texel.x >= int(resolution) || texel.y >= int(resolution))
@@ -151,6 +158,49 @@ bool explained(const Maps& maps, const raytrace::RayScene& rays, std::size_t lig
                 return true;
         }
     return false;
+}
+
+// A spot of 17 degrees has all of its map's texels in the cone: one texel is 1/200 of the lit disc. Where the map and
+// rays differ, the difference is explained as for all maps.
+TEST_F(ShadowMapTest, SpotsHaveMapsOfTheirCone) {
+    GpuWorld world(assets::make_near_occluder, "view");
+    gi::Settings settings = gi::Settings::brute_force();
+    settings.lights = 8;
+    world.set(settings);
+    world.request.width = world.request.height = 8;
+    world.render();
+    const Maps maps(world, 16);
+    const auto& samples = world.renderer->lighting().samples();
+    const auto spot = std::find_if(samples.begin(), samples.end(),
+                                   [](const gi::LightSample& sample) { return sample.kind == gi::SampleKind::spot; });
+    ASSERT_NE(spot, samples.end());
+    const std::size_t light = std::size_t(spot - samples.begin());
+    ASSERT_GT(maps.cone_scale(light), 3.0f);
+    const SurfaceSampler surface(world);
+    const raytrace::RayScene& rays = world.renderer->rays();
+    RandomSequence random(SequenceKind::pseudo_random, 17, 1);
+    int asked = 0, blocked = 0, wrong = 0, unexplained = 0;
+    for (int i = 0; i < 2000000 && asked < 20000; ++i) {
+        vec3 position, normal;
+        surface.sample(random, position, normal);
+        const vec3 v = position - spot->position;
+        const float cosine = glm::dot(glm::normalize(v), spot->normal);
+        if (cosine * spot->cone_scale + spot->cone_offset <= 0.0f || glm::dot(normal, v) >= 0.0f)
+            continue;
+        ++asked;
+        const bool occluded = rays.occluded(raytrace::Ray{spot->position, v, 0.0f, 0.9999f});
+        blocked += occluded;
+        const Maps::Look look = maps.look(light, position, normal);
+        if (look.lit == !occluded)
+            continue;
+        ++wrong;
+        unexplained += !explained(maps, rays, light, look, position);
+    }
+    std::printf("%d points in the cone, %d blocked, %d wrong, %d unexplained\n", asked, blocked, wrong, unexplained);
+    EXPECT_EQ(asked, 20000);
+    EXPECT_GT(blocked, 2000);
+    EXPECT_LT(wrong, asked / 50);
+    EXPECT_EQ(unexplained, 0);
 }
 
 // The lamps are flush with the ceiling.
@@ -361,7 +411,10 @@ TEST(OctahedralMap, AreasCoverTheirBoxes) {
     for (int i = 0; i < 3000; ++i) {
         gi::LightSample sample;
         sample.normal = glm::normalize(vec3(number(), number(), number()));
-        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional}[i % 3u];
+        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional,
+                                 gi::SampleKind::spot}[i % 4u];
+        sample.cone_scale = 20.0f;
+        sample.cone_offset = -20.0f * std::cos(0.1f + 0.9f * random.next()); // some wider than a map of their own takes
         Bounds scene, box;
         scene.add(vec3(-2.0f));
         scene.add(vec3(2.0f));
@@ -384,8 +437,11 @@ TEST(OctahedralMap, AreasCoverTheirBoxes) {
                 continue;
             if (kind == light_class_surface)
                 uv = vec2(hemisphere_map(d));
+            const float scale = light.position_bound.w;
+            if (kind == light_class_point && scale > 0.0f && d.z < 1e-3f)
+                continue;
             if (kind == light_class_point)
-                uv = vec2(sphere_map(d));
+                uv = vec2(scale > 0.0f ? cone_map(d, scale) : sphere_map(d));
             const vec2 texel = (uv * 0.5f + 0.5f) * 64.0f;
             if (texel.x < 0.0f || texel.y < 0.0f || texel.x >= 64.0f || texel.y >= 64.0f)
                 continue;
@@ -426,11 +482,15 @@ TEST(OctahedralMap, JoinedAreasDoNotOverlap) {
 TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
     RandomSequence random(SequenceKind::pseudo_random, 8, 1);
     const auto number = [&] { return 2.0f * random.next() - 1.0f; };
+    int cones = 0;
     for (int i = 0; i < 20000; ++i) {
         gi::LightSample sample;
         sample.position = vec3(number(), number(), number());
         sample.normal = glm::normalize(vec3(number(), number(), number()));
-        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional}[i % 3u];
+        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional,
+                                 gi::SampleKind::spot}[i % 4u];
+        sample.cone_scale = 20.0f;
+        sample.cone_offset = -20.0f * std::cos(0.1f + 0.9f * random.next()); // some wider than a map of their own takes
         Bounds bounds;
         bounds.add(vec3(-2.0f));
         bounds.add(vec3(3.0f));
@@ -441,7 +501,9 @@ TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
         DrawConstants occluder{};
         for (int r = 0; r < 3; ++r)
             occluder.model[r] = glm::transpose(model)[r];
-        const std::uint32_t face = std::uint32_t(i) % (kind == light_class_surface ? 4 : 8);
+        const bool cone = kind == light_class_point && light.position_bound.w > 0.0f;
+        cones += cone;
+        const std::uint32_t face = cone ? cone_face : std::uint32_t(i) / 4 % (kind == light_class_surface ? 4 : 8);
         const ShadowJob job =
             gi::make_shadow_job(light, kind, 5, kind == light_class_directional ? 0 : face, occluder, 9);
         EXPECT_EQ(job.layer_face & 0xffffu, 5u);
@@ -458,12 +520,15 @@ TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
             ASSERT_EQ(clip.w, 1.0f);
             continue;
         }
-        const vec3 expected = kind == light_class_surface ? hemisphere_face_clip(d, face) : sphere_face_clip(d, face);
-        ASSERT_NEAR(clip.x, expected.x, 1e-5f);
-        ASSERT_NEAR(clip.y, expected.y, 1e-5f);
+        const vec3 expected = kind == light_class_surface ? hemisphere_face_clip(d, face)
+                              : cone                      ? cone_clip(d, light.position_bound.w)
+                                                          : sphere_face_clip(d, face);
+        ASSERT_NEAR(clip.x, expected.x, cone ? 1e-4f : 1e-5f); // times up to ten
+        ASSERT_NEAR(clip.y, expected.y, cone ? 1e-4f : 1e-5f);
         ASSERT_NEAR(clip.w, expected.z, 1e-5f);
         ASSERT_NEAR(clip.z, d.z, 1e-5f);
     }
+    EXPECT_GT(cones, 2000);
 }
 
 // The three projections agree with their definition on every face, and neighbouring faces meet.
