@@ -314,6 +314,7 @@ Status Context::update(const Frame& frame) {
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
+    input.progress = frame.progress;
     input.view_projection = self.view_projection;
     SUNFLECK_TRY(self.system->update(self.registry, self.meshes, *self.gpu_scene, *self.rays, input));
     std::unordered_map<ecs::Entity, std::uint32_t> rows;

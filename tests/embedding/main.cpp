@@ -115,6 +115,16 @@ void render(VulkanProgram& program, Lighting& lighting, std::uint64_t k) {
         });
 }
 
+// The long first update of a level can be stopped; the next one begins again.
+void stop_first_update(Lighting& lighting) {
+    int calls = 0;
+    host::Frame frame;
+    frame.progress = [&](float) { return ++calls > 1; };
+    const bool went_on = bool(lighting.context->update(frame));
+    check(calls == 1 && !went_on ? sunfleck::Status()
+                                 : sunfleck::Status(sunfleck::Error{"an update was not stopped by its host"}));
+}
+
 int finish(VulkanProgram& program, const char* what) {
     bool finite = true;
     const auto mean = program.mean_irradiance(finite);
@@ -132,6 +142,8 @@ int main() {
         VulkanProgram program(in_flight, host::enable_features);
         auto lighting = make_lighting(program);
         check(lighting ? sunfleck::Status() : sunfleck::Status(lighting.error()));
+        if (in_flight == 1)
+            stop_first_update(*lighting);
         for (std::uint64_t k = 0; k < 24; ++k)
             render(program, *lighting, k);
         program.wait();

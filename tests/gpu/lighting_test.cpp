@@ -287,6 +287,7 @@ TEST_F(Lighting, AFilteredLookUpKeepsTheMean) {
     GpuWorld world(assets::make_table_room, "view");
     gi::Settings settings = gi::Settings::brute_force();
     settings.lights = 64;
+    settings.shadow_filter = false;
     world.set(settings);
     const io::Picture sharp = world.picture();
     settings.shadow_filter = true;

@@ -19,6 +19,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -115,6 +116,10 @@ struct Frame {
     std::uint64_t serial = 1;               // of this frame; rises by one each frame
     std::uint64_t completed_serial = 0;     // all frames up to this one are finished on the GPU
     std::uint32_t map_budget = 0xffffffffu; // shadow maps redrawn in this frame at most
+    // Called with the share that is done, 0 to 1, while an update takes long because all is decided anew (the first one
+    // of a level); from any thread, but by one at a time. Returning false ends the update with an error; the next one
+    // begins again.
+    std::function<bool(float)> progress;
 };
 
 class Context {
