@@ -45,14 +45,14 @@ bool is_flat_shaded(const Triangle& triangle) {
 CurvedMesh curved_part(ecs::Entity entity, const scene::Mesh& mesh, const mat4& matrix, const SurfacePatches& patches) {
     CurvedMesh part;
     part.entity = entity;
-    const glm::mat3 normal_matrix = glm::transpose(glm::inverse(mat3(matrix)));
+    const mat3 to_world = normal_matrix(matrix); // as the G-buffer has it
     const float side = glm::determinant(mat3(matrix)) < 0.0f ? -1.0f : 1.0f;
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
         Triangle triangle;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t vertex = mesh.indices[t * 3 + k];
             triangle.corners[k] = vec3(matrix * vec4(mesh.positions[vertex], 1.0f));
-            triangle.normals[k] = normal_matrix * mesh.normals[vertex];
+            triangle.normals[k] = to_world * mesh.normals[vertex];
         }
         const vec3 cross =
             side * glm::cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);

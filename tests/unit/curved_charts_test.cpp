@@ -232,6 +232,13 @@ TEST(CurvedCharts, NothingForWhatTexelsDoNotKnow) {
     World faceted(facets, mat4(1.0f));
     faceted.build();
     EXPECT_EQ(faceted.charts.first_chart(faceted.entity), shared::no_node);
+    // Squeezed flat: what there is of it has normals.
+    World squeezed(scene::make_sphere(0.5f), glm::scale(mat4(1.0f), vec3(1.0f, 0.0f, 1.0f)));
+    squeezed.build();
+    for (const shared::CurvedPoint& point : squeezed.charts.points())
+        if (point.exists != 0) {
+            ASSERT_NEAR(glm::length(shared::unpack_normal(point.normal)), 1.0f, 1e-3f);
+        }
     World nothing(scene::make_sphere(0.0f), mat4(1.0f));
     nothing.build();
     EXPECT_TRUE(nothing.charts.points().empty());
