@@ -8,6 +8,17 @@ namespace {
 // Blocked light must meet its blocker between these parts of its way: blockers that touch an end do not count as full.
 constexpr double earliest = 2e-4, latest = 1.0 - 2e-4;
 
+bool is_inside(const std::vector<Plane>& body, dvec3 point) {
+    return std::all_of(body.begin(), body.end(), [&](const Plane& plane) { return plane.distance(point) > -touching; });
+}
+
+// Whether one of the body's planes has all of the gate behind it.
+bool lies_outside(const std::vector<Plane>& body, std::span<const dvec3> gate) {
+    return std::any_of(body.begin(), body.end(), [&](const Plane& plane) {
+        return std::all_of(gate.begin(), gate.end(), [&](dvec3 point) { return plane.distance(point) < 0.0; });
+    });
+}
+
 } // namespace
 
 bool covers_gate(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon) {
@@ -56,6 +67,10 @@ bool crosses(const std::vector<Plane>& body, dvec3 corner, dvec3 direction, bool
 
 bool covers_gate(const OcclusionPyramid& pyramid, const std::vector<Plane>& body) {
     if (pyramid.gate_count == 0)
+        return false;
+    // Light within the body reaches what is within it, too: the floor that a pillar stands on. The gate's corners do
+    // not tell.
+    if (!pyramid.parallel && is_inside(body, pyramid.apex) && !lies_outside(body, pyramid.gate_points()))
         return false;
     for (const dvec3& corner : pyramid.gate_points())
         if (!crosses(body, corner, pyramid.to_light(corner), pyramid.parallel))

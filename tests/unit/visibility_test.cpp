@@ -143,6 +143,27 @@ TEST(Visibility, StatesAreConservativeAndUseful) {
     }
 }
 
+// A lamp inside of a pillar lights the floor under it: the patch around the pillar's foot is not fully blocked, though
+// all of its corners are. What lies beside the pillar is.
+TEST(Visibility, LightWithinABodyReachesWhatIsWithinIt) {
+    const scene::Mesh box = scene::make_box(vec3(0.4f, 1.0f, 0.4f));
+    mat4 place(1.0f);
+    place[3] = vec4(1.0f, 0.5f, 1.0f, 1.0f);
+    const std::vector<Plane> body = planes_of_convex_body(find_planar_faces(box, place));
+    ASSERT_EQ(body.size(), 6u);
+    LightSample lamp;
+    lamp.position = vec3(1.0f, 0.6f, 1.0f);
+    lamp.normal = vec3(0, -1, 0);
+    const auto floor = [&](double x0, double x1) {
+        const std::vector<dvec3> patch = {{x0, 0, 2}, {x1, 0, 2}, {x1, 0, 0}, {x0, 0, 0}};
+        return pyramid_of_patch(lamp, patch, dvec3(0, 1, 0));
+    };
+    EXPECT_FALSE(covers_gate(*floor(0.0, 2.0), body));
+    EXPECT_TRUE(covers_gate(*floor(1.3, 2.0), body));
+    lamp.position.y = 1.5f; // over the pillar, which shades only what lies under it
+    EXPECT_FALSE(covers_gate(*floor(0.0, 2.0), body));
+}
+
 TEST(Visibility, ClosedForms) {
     // A unit patch at the origin facing up, a sample two metres above, a square blocker between.
     const std::vector<dvec3> patch = {{0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0}};
