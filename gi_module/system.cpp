@@ -301,10 +301,13 @@ Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore
         database_samples_ = 0; // should it be stopped
         if (!database_.build(registry, meshes, samples_, options, input_.progress))
             return Error{"the lighting's preparation was stopped"};
-        curved_charts_.build(registry, meshes, database_.patches(), light_map_texel(bound_), most_curved_points);
         database_options_ = options;
         database_samples_ = sample_generation_;
         changed_samples_.clear();
+    }
+    if (settings_.baked_light && curved_generation_ != database_.generation()) {
+        curved_charts_.build(registry, meshes, database_.patches(), light_map_texel(bound_), most_curved_points);
+        curved_generation_ = database_.generation();
     }
     database_.begin_frame();
     {

@@ -161,7 +161,8 @@ private:
     std::unique_ptr<ShadowMaps> shadow_maps_;
     std::unique_ptr<BruteForce> brute_force_;
     std::unique_ptr<ManyLight> many_light_;
-    CurvedCharts curved_charts_; // of the database\'s static geometry
+    std::uint64_t curved_generation_ = 0; // of the database that they were found for
+    CurvedCharts curved_charts_;          // of the database's static geometry, while light is baked
     std::unique_ptr<TransferPass> transfer_pass_;
     TransferLighting transfer_;
     std::filesystem::path cache_folder_;

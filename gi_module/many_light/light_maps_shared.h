@@ -11,7 +11,7 @@ struct LightMapJob {
     vec4 v_edge;
     vec4 normal;
     vec4 height;      // curved: what of a point's place counts as height, and what is added
-    uint first_point; // curved: of its SurfacePoints; flat: no_points
+    uint first_point; // curved: of its CurvedPoints; flat: no_points
     float cell;       // curved: side of a cell in units of height
     uint unused[2];
     uint first_texel;

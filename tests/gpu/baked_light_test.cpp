@@ -178,6 +178,28 @@ TEST_F(BakedLightTest, CurvedSurfacesHoldWhatRaysSay) {
     EXPECT_LT(far_off, smooth / 100);
 }
 
+// Charts of curved surfaces cost time and memory: they are found when they are wanted, be it after the level's start.
+TEST_F(BakedLightTest, CurvedChartsAreFoundWhenWanted) {
+    GpuWorld world(assets::make_area_room, "bench_1");
+    gi::Settings settings;
+    settings.lights = 60;
+    settings.shadow_map_resolution = 64;
+    settings.baked_light = false;
+    world.set(settings);
+    world.render();
+    EXPECT_TRUE(world.renderer->lighting().curved_charts().points().empty());
+    settings.baked_light = true;
+    world.set(settings);
+    bake_all(world);
+    const std::size_t points = world.renderer->lighting().curved_charts().points().size();
+    ASSERT_GT(points, 1000u);
+    const Baked baked = read_baked(world);
+    const auto first = baked.texels.end() - std::ptrdiff_t(points);
+    EXPECT_GT(
+        std::count_if(first, baked.texels.end(), [](const vec4& texel) { return texel.a <= shared::highest_curved; }),
+        500);
+}
+
 // While a host draws the first maps over many frames, nothing is baked that would be baked again; then all is, once.
 TEST_F(BakedLightTest, WaitsForTheMaps) {
     GpuWorld world(assets::make_area_room, "bench_1");
