@@ -75,8 +75,10 @@ const TypeDescription& Settings::description() {
                         "picture then depends on the machine; 0: their number"),
          SUNFLECK_CHOICE(Settings, map_priority, "Which stale shadow maps are redrawn first", "contribution",
                          "flux_and_age", "age"),
-         SUNFLECK_FIELD(Settings, cluster_tests, "", 0, 1,
-                        "Visibility tests begin with clusters of samples and groups of patches"),
+         SUNFLECK_CHOICE(Settings, visibility_tests,
+                         "Visibility tests of what moves: of clusters of samples and a hierarchy of nodes, down the "
+                         "trees of nodes by each sample, or of every pair by itself; all find the same",
+                         "clusters", "trees", "pairs"),
          SUNFLECK_FIELD(
              Settings, count_passes, "", 0, 1,
              "Counts the render passes that a renderer with a few lights a pass would need, before and after "

@@ -15,6 +15,9 @@ enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
 // with brute force, which knows no such thing, flux_and_age: brightest channel times age, thesis sec. 4.5.3. age: in
 // turns.
 enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
+// What is asked first when a mover is tested: clusters of samples and groups of nodes, down their hierarchy; nodes of
+// the patches' trees, by each sample; or every mover, node and sample by itself. All find the same.
+enum class TestGrouping : std::uint32_t { clusters, trees, pairs };
 // as_static: as static geometry, in random walks, too. transfer: complex ones by precomputed radiance transfer.
 enum class MoverHandling : std::uint32_t { per_pixel, as_static, transfer };
 
@@ -60,7 +63,7 @@ struct Settings {
     std::uint32_t map_budget = 100; // shadow maps a frame
     float map_milliseconds = 0.0f;  // GPU time for them; 0: map_budget counts
     MapPriority map_priority = MapPriority::contribution;
-    bool cluster_tests = true;
+    TestGrouping visibility_tests = TestGrouping::clusters;
     bool count_passes = false;
     std::uint32_t lights_per_pass = 7;
     bool pass_extras = true;

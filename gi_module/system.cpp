@@ -294,9 +294,9 @@ Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore
                                  const scene::GpuScene& gpu_scene, bool static_changed) {
     VisibilityOptions options;
     options.patches.levels = settings_.patch_levels;
-    options.clustered = settings_.cluster_tests;
+    options.tests = settings_.visibility_tests;
     const bool same_options =
-        options.patches.levels == database_options_.patches.levels && options.clustered == database_options_.clustered;
+        options.patches.levels == database_options_.patches.levels && options.tests == database_options_.tests;
     if (database_samples_ != sample_generation_ || static_changed || !same_options) {
         database_samples_ = 0; // should it be stopped
         if (!database_.build(registry, meshes, samples_, options, input_.progress))

@@ -246,6 +246,8 @@ Status run(const BenchOptions& options) {
             return bench_thesis(options, plot);
         return bench_reference(options);
     };
+    if (!options.part.empty() && options.suite != "thesis")
+        return Error{"--part: only the suite 'thesis' has parts"};
     SUNFLECK_ASSIGN(const BenchTable table, start());
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, false, {}}));
     if (options.as_json)
@@ -277,7 +279,8 @@ Command make_bench_command(CLI::App& program) {
                 "shadow_maps  microseconds per map and per thousand vertices\n"
                 "convergence  error against the path tracer over the number of samples (--plot)\n"
                 "reference    rays per second of the path tracer\n"
-                "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5");
+                "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
+                "             (--part movers runs one of its experiments)");
     app->add_option("SUITE", options->suite, "Name of the experiment")
         ->required()
         ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"}));
@@ -288,6 +291,7 @@ Command make_bench_command(CLI::App& program) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     app->add_option("--scene", options->scene, "Scene, where the suite takes one");
+    app->add_option("--part", options->part, "One experiment of the thesis")->check(CLI::IsMember(thesis_parts()));
     app->add_option("--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options] {
                 watch_interrupts();

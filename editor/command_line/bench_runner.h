@@ -7,6 +7,7 @@ namespace sunfleck::command_line {
 
 struct BenchOptions {
     std::string suite, csv, plot, device, scene;
+    std::string part; // of the thesis; empty: all
     bool as_json = false;
     std::uint32_t repeat = 5;
 };
@@ -63,6 +64,8 @@ struct Bench {
 };
 
 // The experiments of the thesis's chapter 5 (and fig. 4-11, 4-12), see bench_thesis.cpp.
+// Names of the thesis's experiments, for BenchOptions::part.
+std::vector<std::string> thesis_parts();
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot);
 
 } // namespace sunfleck::command_line

@@ -283,23 +283,28 @@ Status many_movers(Experiment& experiment) {
         registry.emplace<scene::Material>(entity);
         registry.emplace<scene::Mover>(entity, mover);
     }
-    double tests[2], times[2], pairs = 1;
-    for (const bool clustered : {false, true}) {
+    const char* const names[] = {"clusters", "trees", "pairs"};
+    double tests[3], times[3], pairs = 1;
+    for (const gi::TestGrouping grouping :
+         {gi::TestGrouping::clusters, gi::TestGrouping::trees, gi::TestGrouping::pairs}) {
+        const std::size_t i = std::size_t(grouping);
         gi::Settings settings = many_light(300);
-        settings.cluster_tests = clustered;
+        settings.visibility_tests = grouping;
         settings.map_budget = 1;
         SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 2, experiment.options.repeat, true));
-        tests[clustered] = double(m.counters.visibility.tests);
-        times[clustered] = cpu_median(m, "visibility");
+        tests[i] = double(m.counters.visibility.tests);
+        times[i] = cpu_median(m, "visibility");
         pairs = 102.0 * 300.0 * double(m.counters.surface_patches + 102);
-        experiment.row("movers", "four_pillars", clustered ? "102 movers, clustered" : "102 movers, unclustered", 300,
-                       m);
+        experiment.row("movers", "four_pillars", std::string("102 movers, tests of ") + names[i], 300, m);
     }
-    experiment.value("movers", "four_pillars", "tests over movers x nodes x samples", 300, tests[1] / pairs,
-                     "target: at most 0.1");
-    experiment.value("movers", "four_pillars", "tests, unclustered", 300, tests[0] / pairs, "");
-    experiment.value("movers", "four_pillars", "time over unclustered", 300, times[1] / times[0],
-                     "target: at most 0.2");
+    const auto report = [&](const char* what, double value, const char* note) {
+        experiment.value("movers", "four_pillars", what, 300, value, note);
+    };
+    report("tests over movers x nodes x samples", tests[0] / pairs, "clusters; target: at most 0.1");
+    report("tests over movers x nodes x samples", tests[1] / pairs, "trees");
+    report("tests over movers x nodes x samples", tests[2] / pairs, "pairs");
+    report("time over that of pairs", times[0] / times[2], "clusters; target: at most 0.2");
+    report("time over that of trees", times[0] / times[1], "clusters");
     return {};
 }
 
@@ -331,34 +336,53 @@ Status quality(Experiment& experiment) {
     return {};
 }
 
+Status all_ratios(Experiment& experiment) {
+    for (const std::string& scene : scenes)
+        for (const std::string& camera : cameras.at(scene))
+            SUNFLECK_TRY(ratios(experiment, scene, camera, 300));
+    return ratios(experiment, "four_pillars", "bench_1", 1024);
+}
+
+struct Part {
+    const char* name;
+    double share; // of the whole run's time, about
+    Status (*run)(Experiment& experiment, std::vector<PlotSeries>& plot);
+};
+
+const Part parts[] = {
+    {"ratios", 0.3, [](Experiment& e, std::vector<PlotSeries>&) { return all_ratios(e); }},
+    {"samples", 0.15, [](Experiment& e, std::vector<PlotSeries>& plot) { return frame_time_over_samples(e, plot); }},
+    {"ablation", 0.15, [](Experiment& e, std::vector<PlotSeries>&) { return ablation(e); }},
+    {"map_updates", 0.2, [](Experiment& e, std::vector<PlotSeries>&) { return map_updates(e); }},
+    {"scaling", 0.05, [](Experiment& e, std::vector<PlotSeries>& plot) { return scaling(e, plot); }},
+    {"passes", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return passes(e); }},
+    {"movers", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return many_movers(e); }},
+    {"quality", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return quality(e); }},
+};
+
 } // namespace
+
+std::vector<std::string> thesis_parts() {
+    std::vector<std::string> names;
+    for (const Part& part : parts)
+        names.emplace_back(part.name);
+    return names;
+}
 
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot) {
     BenchTable table{"thesis", {}, {}};
     Experiment experiment{options, table};
     Progress progress("bench thesis");
-    const auto stop = [&](double share) -> Status {
-        progress.show(share, "");
-        return interrupted() ? Status(Error{"interrupted"}) : Status();
-    };
-    for (const std::string& scene : scenes)
-        for (const std::string& camera : cameras.at(scene)) {
-            SUNFLECK_TRY(ratios(experiment, scene, camera, 300));
-            SUNFLECK_TRY(stop(0.2));
-        }
-    SUNFLECK_TRY(ratios(experiment, "four_pillars", "bench_1", 1024));
-    SUNFLECK_TRY(stop(0.3));
-    SUNFLECK_TRY(frame_time_over_samples(experiment, plot));
-    SUNFLECK_TRY(stop(0.45));
-    SUNFLECK_TRY(ablation(experiment));
-    SUNFLECK_TRY(stop(0.6));
-    SUNFLECK_TRY(map_updates(experiment));
-    SUNFLECK_TRY(stop(0.8));
-    SUNFLECK_TRY(scaling(experiment, plot));
-    SUNFLECK_TRY(passes(experiment));
-    SUNFLECK_TRY(many_movers(experiment));
-    SUNFLECK_TRY(stop(0.95));
-    SUNFLECK_TRY(quality(experiment));
+    double done = 0.0;
+    for (const Part& part : parts) {
+        if (!options.part.empty() && options.part != part.name)
+            continue;
+        SUNFLECK_TRY(part.run(experiment, plot));
+        done += part.share;
+        progress.show(options.part.empty() ? done : 1.0, "");
+        if (interrupted())
+            return Error{"interrupted"};
+    }
     return table;
 }
 

@@ -12,7 +12,6 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::size_t samples_per_cluster = 16;
 constexpr std::size_t roots_per_group = 4;
 
 // Place of a point on a curve that keeps neighbours together (Morton order of ten bits an axis).
@@ -351,20 +350,20 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
             static_states_[at(node, changed[i])] = std::uint8_t(states[i][node]);
             record(node, changed[i], before, state(node, changed[i]));
         }
-    Footprint fresh;
+    FootprintWalk walk;
     for (auto& [bits, mover] : movers_)
-        for (const std::uint32_t sample : changed) {
+        for (const std::uint32_t& sample : changed) {
             set_mover_pair(mover.slot, sample, decide_mover(mover.blocker, samples_[sample]));
-            if (!mover.blocks || !reaches(mover, sample))
-                continue;
-            const Footprint roots = roots_for(clusters_[cluster_of_[sample]], mover, counters_.tests);
-            find_footprint(mover, sample, roots, fresh, counters_.tests);
+            walk.cluster = &clusters_[cluster_of_[sample]];
+            walk.samples = {&sample, 1};
+            find_footprints(walk, mover);
             changes.clear();
-            apply(sample, {}, fresh, changes);
-            mover.footprint[sample] = fresh;
+            apply(sample, {}, walk.footprints[0], changes);
+            mover.footprint[sample] = walk.footprints[0];
             for (const PairChange& change : changes)
                 record(change.node, change.sample, change.before, change.after);
         }
+    counters_.tests += walk.tests;
 }
 
 void VisibilityDatabase::recount() {

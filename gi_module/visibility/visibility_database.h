@@ -20,6 +20,7 @@
 // "partial" they have no state "none".
 #pragma once
 
+#include "gi_module/settings.h"
 #include "gi_module/visibility/moving_blocker.h"
 #include "gi_module/visibility/surface_patches.h"
 
@@ -54,7 +55,7 @@ struct VisibilityOptions {
     PatchOptions patches;
     float split_share = 0.08f; // patches are split if at least this share of the samples that reach them is partial
     std::uint64_t most_pairs = std::uint64_t(24) << 20; // no further splits beyond
-    bool clustered = true; // samples in clusters and a hierarchy of nodes, before single pairs are tested
+    TestGrouping tests = TestGrouping::clusters;        // of movers
 };
 
 struct VisibilityCounters {
@@ -131,6 +132,8 @@ public:
     std::uint64_t memory_bytes() const;
 
 private:
+    // node * 2 + (full ? 1 : 0), sorted.
+    using Footprint = std::vector<std::uint32_t>;
     struct Mover {
         ecs::Entity entity;
         std::uint32_t mesh = 0;
@@ -140,8 +143,7 @@ private:
         mat4 matrix{1.0f};
         bool blocks = true;
         MovingBlocker blocker;
-        // By sample: node * 2 + (full ? 1 : 0), sorted.
-        std::vector<std::vector<std::uint32_t>> footprint;
+        std::vector<Footprint> footprint; // by sample
     };
     struct Cluster {
         Bounds bounds;
@@ -153,7 +155,15 @@ private:
         std::uint32_t left = 0, right = 0;
         std::vector<std::uint32_t> roots;
     };
-    using Footprint = std::vector<std::uint32_t>;
+    static constexpr std::size_t samples_per_cluster = 16;
+    // Footprints of one mover for samples of a cluster, on their way.
+    struct FootprintWalk {
+        const Cluster* cluster = nullptr;
+        const MovingBlocker* blocker = nullptr;
+        std::span<const std::uint32_t> samples;
+        std::array<Footprint, samples_per_cluster> footprints;
+        std::uint64_t tests = 0;
+    };
 
     bool split_and_decide(const std::function<bool(float)>& progress);
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
@@ -168,14 +178,12 @@ private:
     // Roots that a mover may shadow from a cluster of samples.
     void candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group, Footprint& roots,
                          std::uint64_t& tests) const;
-    void descend(std::uint32_t node, std::uint32_t sample, const MovingBlocker& blocker, Footprint& out,
-                 std::uint64_t& tests) const;
+    void find_footprints(FootprintWalk& walk, const Mover& mover) const;
+    void descend(FootprintWalk& walk, std::uint32_t node, std::uint32_t active, std::uint32_t counting) const;
     void add_all(std::uint32_t node, std::uint32_t sample, Footprint& out) const;
-    void find_footprint(const Mover& mover, std::uint32_t sample, const Footprint& roots, Footprint& out,
-                        std::uint64_t& tests) const;
     Footprint roots_for(const Cluster& cluster, const Mover& mover, std::uint64_t& tests) const;
     bool reaches(const Mover& mover, std::uint32_t sample) const;
-    void replace_footprints(Mover& mover, bool present);
+    void replace_footprints(Mover& mover);
     void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
     void set_mover_row(std::uint32_t slot);
     void set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed);

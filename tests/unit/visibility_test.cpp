@@ -411,18 +411,23 @@ TEST(VisibilityDatabase, ClustersSaveTestsAndChangeNothing) {
         movers.push_back({world.registry.create(), mesh,
                           glm::translate(mat4(1.0f), vec3(uniform(random, -3.8f, 3.8f), uniform(random, 0.1f, 3.3f),
                                                           uniform(random, -3.8f, 3.8f)))});
-    VisibilityDatabase clustered, plain;
+    VisibilityDatabase clustered, plain, single;
     VisibilityOptions options;
     clustered.build(world.registry, world.meshes, world.samples, options);
-    options.clustered = false;
+    options.tests = TestGrouping::trees;
     plain.build(world.registry, world.meshes, world.samples, options);
+    options.tests = TestGrouping::pairs;
+    single.build(world.registry, world.meshes, world.samples, options);
     clustered.update_movers(movers, world.meshes);
     plain.update_movers(movers, world.meshes);
+    single.update_movers(movers, world.meshes);
     expect_equal(clustered, plain, movers);
+    expect_equal(single, plain, movers);
     const std::uint64_t all = movers.size() * clustered.patches().leaves() * world.samples.size();
-    std::printf("tests: %llu clustered, %llu without, %llu pairs\n",
+    std::printf("tests: %llu clustered, %llu down the trees, %llu singly, %llu pairs\n",
                 static_cast<unsigned long long>(clustered.counters().tests),
-                static_cast<unsigned long long>(plain.counters().tests), static_cast<unsigned long long>(all));
+                static_cast<unsigned long long>(plain.counters().tests),
+                static_cast<unsigned long long>(single.counters().tests), static_cast<unsigned long long>(all));
     EXPECT_LT(clustered.counters().tests, all / 10);
 }
 
