@@ -142,6 +142,8 @@ public:
     // Valid while executing.
     VkImageView view(ResourceId id) const;
     VkImage image(ResourceId id) const;
+    // Of an image that the host owns, only the usages that it was imported for are known to be allowed.
+    bool owned_by_host(ResourceId id) const { return resources_[id.index].host_image != VK_NULL_HANDLE; }
     const ImageDescription& description(ResourceId id) const { return resources_[id.index].description; }
 
 private:

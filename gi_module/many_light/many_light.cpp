@@ -165,6 +165,12 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
                 graph.import_buffer(rough_commands_),
                 baked};
     const bool reconstructs = options.scale > 1;
+    // A CPU device stores to buffers much faster than to images.
+    frame.through_buffer = reconstructs && device_.traits().software && !graph.owned_by_host(output) &&
+                           graph.description(output).format == VK_FORMAT_R16G16B16A16_SFLOAT;
+    SUNFLECK_TRY(make_buffer(picture_, "reconstructed picture",
+                             frame.through_buffer ? std::uint64_t(constants.width) * constants.height * 8 : 8,
+                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT, resources));
     for (const Stage stage : {Stage::low_resolution, Stage::repair}) {
         if (stage == Stage::repair && !reconstructs)
             break;
@@ -228,7 +234,7 @@ void ManyLight::collect(std::uint64_t completed_serial) {
 std::uint64_t ManyLight::memory_bytes() const {
     std::uint64_t bytes = tables_.memory_bytes() + light_maps_->texels().size() + baked_light_->memory_bytes();
     for (const gpu::Buffer* buffer : {&pixels_, &nodes_, &slots_, &sums_, &entries_, &counts_, &cell_masks_,
-                                      &block_groups_, &commands_, &rough_entries_, &rough_commands_})
+                                      &block_groups_, &commands_, &rough_entries_, &rough_commands_, &picture_})
         bytes += buffer->size();
     return bytes;
 }

@@ -103,7 +103,7 @@ private:
     VkSampler sampler_ = VK_NULL_HANDLE;
     std::map<std::pair<std::string, std::vector<std::uint32_t>>, const gpu::Pipeline*> kernels_;
     gpu::Buffer pixels_, nodes_, slots_, sums_, entries_, counts_, cell_masks_, block_groups_, commands_,
-        rough_entries_, rough_commands_, unused_texels_;
+        rough_entries_, rough_commands_, picture_, unused_texels_;
     struct Readback {
         gpu::Buffer words;
         std::uint64_t serial = 0;

@@ -15,7 +15,8 @@ struct ManyLight::Frame {
     shared::ManyLightConstants constants;
     gpu::ResourceId pixels, nodes, slots, sums, entries, counts, cell_masks, block_groups, commands, rough_entries,
         rough_commands;
-    bool baked = false; // baked light is used
+    bool baked = false;          // baked light is used
+    bool through_buffer = false; // the reconstructed picture is written to a buffer, and copied
 
     // Light maps, and baked light, hold surface samples that stay.
     bool is_held(const LightBatch& batch) const {

@@ -275,13 +275,15 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, Phase phase, const 
 Status ManyLight::add_reconstruction(const Frame& frame) {
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("reconstruct.comp",
                                                           {uniform_buffer, sampled_image, sampled_image, texel_buffer,
-                                                           storage_image, storage_buffer},
-                                                          {frame.options.scale}));
+                                                           storage_image, storage_buffer, storage_buffer},
+                                                          {frame.options.scale, frame.through_buffer}));
+    const gpu::ResourceId picture = frame.graph.import_buffer(picture_);
     frame.graph.add_pass("reconstruction")
         .read(frame.g_buffer.depth, gpu::Usage::sampled)
         .read(frame.g_buffer.normals, gpu::Usage::sampled)
         .read(frame.sums, gpu::Usage::texel_read)
         .write(frame.output, gpu::Usage::storage_write)
+        .write(picture, gpu::Usage::storage_write)
         .write(frame.cell_masks, gpu::Usage::storage_write)
         .execute([this, kernel, camera = frame.camera, g_buffer = frame.g_buffer, output = frame.output,
                   constants = frame.constants](gpu::PassContext& context) -> Status {
@@ -291,11 +293,25 @@ Status ManyLight::add_reconstruction(const Frame& frame) {
                 gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
                 gpu::Binding::texels(sums_),
                 gpu::Binding::storage_image(context.graph.view(output)),
-                gpu::Binding::buffer(cell_masks_)};
+                gpu::Binding::buffer(cell_masks_),
+                gpu::Binding::buffer(picture_)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
             context.resources.push(context.commands, *kernel, constants);
             context.device.vk.vkCmdDispatch(context.commands, divide_up(constants.cell_columns, 8),
                                             divide_up(constants.cell_rows, 8), 1);
+            return {};
+        });
+    if (!frame.through_buffer)
+        return {};
+    frame.graph.add_pass("reconstruction")
+        .read(picture, gpu::Usage::transfer_source)
+        .write(frame.output, gpu::Usage::transfer_destination)
+        .execute([this, output = frame.output, constants = frame.constants](gpu::PassContext& context) -> Status {
+            VkBufferImageCopy region{};
+            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            region.imageExtent = {constants.width, constants.height, 1};
+            context.device.vk.vkCmdCopyBufferToImage(context.commands, picture_.handle(), context.graph.image(output),
+                                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
             return {};
         });
     return {};

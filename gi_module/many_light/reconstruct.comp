@@ -10,6 +10,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int scale = 4;
+layout(constant_id = 1) const uint to_buffer = 0; // 1: the picture goes to a buffer, which is copied
 
 // Where the valid neighbours' bilinear weights sum to less, the pixel lies beyond them, at a crease or a silhouette:
 // what they say would be extrapolated.
@@ -21,6 +22,7 @@ layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform samplerBuffer sums; // as texels: a CPU device reads them faster
 layout(set = 0, binding = 4) writeonly uniform image2D output_image;
 layout(set = 0, binding = 5) writeonly buffer CellMasks { uvec2 cell_masks[]; };
+layout(set = 0, binding = 6) writeonly buffer Picture { uint picture_halves[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 // On a plane, depth (near / distance along the view) is linear in the picture: a neighbour's plane is three numbers.
@@ -85,6 +87,23 @@ bool on_one_plane(Neighbour neighbours[4], float distance) {
     return same;
 }
 
+// Half-precision bits of what is not negative, rounded down.
+uint half_bits(float value) {
+    const uint bits = floatBitsToUint(min(value, 65504.0));
+    const uint small = floatBitsToUint(value + 0.5) - floatBitsToUint(0.5); // below 2^-14, halves have one step
+    return value < 6.1035156e-5 ? small : (bits - 0x38000000u) >> 13;
+}
+
+void store(ivec2 pixel, vec4 value) {
+    if (to_buffer == 0) {
+        imageStore(output_image, pixel, value);
+        return;
+    }
+    const uint at = 2u * (uint(pixel.y) * constants.width + uint(pixel.x));
+    picture_halves[at] = half_bits(value.r) | half_bits(value.g) << 16;
+    picture_halves[at + 1u] = half_bits(value.b) | (value.a > 0.0 ? 0x3c000000u : 0u);
+}
+
 uvec2 with_bit(uvec2 mask, uint bit) {
     return bit < 32u ? uvec2(mask.x | 1u << bit, mask.y) : uvec2(mask.x, mask.y | 1u << (bit - 32u));
 }
@@ -133,7 +152,7 @@ void main() {
                 const bool easy = flat_cell && on_plane && depths[i] > 0.0;
                 const uint bit = uint(inside.y * scale + inside.x);
                 if (easy)
-                    imageStore(output_image, pixel, vec4(blend(neighbours, weights_at(vec2(inside))), 1.0));
+                    store(pixel, vec4(blend(neighbours, weights_at(vec2(inside))), 1.0));
                 if (easy && all_differ)
                     again_mask = with_bit(again_mask, bit);
                 if (!easy)
@@ -178,7 +197,7 @@ void main() {
         const bool surface = depth > 0.0;
         if (surface && again)
             again_mask = with_bit(again_mask, bit);
-        imageStore(output_image, pixel, surface ? vec4(blend(neighbours, shares), 1.0) : vec4(0.0));
+        store(pixel, surface ? vec4(blend(neighbours, shares), 1.0) : vec4(0.0));
     }
     cell_masks[uint(cell.y) * constants.cell_columns + uint(cell.x)] = again_mask;
 }
