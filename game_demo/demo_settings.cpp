@@ -53,6 +53,9 @@ const TypeDescription& DemoSettings::description() {
          SUNFLECK_FIELD(DemoSettings, light_samples, "", 50, 4096, "More make smoother light, and cost time"),
          SUNFLECK_FIELD(DemoSettings, map_budget, "maps", 5, 1000,
                         "Shadow maps redrawn a frame; fewer is faster, and shadows of moving things lag"),
+         SUNFLECK_FIELD(DemoSettings, transfer, "", 0, 1,
+                        "Round things that move are lit by precomputed transfer, also by what they reflect onto "
+                        "themselves; their shadows on themselves are softer, and it costs time"),
          SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Brighter to the right, darker to the left"),
          SUNFLECK_FIELD(DemoSettings, field_of_view, "degrees", 40, 110, "Angle of view from bottom to top"),
          SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "How far the view turns for a motion of the hand"),

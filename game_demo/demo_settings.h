@@ -37,6 +37,7 @@ struct DemoSettings {
     float render_scale = 0.5f;
     std::uint32_t light_samples = 200;
     std::uint32_t map_budget = 40;
+    bool transfer = false;
     float exposure = 0.0f;
     float field_of_view = 68.0f;
     float sensitivity = 1.0f;

@@ -66,6 +66,7 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
               {"light_samples_dynamic", counters.light_samples_dynamic},
               {"pixels_low_resolution", counters.pixels.pixels_low_resolution},
               {"pixels_repaired", counters.pixels.pixels_repaired},
+              {"transfer_vertices", counters.transfer_vertices},
               {"bodies_rescued", level.simulation().physics().rescued()},
               {"player_rescued", level.simulation().player().rescued()}}}};
 }
@@ -89,6 +90,7 @@ Status run_headless(const Options& options) {
     DemoSettings settings;
     settings.preset = options.preset.value_or(usual_preset(device->traits().software));
     apply_preset(settings);
+    settings.transfer = options.transfer.value_or(settings.transfer);
     SUNFLECK_ASSIGN(const auto level, Level::load(*device, options.scene, settings, 2));
     WalkThrough walk;
     std::vector<simulation::StepInput> done;

@@ -1,5 +1,6 @@
 #include "game_demo/level.h"
 
+#include "engine/core/file.h"
 #include "game_demo/presets.h"
 
 #include <algorithm>
@@ -27,6 +28,7 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::strin
     const bool is_path = scene.find('/') != std::string::npos || scene.find('.') != std::string::npos;
     io::ImportOptions import;
     import.progress = progress;
+    level->renderer_->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene), import));
     ecs::Registry& registry = level->renderer_->registry();
     level->ev100_ = viewer::scene_exposure(registry);

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
     using namespace sunfleck;
     demo::Options options;
-    std::string size, preset;
+    std::string size, preset, movers;
     bool no_indirect = false;
     CLI::App program(
         "Lantern House, Sunfleck's demo: a house to walk through, where doors, lamps and a lantern move and\n"
@@ -31,6 +31,10 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     program.add_option("--preset", preset, "Quality: software, low, medium, high or ultra (default: by the device)")
         ->check(CLI::IsMember({"software", "low", "medium", "high", "ultra"}));
+    program
+        .add_option("--movers", movers,
+                    "Light of complex things that move: per_pixel, or prt, precomputed (default: by the preset)")
+        ->check(CLI::IsMember({"per_pixel", "prt"}));
     program.add_option("--settings", options.settings_file,
                        "Settings file (default: sunfleck/demo.json in the configuration folder)");
     program.add_flag("--direct-only", no_indirect, "Headless: without bounced light");
@@ -43,6 +47,8 @@ int main(int argc, char** argv) {
         return 2;
     }
     options.indirect = !no_indirect;
+    if (!movers.empty())
+        options.transfer = movers == "prt";
     const char* names[] = {"software", "low", "medium", "high", "ultra"};
     for (std::uint32_t i = 0; i < 5; ++i)
         if (preset == names[i])

@@ -216,9 +216,9 @@ void Menu::settings_screen(DemoSettings& settings, const app::InputState& input,
                 apply_preset(settings);
                 changed = true;
             }
-            const bool own = field(settings, "render_scale", "Rendered size") |
-                             field(settings, "light_samples", "Light samples") |
-                             field(settings, "map_budget", "Shadow maps");
+            const bool own =
+                field(settings, "render_scale", "Rendered size") | field(settings, "light_samples", "Light samples") |
+                field(settings, "map_budget", "Shadow maps") | field(settings, "transfer", "Precomputed light");
             if (own)
                 settings.preset = Preset::custom;
             changed |= own;

@@ -14,6 +14,7 @@ struct Options {
     std::uint32_t steps_per_frame = 2; // of a headless run
     std::string output, device, scene = "lantern_house", input, record;
     std::optional<Preset> preset;
+    std::optional<bool> transfer; // in place of the preset's
     std::uint32_t width = 1280, height = 720;
     bool indirect = true;
     std::string settings_file; // empty: the usual one

@@ -6,13 +6,14 @@ namespace {
 struct Quality {
     float render_scale;
     std::uint32_t light_samples, map_budget;
+    bool transfer;
 };
 constexpr Quality qualities[] = {
-    {0.5f, 200, 24},   // software
-    {0.67f, 250, 40},  // low
-    {0.75f, 400, 60},  // medium
-    {1.0f, 600, 120},  // high
-    {1.0f, 1500, 300}, // ultra
+    {0.5f, 200, 24, false},  // software
+    {0.67f, 250, 40, false}, // low
+    {0.75f, 400, 60, false}, // medium
+    {1.0f, 600, 120, true},  // high
+    {1.0f, 1500, 300, true}, // ultra
 };
 
 // The nearest preset that does as much work.
@@ -33,6 +34,7 @@ void apply_preset(DemoSettings& settings) {
     settings.render_scale = quality.render_scale;
     settings.light_samples = quality.light_samples;
     settings.map_budget = quality.map_budget;
+    settings.transfer = quality.transfer;
 }
 
 gi::Settings lighting_of(const DemoSettings& settings) {
@@ -46,6 +48,7 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     result.patch_levels = 2; // the house has many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
+    result.movers = settings.transfer ? gi::MoverHandling::transfer : gi::MoverHandling::per_pixel;
     return result;
 }
 

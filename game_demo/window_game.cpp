@@ -73,6 +73,10 @@ private:
         if (options_.preset || !loaded.found)
             settings_.preset = options_.preset.value_or(usual_preset(device_->traits().software));
         apply_preset(settings_);
+        if (options_.transfer && *options_.transfer != settings_.transfer) {
+            settings_.transfer = *options_.transfer;
+            settings_.preset = Preset::custom;
+        }
         SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
         start_loading();
         window_->set_full_screen(settings_.full_screen);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/core/description.h"
+#include "gi_module/visibility/test_grouping.h"
 
 namespace sunfleck::gi {
 
@@ -15,9 +16,6 @@ enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
 // with brute force, which knows no such thing, flux_and_age: brightest channel times age, thesis sec. 4.5.3. age: in
 // turns.
 enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
-// What is asked first when a mover is tested: clusters of samples and groups of nodes, down their hierarchy; nodes of
-// the patches' trees, by each sample; or every mover, node and sample by itself. All find the same.
-enum class TestGrouping : std::uint32_t { clusters, trees, pairs };
 // as_static: as static geometry, in random walks, too. transfer: complex ones by precomputed radiance transfer.
 enum class MoverHandling : std::uint32_t { per_pixel, as_static, transfer };
 

@@ -275,12 +275,4 @@ void watch_interrupts() {
     });
 }
 
-std::filesystem::path user_cache_folder() {
-    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder != nullptr && folder[0] == '/')
-        return std::filesystem::path(folder) / "sunfleck";
-    const char* home = std::getenv("HOME");
-    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".cache/sunfleck"
-                                             : std::filesystem::path();
-}
-
 } // namespace sunfleck::command_line

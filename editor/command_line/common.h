@@ -103,7 +103,4 @@ Command make_compare_command(CLI::App& program);
 Command make_bench_command(CLI::App& program);
 Command make_info_command(CLI::App& program);
 
-// $XDG_CACHE_HOME/sunfleck, or ~/.cache/sunfleck: for what can be computed again. Empty if there is neither.
-std::filesystem::path user_cache_folder();
-
 } // namespace sunfleck::command_line

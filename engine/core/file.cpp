@@ -1,6 +1,7 @@
 #include "engine/core/file.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -88,6 +89,14 @@ Status write_file(const std::filesystem::path& path, std::string_view content) {
             status = file_error("cannot write", path);
         return status;
     });
+}
+
+std::filesystem::path user_cache_folder() {
+    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder != nullptr && folder[0] == '/')
+        return std::filesystem::path(folder) / "sunfleck";
+    const char* home = std::getenv("HOME");
+    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".cache/sunfleck"
+                                             : std::filesystem::path();
 }
 
 } // namespace sunfleck

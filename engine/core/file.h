@@ -21,4 +21,7 @@ Status write_file(const std::filesystem::path& path, std::string_view content);
 Status replace_file(const std::filesystem::path& path,
                     const std::function<Status(const std::filesystem::path& temporary)>& writer);
 
+// $XDG_CACHE_HOME/sunfleck, or ~/.cache/sunfleck: for what can be computed again. Empty if there is neither.
+std::filesystem::path user_cache_folder();
+
 } // namespace sunfleck

@@ -20,9 +20,9 @@
 // "partial" they have no state "none".
 #pragma once
 
-#include "gi_module/settings.h"
 #include "gi_module/visibility/moving_blocker.h"
 #include "gi_module/visibility/surface_patches.h"
+#include "gi_module/visibility/test_grouping.h"
 
 #include <functional>
 #include <map>

@@ -72,6 +72,8 @@ TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
         const gi::Settings lighting = lighting_of(settings);
         EXPECT_TRUE(validate(gi::Settings::description(), &lighting));
         EXPECT_EQ(lighting.lights, settings.light_samples);
+        EXPECT_EQ(lighting.movers == gi::MoverHandling::transfer, settings.transfer);
+        EXPECT_TRUE(settings.transfer || !before.transfer);
         before = settings;
     }
 }
