@@ -261,7 +261,8 @@ void System::update_rows(const Bounds& bounds, const raytrace::RayScene& rays) {
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
         const bool few = samples_[i].dynamic && samples_[i].bounce > 0;
         const float map_scale = rows_[i].position_bound.w;
-        rows_[i] = make_light_row(samples_[i], i % slots, few ? dynamic_bound : bound_, scene_bounds_);
+        const float bound = geometry_bound_of(samples_[i].radius, few ? dynamic_bound : bound_, settings_.clamp_scale);
+        rows_[i] = make_light_row(samples_[i], i % slots, bound, scene_bounds_);
         // A spot's map covers its cone, whose angle may change where the light stays.
         if (samples_[i].kind == SampleKind::spot && rows_[i].position_bound.w != map_scale)
             scheduler_.mark_static(i);

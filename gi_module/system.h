@@ -127,8 +127,10 @@ public:
     const ManyLight& many_light() const { return *many_light_; }
     const CurvedCharts& curved_charts() const { return curved_charts_; }
     const MapScheduler& map_scheduler() const { return scheduler_; }
-    // The bound of the geometry term in use, 1/m2 (see transport/clamping.h).
+    // The bound of the geometry term in use, 1/m2 (see transport/clamping.h); single samples may have lower ones.
     float geometry_bound() const { return bound_; }
+    // What shaders see of the samples, in their order.
+    std::span<const shared::LightRow> light_rows() const { return rows_; }
 
 private:
     System(gpu::Device& device) : device_(device), resources_(device) {}

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <queue>
+#include <span>
 
 namespace sunfleck::gi {
 namespace {
@@ -74,18 +76,43 @@ public:
         return {measure(cluster.first, left), measure(cluster.first + left, cluster.count - left)};
     }
 
-    // One of the cluster's samples, drawn in proportion to its luminance, with the luminance of all.
+    // The cluster's sample nearest to the middle of its flux, with the flux of all and a disc as wide as they lie. The
+    // way that its light came is that of one of them, drawn in proportion to luminance.
     LightSample stand_in(const Cluster& cluster, float number) const {
-        double target = double(number) * cluster.flux;
-        std::uint32_t chosen = cluster.first;
-        for (std::uint32_t i = cluster.first; i < cluster.first + cluster.count; ++i) {
-            chosen = i;
-            target -= double(luminance(samples_[order_[i]].flux));
-            if (target < 0)
-                break;
+        const auto members = std::span(order_).subspan(cluster.first, cluster.count);
+        std::array<double, 6> middle{};
+        glm::dvec3 flux(0.0);
+        std::uint32_t drawn = members.front();
+        double before = 0.0;
+        for (const std::uint32_t i : members) {
+            flux += glm::dvec3(samples_[i].flux);
+            if (before <= double(number) * cluster.flux)
+                drawn = i;
+            before += double(luminance(samples_[i].flux));
+            const Place place = place_of(samples_[i]);
+            for (std::size_t k = 0; k < 6; ++k)
+                middle[k] += double(luminance(samples_[i].flux)) / cluster.flux * double(place[k]);
         }
-        LightSample sample = samples_[order_[chosen]];
-        sample.flux *= float(cluster.flux / double(luminance(sample.flux)));
+        std::uint32_t nearest = members.front();
+        double least = 1e30, variance = 0.0;
+        for (const std::uint32_t i : members) {
+            const Place place = place_of(samples_[i]);
+            double in_space = 0.0, in_all = 0.0;
+            for (std::size_t k = 0; k < 6; ++k) {
+                in_all += (double(place[k]) - middle[k]) * (double(place[k]) - middle[k]);
+                in_space = k < 3 ? in_all : in_space;
+            }
+            variance += double(luminance(samples_[i].flux)) / cluster.flux * in_space;
+            if (in_all < least) {
+                least = in_all;
+                nearest = i;
+            }
+        }
+        LightSample sample = samples_[drawn];
+        sample.position = samples_[nearest].position;
+        sample.normal = samples_[nearest].normal;
+        sample.flux = vec3(flux);
+        sample.radius = std::sqrt(2.0f * float(variance)); // of a disc with that variance
         return sample;
     }
 

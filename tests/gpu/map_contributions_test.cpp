@@ -15,11 +15,9 @@ class MapContributions : public GpuTest {};
 
 std::vector<float> contributions(GpuWorld& world, const scene::CameraView& camera) {
     gi::System& lighting = world.renderer->lighting();
-    std::vector<shared::LightRow> rows;
-    for (const gi::LightSample& sample : lighting.samples())
-        rows.push_back(gi::make_light_row(sample, sample.index, lighting.geometry_bound(), {}));
-    const std::vector<std::uint8_t> wanted(rows.size(), 1);
-    return gi::map_contributions(lighting.visibility(), lighting.samples(), rows, world.renderer->gpu_scene().draws(),
+    const std::vector<std::uint8_t> wanted(lighting.samples().size(), 1);
+    return gi::map_contributions(lighting.visibility(), lighting.samples(), lighting.light_rows(),
+                                 world.renderer->gpu_scene().draws(),
                                  scene::make_camera_row(camera, 160, 120).view_projection, wanted);
 }
 
@@ -41,9 +39,8 @@ std::vector<float> light_that_movers_decide(GpuWorld& world, const scene::Camera
                 glm::dot(point.geometric_normal, towards) < 0.0f ? -point.geometric_normal : point.geometric_normal;
             const bool on_mover = !scene::is_static(world.renderer->registry(), point.entity);
             for (const gi::LightSample& sample : lighting.samples()) {
-                const gi::Arrival light =
-                    gi::arrival(gi::make_light_row(sample, sample.index, lighting.geometry_bound(), {}),
-                                gi::light_class(sample.kind), point.position, 100.0f);
+                const gi::Arrival light = gi::arrival(lighting.light_rows()[sample.index], gi::light_class(sample.kind),
+                                                      point.position, 100.0f);
                 const float cosine = glm::dot(normal, glm::normalize(light.to_light));
                 if (cosine <= 0.0f)
                     continue;
