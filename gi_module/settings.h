@@ -58,8 +58,8 @@ struct Settings {
     float repair_angle = 12.0f;
     bool static_maps = true;
     bool map_detail = true;
-    std::uint32_t map_budget = 100; // shadow maps a frame
-    float map_milliseconds = 0.0f;  // GPU time for them; 0: map_budget counts
+    std::uint32_t map_budget = 80; // shadow maps a frame
+    float map_milliseconds = 0.0f; // GPU time for them; 0: map_budget counts
     MapPriority map_priority = MapPriority::contribution;
     TestGrouping visibility_tests = TestGrouping::clusters;
     bool count_passes = false;

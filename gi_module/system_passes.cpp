@@ -12,7 +12,7 @@ namespace {
 
 // Texels by which movers' simplified surfaces may be off. Shadows of direct light lie on each other and show their
 // outline; those of reflected light are scattered.
-constexpr float direct_detail = 0.35f, indirect_detail = 1.5f;
+constexpr float direct_detail = 0.35f, indirect_detail = 2.0f;
 
 } // namespace
 

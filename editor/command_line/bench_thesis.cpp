@@ -206,8 +206,9 @@ Status map_updates(Experiment& experiment) {
         }
         if (c.scene == std::string("four_pillars") && c.keep == std::string("knot")) {
             SUNFLECK_ASSIGN(const Measurement brute, bench->measure(brute_force(300), 1, 3, true));
-            SUNFLECK_ASSIGN(const Measurement full,
-                            bench->measure(many_light(300), 6, experiment.options.repeat, true));
+            gi::Settings settings = many_light(300);
+            settings.map_budget = 100;
+            SUNFLECK_ASSIGN(const Measurement full, bench->measure(settings, 6, experiment.options.repeat, true));
             experiment.value("ratio", c.scene, "one complex mover, 100 maps a frame", 300,
                              median(brute.frame_ms) / median(full.frame_ms), "target 6");
         }
@@ -222,6 +223,7 @@ Status scaling(Experiment& experiment, std::vector<PlotSeries>& plot) {
     for (const std::uint32_t lights : {256u, 512u, 1024u, 2048u, 4096u}) {
         gi::Settings settings = many_light(lights);
         settings.shadow_memory = 75.0f;
+        settings.map_budget = 100;
         SUNFLECK_ASSIGN(const Measurement m,
                         bench->measure(settings, warm_up(settings), experiment.options.repeat, true));
         experiment.row("scaling", "four_pillars", "75 MiB of maps, 100 maps a frame", lights, m);
