@@ -126,20 +126,20 @@ void main() {
             const uint bit = 1u << (2u * k);
             if (((any_partial | any_free) & bit) == 0u || sample_index < constants.batch_first || sample_index >= end)
                 continue;
-            uint in_map = 0u, to_add = 0u;
+            uint asks = 1u << any_node_slot, values = 0u;
             [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
-                if (mapped[s])
-                    in_map |= ((none[s] | partial[s]) & bit) != 0u ? 1u << s : 0u;
-                else
-                    to_add |= (none[s] & bit) != 0u ? 1u << s : 0u;
+                const bool is_partial = (partial[s] & bit) != 0u;
+                asks |= is_partial ? 1u << s : 0u;
+                values |= (mapped[s] ? is_partial : (none[s] & bit) != 0u) ? 1u << s : 0u;
             }
-            const uint sample_bits = sample_index - constants.batch_first;
-            if (phase == phase_rough && !may_light(light_rows[sample_bits], bounds))
+            const uint in_batch = sample_index - constants.batch_first;
+            if (phase == phase_rough && !may_light(light_rows[in_batch], bounds))
                 continue;
+            const uint entry = in_batch | (values << entry_slots_shift) | (asks << entry_asks_shift);
             if ((any_partial & bit) != 0u)
-                entries[first + tested++] = sample_bits | (in_map << entry_slots_shift);
+                entries[first + tested++] = entry;
             else
-                entries[first + constants.list_stride - 1u - untested++] = sample_bits | (to_add << entry_slots_shift);
+                entries[first + constants.list_stride - 1u - untested++] = entry;
         }
     }
     counts[group] = GroupCounts(tested, untested);

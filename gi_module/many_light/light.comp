@@ -75,7 +75,7 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
-        slot[k] = (entry_slots[i] & (entry_on_mover - 1u)) + entry_slots_shift;
+        slot[k] = entry_slots[i] & (entry_on_mover - 1u);
         surface[k].on_mover = (entry_slots[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
         if (phase == phase_baked && (entry_slots[i] & entry_is_baked) == 0u)
             surface[k].normal = vec3(0.0); // no sample lights it
@@ -90,8 +90,9 @@ void main() {
             if (phase == phase_baked) {
                 sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * taken_by_movers(light, surface[k], factor.visibility));
             } else {
-                const float held = float((entry >> slot[k]) & 1u); // by the light map
-                sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (factor.visibility - held));
+                const float value = float((entry >> (slot[k] + entry_slots_shift)) & 1u);
+                const bool asks = ((entry >> (slot[k] + entry_asks_shift)) & 1u) != 0u;
+                sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (asks ? factor.visibility - value : value));
             }
         }
     }
@@ -104,7 +105,7 @@ void main() {
                 const LightFactor factor = light_factor(light, surface[k], true);
                 sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * (1.0 - factor.visibility));
             } else {
-                const float wanted = float((entry >> slot[k]) & 1u);
+                const float wanted = float((entry >> (slot[k] + entry_slots_shift)) & 1u);
                 sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * wanted);
             }
         }

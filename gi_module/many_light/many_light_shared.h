@@ -6,6 +6,7 @@
 #ifndef SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #define SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #include "engine/core/shader_language.h"
+#include "gi_module/transport/light_row_shared.h"
 SHARED_BEGIN
 
 SHARED_CONSTANT uint group_pixels = 64u;
@@ -14,9 +15,9 @@ SHARED_CONSTANT uint group_side = 8u; // of a tile, in pixels of the low-resolut
 SHARED_CONSTANT uint no_pixel = 0xffffffffu;
 SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
 
-// Nodes of a group have slots 0 to 10. Slot 11 is for pixels of any further node, or of none: every sample is tested.
-SHARED_CONSTANT uint group_slots = 12u;
-SHARED_CONSTANT uint any_node_slot = 11u;
+// Nodes of a group have slots 0 to 9. Slot 10 is for pixels of any further node, or of none: every sample is tested.
+SHARED_CONSTANT uint group_slots = 11u;
+SHARED_CONSTANT uint any_node_slot = 10u;
 SHARED_CONSTANT uint entry_on_mover = 256u;    // beside the slot: the pixel shows a mover
 SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for baked light: they are for this pixel
 SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
@@ -27,11 +28,13 @@ SHARED_CONSTANT uint node_mask = 0x3fffffffu;
 // steps of 16 bits.
 SHARED_CONSTANT float flat_shaded_limit = 1e-6f;
 
-// A list entry: sample (of the batch) in bits 0 to 15; from bit 16 a bit for each slot. In the list with tests the bit
-// says that the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; in
-// the list without, that the sample's light is still to be added.
-SHARED_CONSTANT uint entry_sample_mask = 0xffffu;
-SHARED_CONSTANT uint entry_slots_shift = 16u;
+// A list entry: sample (of the batch) in bits 0 to 8; then two bits for each slot, so that what lights a pixel does not
+// depend on its company. From bit 20: whether the slot's pixels ask the shadow map. From bit 9: for those that ask,
+// whether the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; for the
+// others, whether the sample's light is still to be added.
+SHARED_CONSTANT uint entry_sample_mask = 0x1ffu;
+SHARED_CONSTANT uint entry_slots_shift = 9u;
+SHARED_CONSTANT uint entry_asks_shift = 20u;
 
 // By node: where its light map is.
 struct NodeRow {
@@ -106,5 +109,9 @@ SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
 static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 104);
+static_assert(sunfleck::shared::lights_per_batch <= sunfleck::shared::entry_sample_mask + 1);
+static_assert(sunfleck::shared::entry_slots_shift + sunfleck::shared::group_slots <=
+              sunfleck::shared::entry_asks_shift);
+static_assert(sunfleck::shared::entry_asks_shift + sunfleck::shared::group_slots <= 32);
 #endif
 #endif
