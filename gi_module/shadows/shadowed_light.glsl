@@ -101,6 +101,15 @@ float directional_visibility(LightRow light, Pixel pixel, vec3 v, float along) {
                          : filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
 }
 
+// The same on a hemisphere map, from the nearest texel and the receiver's plane at its centre.
+float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, float plane_distance, float lag) {
+    const vec2 texel = clamp(floor(map_place(place.xy)), vec2(0.0), vec2(map_side() - 1.0));
+    const vec3 centre = hemisphere_direction((texel + 0.5) * (2.0 / map_side()) - 1.0);
+    const float value =
+        receiver_centre_value(place.z, light_space_normal, plane_distance, centre, hemisphere_texel_reach(map_side()));
+    return min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, ivec2(texel)) ? 1.0 : 0.0;
+}
+
 // What the shadow map says, 0 to 1.
 float map_visibility(LightRow light, Pixel pixel) {
     const vec3 v = pixel.position - light.position_bound.xyz;
@@ -113,18 +122,20 @@ float map_visibility(LightRow light, Pixel pixel) {
     const float scale = light.position_bound.w;
     const bool cone = !hemisphere && scale > 0.0;
     const vec3 place = hemisphere ? hemisphere_map(d) : cone ? cone_map(d, scale) : sphere_map(d);
+    const float lag = lag_value(light, pixel, place.z);
+    const uint slot = uint(light.intensity_slot.w);
+    const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
+                             dot(light.bitangent.xyz, pixel.geometric_normal),
+                             dot(light.normal_offset.xyz, pixel.geometric_normal));
+    if (filtered == 0 && hemisphere)
+        return hemisphere_visibility(slot, place, normal, plane_distance, lag);
     const float reach = hemisphere ? hemisphere_texel_reach(map_side())
                         : cone     ? cone_texel_reach(map_side(), scale)
                                    : sphere_texel_reach(map_side());
     const float bias = perspective_bias(reach, plane_distance, place.z);
-    const float lag = lag_value(light, pixel, place.z);
-    const uint slot = uint(light.intensity_slot.w);
     if (filtered == 0)
         return nearest_visibility(slot, place.xy,
                                   min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits) + lag);
-    const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
-                             dot(light.bitangent.xyz, pixel.geometric_normal),
-                             dot(light.normal_offset.xyz, pixel.geometric_normal));
     return filtered_plane_visibility(slot, scale, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
 }
 
