@@ -21,7 +21,7 @@
 #include "gi_module/light_sampling/dynamic_lights.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/many_light/many_light.h"
-#include "gi_module/many_light/pass_optimisation.h"
+#include "gi_module/many_light/pass_grouping.h"
 #include "gi_module/settings.h"
 #include "gi_module/shadows/map_budget.h"
 #include "gi_module/shadows/map_scheduler.h"
@@ -186,8 +186,8 @@ private:
     std::vector<std::uint32_t> to_draw_;
     VisibilityDatabase database_;
     VisibilityOptions database_options_;
-    PassOptimiser passes_;
-    std::uint64_t passes_generation_ = 0; // of the database
+    std::unique_ptr<PassGrouping> passes_; // if they are counted
+    std::uint64_t passes_generation_ = 0;  // of the database
     std::uint32_t passes_lights_ = 0;
     bool passes_extras_ = false;
     std::map<std::uint32_t, PassLights> seen_nodes_;

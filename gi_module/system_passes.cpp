@@ -1,6 +1,8 @@
 // The half of gi::System that declares GPU work.
 #include "gi_module/system.h"
 
+#include "gi_module/many_light/pass_cover.h"
+#include "gi_module/many_light/pass_optimisation.h"
 #include "gi_module/many_light/visible_nodes.h"
 
 #include <algorithm>
@@ -173,9 +175,12 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
 void System::count_passes() {
     if (!settings_.count_passes || !input_.view_projection)
         return;
-    if (passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass ||
+    if (!passes_ || passes_generation_ != database_.generation() || passes_lights_ != settings_.lights_per_pass ||
         passes_extras_ != settings_.pass_extras) {
-        passes_ = PassOptimiser(settings_.lights_per_pass);
+        if (settings_.pass_extras)
+            passes_ = std::make_unique<PassCover>(settings_.lights_per_pass);
+        else
+            passes_ = std::make_unique<PassOptimiser>(settings_.lights_per_pass);
         passes_generation_ = database_.generation();
         passes_lights_ = settings_.lights_per_pass;
         passes_extras_ = settings_.pass_extras;
@@ -187,11 +192,11 @@ void System::count_passes() {
         const LightSet none(lights.needed.size(), 0);
         changed.try_emplace(node, PassLights{none, none});
     }
-    passes_.update(changed);
+    passes_->update(changed);
     seen_nodes_ = seen;
-    counters_.render_passes = passes_.passes();
-    counters_.pass_fill = passes_.fill();
-    counters_.render_passes_unoptimised = passes_.passes_unoptimised();
+    counters_.render_passes = passes_->passes();
+    counters_.pass_fill = passes_->fill();
+    counters_.render_passes_unoptimised = passes_->passes_unoptimised();
 }
 
 } // namespace sunfleck::gi

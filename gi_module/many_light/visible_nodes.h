@@ -1,7 +1,7 @@
 // Which nodes of the visibility database a view may show, and with which lights they need shadow tests.
 #pragma once
 
-#include "gi_module/many_light/pass_optimisation.h"
+#include "gi_module/many_light/pass_grouping.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
