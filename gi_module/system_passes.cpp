@@ -152,6 +152,7 @@ Status System::add_many_light(gpu::FrameGraph& graph, const scene::GpuScene& gpu
         scheduler_.done(to_draw_);
     }
     SUNFLECK_ASSIGN(const std::vector<LightBatch> batches, make_batches(0, std::uint32_t(samples_.size())));
+    options.simplified_movers = settings_.map_detail;
     options.stale_maps = settings_.shadows && scheduler_.stale() > 0;
     SUNFLECK_TRY(many_light_->add_passes(graph, g_buffer, camera, *shadow_maps_, batches, scheduler_.ages(), options,
                                          resources_, output));

@@ -18,7 +18,7 @@ layout(constant_id = 4) const uint count_clamped = 0;
 layout(constant_id = 5) const uint storage_lights = 0;
 layout(constant_id = 6) const uint map_bits = 16;
 
-const uint stale_maps = 0;
+const uint stale_maps = 0, simplified_movers = 0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;

@@ -14,7 +14,7 @@ layout(constant_id = 0) const uint filtered = 0;
 layout(constant_id = 1) const uint map_bits = 16;
 const uint light_class = light_class_surface;
 const uint maps = maps_texel_buffer;
-const uint stale_maps = 0;
+const uint stale_maps = 0, simplified_movers = 0;
 const uint lanes = 8u, texels_per_invocation = 8u;
 
 layout(local_size_x = 8) in;

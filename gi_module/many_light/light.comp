@@ -19,6 +19,7 @@ layout(constant_id = 6) const uint lanes = 8;
 layout(local_size_x_id = 6) in;
 layout(constant_id = 7) const uint stale_maps = 0;
 layout(constant_id = 8) const uint phase = phase_plain;
+layout(constant_id = 9) const uint simplified_movers = 0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;

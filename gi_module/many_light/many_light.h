@@ -28,6 +28,7 @@ struct ManyLightOptions {
     std::uint32_t scale = 4;          // of the low-resolution pass: 1 (off), 2, 4 or 8
     float contrast = 0.3f;
     float normal_degrees = 12.0f;
+    bool simplified_movers = false;            // in the maps
     bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
     std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
 };

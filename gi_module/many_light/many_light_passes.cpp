@@ -234,7 +234,7 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, Phase phase, const 
                              {shared::group_pixels / lanes, batch.light_class,
                               frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
                               filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes,
-                              frame.options.stale_maps, std::uint32_t(phase)}));
+                              frame.options.stale_maps, std::uint32_t(phase), frame.options.simplified_movers}));
     auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution light");
     if (stage == Stage::repair || phase == Phase::rough)
         pass.read(phase == Phase::rough ? frame.rough_commands : frame.commands, gpu::Usage::indirect_read);

@@ -105,18 +105,21 @@ SHARED_FUNCTION float orthographic_bias(float resolution, float cosine) {
 // by the steepest one. Two things remain. A surface that is not quite a plane (a tenth of the bias is for it); and in
 // concave corners the centre may lie on the other wall, before the receiver's plane though nothing is before the
 // receiver: what is nearer to the receiver than about a texel's width, one and a quarter times the head-on bias,
-// does not shadow it. Both were chosen by counting: pairs that rays find free or blocked, and pixels in corners.
+// does not shadow it. Both were chosen by counting: pairs that rays find free or blocked, and pixels in corners. Movers
+// may be in the maps as simplified forms of themselves, and then have the whole bias.
 SHARED_CONSTANT float shadow_centre_slack = 0.1f;
 SHARED_CONSTANT float shadow_head_on_slack = 1.25f;
 // Value that a receiver is held against. `inverse_w`: 1 / w at the receiver; `normal`: its normal in light space;
-// `plane_distance`: of the light to its plane; `centre`: direction of the texel's centre.
+// `plane_distance`: of the light to its plane; `centre`: direction of the texel's centre; `simplified`: 1 for
+// a surface of which the map shows a simplified form, or 0.
 SHARED_FUNCTION float receiver_centre_value(float inverse_w, vec3 normal, float plane_distance, vec3 centre,
-                                            float texel_reach) {
+                                            float texel_reach, float simplified) {
     float inverse_distance = 1.0f / max(plane_distance, 1e-9f);
     float bias = texel_reach * min(inverse_distance, shadow_slope_limit * inverse_w);
     float on_plane = -dot(normal, centre) * inverse_distance;
     float held = clamp(on_plane, inverse_w - bias, inverse_w + bias) + shadow_centre_slack * bias;
-    return shadow_near * max(held, inverse_w + shadow_head_on_slack * texel_reach * inverse_w);
+    float near_by = max(shadow_head_on_slack * texel_reach * inverse_w, simplified * bias);
+    return shadow_near * max(held, inverse_w + near_by);
 }
 
 // --- Filtered look-up ----------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 // Light of one sample at one pixel: what every kernel that evaluates samples per pixel shares.
 //
 // The including shader defines before: light_class, maps (maps_none: no test), filtered, map_bits, stale_maps (some
-// map shows movers where they were) as constants;
+// map shows movers where they were), simplified_movers (in the maps) as constants;
 // map_side(), the texels along a map's side; and map_value(slot, texel), the stored value.
 #include "gi_module/shadows/octahedral_map.h"
 
@@ -9,7 +9,7 @@ struct Pixel {
     vec3 position;
     vec3 normal;
     vec3 geometric_normal;
-    float on_mover; // 1: of a mover, which stale maps show where it was; 0
+    float on_mover; // 1: of a mover, which maps may show simplified, and stale ones where it was; 0
 };
 
 // What one sample does to a pixel, as factors of its intensity.
@@ -102,11 +102,12 @@ float directional_visibility(LightRow light, Pixel pixel, vec3 v, float along) {
 }
 
 // The same on a hemisphere map, from the nearest texel and the receiver's plane at its centre.
-float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, float plane_distance, float lag) {
+float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, float plane_distance,
+                            float simplified, float lag) {
     const vec2 texel = clamp(floor(map_place(place.xy)), vec2(0.0), vec2(map_side() - 1.0));
     const vec3 centre = hemisphere_direction((texel + 0.5) * (2.0 / map_side()) - 1.0);
-    const float value =
-        receiver_centre_value(place.z, light_space_normal, plane_distance, centre, hemisphere_texel_reach(map_side()));
+    const float value = receiver_centre_value(place.z, light_space_normal, plane_distance, centre,
+                                              hemisphere_texel_reach(map_side()), simplified);
     return min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, ivec2(texel)) ? 1.0 : 0.0;
 }
 
@@ -128,7 +129,8 @@ float map_visibility(LightRow light, Pixel pixel) {
                              dot(light.bitangent.xyz, pixel.geometric_normal),
                              dot(light.normal_offset.xyz, pixel.geometric_normal));
     if (filtered == 0 && hemisphere)
-        return hemisphere_visibility(slot, place, normal, plane_distance, lag);
+        return hemisphere_visibility(slot, place, normal, plane_distance,
+                                     simplified_movers != 0 ? pixel.on_mover : 0.0, lag);
     const float reach = hemisphere ? hemisphere_texel_reach(map_side())
                         : cone     ? cone_texel_reach(map_side(), scale)
                                    : sphere_texel_reach(map_side());

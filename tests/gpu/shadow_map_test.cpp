@@ -62,7 +62,7 @@ struct Maps {
         const float bias = result.bias - depth_step(bits);
         if (hemisphere[light]) {
             const float held = receiver_centre_value(result.place.z, to_light_space(light, normal),
-                                                     -glm::dot(normal, v), centre(light, result.texel), reach);
+                                                     -glm::dot(normal, v), centre(light, result.texel), reach, 0.0f);
             result.bias = std::min(held, 1.0f) + depth_step(bits) - result.receiver;
         }
         result.lit = result.receiver + result.bias >= value(light, result.texel);
