@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::uint64_t repair_list_bytes = std::uint64_t(24) << 20; // bound of the lists of samples
 constexpr std::uint32_t least_repair_share = 4;                      // a quarter of the picture, where that fits
+constexpr std::uint64_t small_picture_groups = 512;                  // all of a picture of 32,768 pixels
 
 } // namespace
 
@@ -133,8 +134,9 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     for (const LightBatch& batch : batches)
         constants.list_stride = std::max(constants.list_stride, std::max(batch.count, 1u));
     const std::uint64_t whole = std::uint64_t(divide_up(g_buffer.width * g_buffer.height, shared::group_pixels));
-    constants.group_capacity = std::uint32_t(std::clamp<std::uint64_t>(
-        whole / least_repair_share, 64, repair_list_bytes / (std::uint64_t(constants.list_stride) * 4)));
+    constants.group_capacity = std::uint32_t(
+        std::clamp<std::uint64_t>(std::max(whole / least_repair_share, std::min(whole, small_picture_groups)), 64,
+                                  repair_list_bytes / (std::uint64_t(constants.list_stride) * 4)));
     SUNFLECK_TRY(make_buffers(constants, resources));
     tables_.add_passes(graph);
     if (options.light_maps && options.visibility)
