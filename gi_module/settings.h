@@ -37,7 +37,7 @@ struct Settings {
     Termination termination = Termination::russian_roulette;
 
     // Reflected samples are chosen from so many times as many (light_sampling/sample_clusters.h); 1: as they come.
-    std::uint32_t candidates = 32;
+    std::uint32_t candidates = 64;
     float spread = 0.5f;
 
     std::uint32_t shadow_map_resolution = 256;
