@@ -85,6 +85,10 @@ SHARED_CONSTANT float shadow_slope_limit = 8.0f;
 SHARED_FUNCTION float perspective_bias(float texel_reach, float plane_distance, float inverse_w) {
     return shadow_near * texel_reach * min(1.0f / max(plane_distance, 1e-9f), shadow_slope_limit * inverse_w);
 }
+// What the receiver's plane has at a texel's centre with direction `centre`; `normal` in light space.
+SHARED_FUNCTION float value_on_plane(vec3 normal, float plane_distance, vec3 centre) {
+    return -shadow_near * dot(normal, centre) * (1.0f / max(plane_distance, 1e-9f));
+}
 SHARED_FUNCTION float hemisphere_texel_reach(float resolution) {
     return 1.41421356f / resolution;
 }
@@ -114,12 +118,11 @@ SHARED_CONSTANT float shadow_head_on_slack = 1.25f;
 // a surface of which the map shows a simplified form, or 0.
 SHARED_FUNCTION float receiver_centre_value(float inverse_w, vec3 normal, float plane_distance, vec3 centre,
                                             float texel_reach, float simplified) {
-    float inverse_distance = 1.0f / max(plane_distance, 1e-9f);
-    float bias = texel_reach * min(inverse_distance, shadow_slope_limit * inverse_w);
-    float on_plane = -dot(normal, centre) * inverse_distance;
-    float held = clamp(on_plane, inverse_w - bias, inverse_w + bias) + shadow_centre_slack * bias;
-    float near_by = max(shadow_head_on_slack * texel_reach * inverse_w, simplified * bias);
-    return shadow_near * max(held, inverse_w + near_by);
+    float receiver = shadow_near * inverse_w;
+    float bias = perspective_bias(texel_reach, plane_distance, inverse_w);
+    float on_plane = value_on_plane(normal, plane_distance, centre);
+    float held = clamp(on_plane, receiver - bias, receiver + bias) + shadow_centre_slack * bias;
+    return max(held, receiver + max(shadow_head_on_slack * texel_reach * receiver, simplified * bias));
 }
 
 // --- Filtered look-up ----------------------------------------------------------------------------------------------
@@ -152,7 +155,7 @@ SHARED_FUNCTION vec3 cone_direction(vec2 uv, float scale) {
 SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float plane_distance, vec3 centre, float bias,
                                            float texel_reach) {
     float window = shadow_filter_window * bias;
-    float on_plane = -shadow_near * dot(normal, centre) / max(plane_distance, 1e-9f);
+    float on_plane = value_on_plane(normal, plane_distance, centre);
     return clamp(on_plane, receiver - window, receiver + window) + shadow_filter_slack * texel_reach * receiver;
 }
 
