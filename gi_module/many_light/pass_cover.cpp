@@ -23,11 +23,6 @@ bool contains(const LightSet& set, const LightSet& part) {
     return true;
 }
 
-void remove(LightSet& set, const LightSet& part) {
-    for (std::size_t i = 0; i < set.size(); ++i)
-        set[i] &= ~part[i];
-}
-
 template <typename Function>
 void for_each_light(std::uint64_t word, std::size_t i, Function function) {
     for (; word != 0; word &= word - 1)
@@ -39,6 +34,14 @@ void for_each_light(std::uint64_t word, std::size_t i, Function function) {
 PassCover::Open PassCover::open(std::uint32_t object) const {
     const PassLights& lights = objects_.at(object);
     return {object, lights.needed, lights.harmless};
+}
+
+// With lights that the object tolerates: those that it needs are drawn once and not again, the others harm never.
+void PassCover::draw(Open& object, const LightSet& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        object.tolerated[i] &= ~(object.left[i] & lights[i]);
+        object.left[i] &= ~lights[i];
+    }
 }
 
 // Pairs that a draft covers with one object more, if its lights are chosen anew: the largest counts of those allowed.
@@ -61,7 +64,7 @@ std::uint32_t PassCover::covered_with(const Draft& draft, const Open& object) co
 // The open object that adds most pairs, at least `least_gain_`. None can add more than it has lights left that are
 // allowed, nor than a pass has room for: those that could add most are tried first, and few have to be.
 std::optional<std::size_t> PassCover::best_addition(const Draft& draft, const std::vector<Open>& open_objects,
-                                                    std::vector<char>& is_member) {
+                                                    const std::vector<char>& is_member) {
     candidates_.clear();
     for (std::size_t i = 0; i < open_objects.size(); ++i) {
         if (is_member[i] != 0)
@@ -137,10 +140,7 @@ void PassCover::cover(std::vector<Open>& open_objects) {
             if (shared_count(object.left, element.lights) == 0)
                 continue;
             element.objects.push_back(object.object);
-            remove(object.left, element.lights);
-            const LightSet& needed = objects_.at(object.object).needed;
-            for (std::size_t i = 0; i < needed.size(); ++i)
-                object.tolerated[i] &= ~(needed[i] & element.lights[i]); // drawn once, and not again
+            draw(object, element.lights);
         }
         std::sort(element.objects.begin(), element.objects.end());
         elements_.push_back(std::move(element));
@@ -172,9 +172,7 @@ void PassCover::join_elements(Open& object) {
             return;
         best->objects.insert(std::lower_bound(best->objects.begin(), best->objects.end(), object.object),
                              object.object);
-        for (std::size_t i = 0; i < object.left.size(); ++i)
-            object.tolerated[i] &= ~(object.left[i] & best->lights[i]);
-        remove(object.left, best->lights);
+        draw(object, best->lights);
     }
 }
 

@@ -41,11 +41,12 @@ private:
     void regroup(const std::map<std::uint32_t, PassLights>& changed) override;
     std::uint32_t room() const { return 2 * lights_per_pass_; }
     Open open(std::uint32_t object) const;
+    static void draw(Open& object, const LightSet& lights);
     void join_elements(Open& object);
     void cover(std::vector<Open>& open_objects);
     std::uint32_t covered_with(const Draft& draft, const Open& object) const;
     std::optional<std::size_t> best_addition(const Draft& draft, const std::vector<Open>& open_objects,
-                                             std::vector<char>& is_member);
+                                             const std::vector<char>& is_member);
     void add(Draft& draft, const std::vector<Open>& open_objects, std::size_t member) const;
     LightSet best_lights(const Draft& draft) const;
 
