@@ -42,7 +42,7 @@ nlohmann::ordered_json medians(const std::map<std::string, std::vector<double>>&
 
 nlohmann::ordered_json statistics_of(Level& level, const Options& options, const DemoSettings& settings,
                                      const Times& times, const std::string& device) {
-    const gi::Counters& counters = level.renderer().lighting().counters();
+    const gi::Report& counters = level.renderer().lighting().counters();
     char hash[32];
     std::snprintf(hash, sizeof hash, "%016llx",
                   static_cast<unsigned long long>(level.simulation().world_hash(level.renderer().registry())));
@@ -62,11 +62,11 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
             {"cpu_ms", medians(times.cpu)},
             {"gpu_ms", medians(times.gpu)},
             {"counters",
-             {{"light_samples", counters.light_samples},
-              {"light_samples_dynamic", counters.light_samples_dynamic},
-              {"pixels_low_resolution", counters.pixels.pixels_low_resolution},
-              {"pixels_repaired", counters.pixels.pixels_repaired},
-              {"transfer_vertices", counters.transfer_vertices},
+             {{"light_samples", counters["light_samples"]},
+              {"light_samples_dynamic", counters["light_samples_dynamic"]},
+              {"pixels_low_resolution", counters["pixels_low_resolution"]},
+              {"pixels_repaired", counters["pixels_repaired"]},
+              {"transfer_vertices", counters["transfer_vertices"]},
               {"bodies_rescued", level.simulation().physics().rescued()},
               {"player_rescued", level.simulation().player().rescued()}}}};
 }

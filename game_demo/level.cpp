@@ -54,10 +54,10 @@ Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::ui
     request.map_budget = 4;
     for (bool more = true; more;) {
         SUNFLECK_TRY(renderer_->render_and_wait(request));
-        const gi::Counters& counters = renderer_->statistics().counters;
-        more = counters.shadow_maps_stale > 0 && counters.shadow_map_updates > 0;
+        const gi::Report& counters = renderer_->statistics().counters;
+        more = counters["shadow_maps_stale"] > 0 && counters["shadow_map_updates"] > 0;
         const float stale =
-            float(counters.shadow_maps_stale) / float(std::max<std::uint64_t>(counters.light_samples, 1));
+            float(counters["shadow_maps_stale"]) / float(std::max<std::uint64_t>(counters["light_samples"], 1));
         if (!progress(samples_until + (1.0f - samples_until) * (1.0f - stale)))
             return Error{"loading was stopped"};
         const double milliseconds = renderer_->statistics().frame_ms;

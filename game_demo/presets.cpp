@@ -48,7 +48,8 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     result.patch_levels = 2; // the house has many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
-    result.movers = settings.transfer ? gi::MoverHandling::transfer : gi::MoverHandling::per_pixel;
+    if (settings.transfer)
+        result.with("movers", "prt");
     return result;
 }
 

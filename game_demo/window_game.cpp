@@ -240,7 +240,7 @@ private:
         result.frame_ms = smooth_ms_;
         result.gpu_ms = statistics.gpu_ms;
         result.cpu_ms = statistics.cpu_ms;
-        result.light_samples = statistics.counters.light_samples;
+        result.light_samples = statistics.counters["light_samples"];
         result.rendered_width = request.width;
         result.rendered_height = request.height;
         result.device = device_->traits().name;

@@ -190,11 +190,8 @@ Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles) {
 
 Status Context::set(std::string_view name, std::string_view value) {
     Implementation& self = *implementation_;
-    const Field* field = gi::Settings::description().find(name);
-    if (field == nullptr)
-        return Error{"no setting is called '" + std::string(name) + "'"};
     gi::Settings changed = self.settings;
-    SUNFLECK_TRY(field_from_text(*field, &changed, value));
+    SUNFLECK_TRY(changed.set(name, value));
     SUNFLECK_TRY(self.system->set_settings(changed));
     self.settings = changed;
     return {};

@@ -1,74 +1,101 @@
-// Everything about the lighting that a user can set, described once: the command line's --set, scene files and editors
-// read the descriptions.
+// Everything about the lighting that a user can set. Each room of the module and each technique describes its own
+// struct; this is all of them together, for the command line's --set, scene files, host.h and editors. Names are
+// distinct over all structs (a test).
 #pragma once
 
 #include "engine/core/description.h"
-#include "gi_module/visibility/test_grouping.h"
+#include "gi_module/light_sampling/sampling_settings.h"
+#include "gi_module/low_resolution/low_resolution_settings.h"
+#include "gi_module/shadows/shadow_settings.h"
+#include "gi_module/transport/light_plan.h"
+#include "gi_module/visibility/visibility_settings.h"
+
+#include <cstddef>
+#include <map>
+#include <type_traits>
 
 namespace sunfleck::gi {
 
-// light_samples: the many-light system. brute_force: the same samples, each with its map at every pixel.
-enum class DirectTechnique : std::uint32_t { light_samples, brute_force, none };
-enum class IndirectTechnique : std::uint32_t { light_samples, brute_force, none };
-enum class Sequence : std::uint32_t { pseudo_random, sobol };
-enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
-// contribution: by the light that the map's movers shadow in the picture (many_light/map_contributions.h), times age;
-// with brute force, which knows no such thing, flux_and_age: brightest channel times age, thesis sec. 4.5.3. age: in
-// turns.
-enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
-// as_static: as static geometry, in random walks, too. transfer: complex ones by precomputed radiance transfer.
-enum class MoverHandling : std::uint32_t { per_pixel, as_static, transfer };
-
-struct Settings {
-    DirectTechnique direct = DirectTechnique::light_samples;
-    IndirectTechnique indirect = IndirectTechnique::light_samples;
-    MoverHandling movers = MoverHandling::per_pixel;
-
-    std::uint32_t lights = 300; // light samples, exactly
-    float direct_share = 0.25f; // of the samples, for light from area emitters
-    // Of the samples, for emitters that move or vary, if there are any; they divide it by flux.
-    float dynamic_share = 0.15f;
-    bool mover_paths = true;                // large boxes that move, as doors do, block the light that samples reflect
-    std::uint32_t transfer_points = 4;      // along each side of a mover, where its light is known
-    std::uint32_t transfer_reflections = 2; // of a mover's light onto itself
-    std::uint32_t bounces = 5;              // reflections before the surface that is shown
-    std::uint32_t seed = 1;
-    Sequence sequence = Sequence::sobol;
-    Termination termination = Termination::russian_roulette;
-
-    // Reflected samples are chosen from so many times as many (light_sampling/sample_clusters.h); 1: as they come.
-    std::uint32_t candidates = 64;
-    float spread = 0.5f;
-
-    std::uint32_t shadow_map_resolution = 256;
-    std::uint32_t shadow_map_bits = 16;
-    float shadow_memory = 512.0f; // MiB
-    bool shadow_filter = false;
-    bool shadows = true;
-    float clamp_scale = 1.0f;
-    bool count_clamped = false;
-
-    // The many-light system; each part can be switched off, to see what it is worth.
-    bool visibility = true;
-    std::uint32_t patch_levels = 4;
-    bool light_maps = true;
-    bool baked_light = true;
-    std::uint32_t low_resolution = 4;
-    float repair_contrast = 0.3f;
-    float repair_angle = 12.0f;
-    bool static_maps = true;
-    bool map_detail = true;
-    std::uint32_t map_budget = 80; // shadow maps a frame
-    float map_milliseconds = 0.0f; // GPU time for them; 0: map_budget counts
-    MapPriority map_priority = MapPriority::contribution;
-    TestGrouping visibility_tests = TestGrouping::clusters;
-    bool count_passes = false;
-    std::uint32_t lights_per_pass = 7;
-    bool pass_extras = true;
+// Who lights what, by name: the choices are the names of techniques, and "none".
+struct TermSettings {
+    std::uint32_t direct = 0;
+    std::uint32_t indirect = 0;
+    std::uint32_t specular = 0;
+    std::uint32_t movers = 0; // the first two choices are movers_per_pixel and movers_static
+    std::string plan;         // TermOwners::exceptions
 
     static const TypeDescription& description();
-    // Defaults, with the baseline as the technique for all light.
-    static Settings brute_force();
+};
+inline constexpr std::uint32_t movers_per_pixel = 0, movers_static = 1;
+
+// The settings struct of a technique, without its type.
+struct TechniqueSettings {
+    const TypeDescription& (*description)() = nullptr; // null: it has none
+    std::vector<std::byte> (*defaults)() = nullptr;
+};
+template <typename T>
+constexpr TechniqueSettings settings_of() {
+    static_assert(std::is_trivially_copyable_v<T> && Described<T>);
+    return {T::description, [] {
+                const T value{};
+                const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+                return std::vector<std::byte>(bytes, bytes + sizeof value);
+            }};
+}
+
+struct Settings : TermSettings,
+                  SamplingSettings,
+                  LightSettings,
+                  ShadowSettings,
+                  VisibilitySettings,
+                  LowResolutionSettings {
+    Settings();
+
+    // A technique's own struct.
+    template <typename T>
+    T& of() {
+        return *reinterpret_cast<T*>(own(T::description()).data());
+    }
+    template <typename T>
+    const T& of() const {
+        return *reinterpret_cast<const T*>(const_cast<Settings*>(this)->own(T::description()).data());
+    }
+
+    // One of the structs: its description and values.
+    struct Part {
+        const TypeDescription* type;
+        void* values;
+    };
+    struct ConstPart {
+        const TypeDescription* type;
+        const void* values;
+    };
+    std::vector<Part> parts();
+    std::vector<ConstPart> parts() const;
+
+    // The one description of a setting; null if there is none of that name.
+    static const Field* find(std::string_view name);
+    // Every setting's name, in the order of the parts.
+    static std::vector<std::string_view> names();
+    // Rejects unknown names and values outside of what the field allows, with one message; nothing changes then.
+    Status set(std::string_view name, std::string_view value);
+    // As text, as set reads it. The name must be known.
+    std::string get(std::string_view name) const;
+    // For values known to be right: asserts.
+    Settings& with(std::string_view name, std::string_view value);
+    // Gives all diffuse light to one technique.
+    Settings& all_light_by(std::string_view technique) { return with("direct", technique).with("indirect", technique); }
+
+    // Checks every value, and that every part of the light has one owner that can light it.
+    Status validate() const;
+    Result<LightPlan> light_plan() const;
+    // What is sampled for that plan.
+    SampleRequest sample_request(const LightPlan& plan) const;
+
+private:
+    std::vector<std::byte>& own(const TypeDescription& type);
+
+    std::map<const TypeDescription*, std::vector<std::byte>> techniques_;
 };
 
 } // namespace sunfleck::gi

@@ -98,7 +98,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.serial = submission_->serial();
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
-    input.show = request.show;
+    input.view = request.lighting_view;
     const gpu::FrameTimes& times = timers_->latest();
     input.measured_serial = times.serial;
     for (const char* pass : {"shadow maps", "shadow map copies"})

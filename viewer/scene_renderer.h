@@ -22,7 +22,7 @@ struct FrameRequest {
     bool simulate = true; // false: the caller has moved everything
     std::uint32_t view = shared::view_final;
     bool tone_map = true;      // false: scene-linear floats, for EXR
-    std::uint32_t show = 0;    // false colours of the lighting (gi::FrameInput::show); with view_false_colours
+    std::string lighting_view; // debug view of the lighting by name (gi::debug_views()), in place of irradiance
     bool show_samples = false; // debug lines at the light samples
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step that the movers show
@@ -35,7 +35,7 @@ struct FrameRequest {
 struct FrameStatistics {
     double frame_ms = 0; // from the start of simulation to the end of the GPU's work; only of render_and_wait
     std::map<std::string, double> cpu_ms, gpu_ms;
-    gi::Counters counters;
+    gi::Report counters;
 };
 
 class SceneRenderer {

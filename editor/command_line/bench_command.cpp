@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
+#include "gi_module/brute_force/brute_force_technique.h"
 #include "gi_module/reference/path_tracer.h"
 #include "gi_module/reference/surface_distance.h"
 
@@ -11,6 +12,10 @@
 
 namespace sunfleck::command_line {
 namespace {
+
+gi::BruteForce& brute_force_kernel(gi::System& system) {
+    return dynamic_cast<gi::BruteForceTechnique&>(*system.technique("brute_force")).kernel();
+}
 
 // ns for each light and pixel of every shape that the kernel can take. Shapes take turns, so that a slow spell of the
 // machine touches all alike.
@@ -34,14 +39,14 @@ Result<BenchTable> bench_kernel(const BenchOptions& options) {
     const std::size_t shapes = candidates.size();
     for (const bool shadows : {false, true}) // what brute force itself uses, measured like the others
         candidates.push_back({standard, shadows, {}});
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = lights;
     Progress progress("bench kernel");
     for (std::uint32_t round = 0; round < options.repeat; ++round)
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             Candidate& candidate = candidates[round % 2 == 0 ? i : candidates.size() - 1 - i];
             settings.shadows = candidate.shadows;
-            bench->renderer->lighting().brute_force().set_shape(candidate.shape);
+            brute_force_kernel(bench->renderer->lighting()).set_shape(candidate.shape);
             SUNFLECK_ASSIGN(const Measurement measurement, bench->measure(settings, round == 0 ? 2 : 1, 1, false));
             candidate.ns.push_back(Bench::gpu_median(measurement, "brute force") * 1e6 /
                                    (double(lights) * size.width * size.height));
@@ -78,7 +83,7 @@ Result<BenchTable> bench_brute_force(const BenchOptions& options) {
     for (const Size size : {Size{640, 360}, Size{1024, 768}}) {
         SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "bench_1", size));
         for (const std::uint32_t lights : {64u, 300u, 1024u}) {
-            gi::Settings settings = gi::Settings::brute_force();
+            gi::Settings settings = gi::Settings().all_light_by("brute_force");
             settings.lights = lights;
             SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 2, options.repeat, true));
             table.rows.push_back({{"size", std::to_string(size.width) + "x" + std::to_string(size.height)},
@@ -90,7 +95,7 @@ Result<BenchTable> bench_brute_force(const BenchOptions& options) {
                                   {"map_copies_ms", Bench::gpu_median(m, "shadow map copies")},
                                   {"g_buffer_ms", Bench::gpu_median(m, "g-buffer")},
                                   {"composition_ms", Bench::gpu_median(m, "composition")},
-                                  {"map_updates", m.counters.shadow_map_updates}});
+                                  {"map_updates", m.counters["shadow_map_updates"]}});
             if (interrupted())
                 return Error{"interrupted"};
         }
@@ -104,11 +109,11 @@ Result<BenchTable> bench_shadow_maps(const BenchOptions& options) {
     for (const char* scene : {"cornell", "table_room", "four_pillars"})
         for (const std::uint32_t resolution : {128u, 256u, 512u}) {
             SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "bench_1", {64, 36}));
-            gi::Settings settings = gi::Settings::brute_force();
+            gi::Settings settings = gi::Settings().all_light_by("brute_force");
             settings.lights = 256;
             settings.shadow_map_resolution = resolution;
             std::vector<double> draw, copy;
-            gi::Counters counters;
+            gi::Report counters;
             for (std::uint32_t i = 0; i <= options.repeat; ++i) {
                 settings.seed = i + 1; // new samples: every map is drawn
                 SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 0, 1, false));
@@ -118,15 +123,16 @@ Result<BenchTable> bench_shadow_maps(const BenchOptions& options) {
                 copy.push_back(Bench::gpu_median(m, "shadow map copies"));
                 counters = m.counters;
             }
-            const double maps = double(counters.shadow_map_updates);
-            table.rows.push_back({{"scene", scene},
-                                  {"resolution", resolution},
-                                  {"maps", counters.shadow_map_updates},
-                                  {"faces", counters.shadow_map_faces},
-                                  {"vertices_per_map", double(counters.shadow_map_vertices) / maps},
-                                  {"us_per_map", median(draw) * 1e3 / maps},
-                                  {"us_copy_per_map", median(copy) * 1e3 / maps},
-                                  {"us_per_1000_vertices", median(draw) * 1e6 / double(counters.shadow_map_vertices)}});
+            const double maps = double(counters["shadow_map_updates"]);
+            table.rows.push_back(
+                {{"scene", scene},
+                 {"resolution", resolution},
+                 {"maps", counters["shadow_map_updates"]},
+                 {"faces", counters["shadow_map_faces"]},
+                 {"vertices_per_map", double(counters["shadow_map_vertices"]) / maps},
+                 {"us_per_map", median(draw) * 1e3 / maps},
+                 {"us_copy_per_map", median(copy) * 1e3 / maps},
+                 {"us_per_1000_vertices", median(draw) * 1e6 / double(counters["shadow_map_vertices"])}});
         }
     return table;
 }
@@ -154,23 +160,24 @@ Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<Pl
         tracer.accumulate(truth, bench->start, reference, 4096);
         const std::vector<float> distances = surface_distances(renderer.rays(), bench->start, size.width, size.height);
         float clear = 0.0f; // pixels nearer to other surfaces than this are left out, at every count alike
-        renderer.lighting().brute_force().set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
+        brute_force_kernel(renderer.lighting())
+            .set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
         PlotSeries series{scene, {}};
         Progress progress(std::string("convergence ") + scene);
         for (std::uint32_t lights = 256; lights <= 16384; lights *= 2) {
             std::vector<double> errors;
             for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-                gi::Settings settings = gi::Settings::brute_force();
+                gi::Settings settings = gi::Settings().all_light_by("brute_force");
                 settings.candidates = 1; // as walks leave them
                 settings.lights = lights;
                 settings.direct_share = 0.5f;
                 settings.seed = seed;
-                settings.movers = gi::MoverHandling::as_static;
+                settings.with("movers", "static");
                 settings.shadow_map_resolution = 128;
                 SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 0, 1, false));
                 SUNFLECK_ASSIGN(const io::Picture picture, renderer.read_back());
                 if (clear == 0.0f)
-                    clear = 1.0f / std::sqrt(renderer.lighting().geometry_bound());
+                    clear = 1.0f / std::sqrt(renderer.lighting().sample_set().geometry_bound());
                 double squares = 0, values = 0;
                 for (std::size_t i = 0; i < picture.pixels.size(); ++i)
                     if (picture.pixels[i].w > 0 && truth.covered[i] && distances[i] > clear)

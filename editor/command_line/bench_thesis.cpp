@@ -1,6 +1,7 @@
 // sunfleck bench thesis: the experiments of the thesis's chapter 5 and of fig. 4-11 and 4-12. Every ratio's two sides
 // take turns in one run. The rows of all experiments have one form: what was varied, times, and what the row is about.
 #include "editor/command_line/bench_runner.h"
+#include "gi_module/many_light/many_light_settings.h"
 
 #include "editor/command_line/metrics.h"
 #include "engine/scene/procedural.h"
@@ -25,7 +26,7 @@ gi::Settings many_light(std::uint32_t lights) {
 }
 
 gi::Settings brute_force(std::uint32_t lights) {
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = lights;
     return settings;
 }
@@ -148,7 +149,8 @@ Status ablation(Experiment& experiment) {
     SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, "area_room", "bench_1", size));
     for (const std::uint32_t lights : {2u, 32u, 100u, 300u}) {
         gi::Settings step = many_light(lights);
-        step.visibility = step.light_maps = step.static_maps = step.map_detail = step.baked_light = false;
+        step.of<gi::ManyLightSettings>().visibility = step.of<gi::ManyLightSettings>().light_maps = step.static_maps =
+            step.map_detail = step.of<gi::ManyLightSettings>().baked_light = false;
         step.low_resolution = 1;
         const auto measure = [&](const gi::Settings& settings, const char* what) -> Status {
             SUNFLECK_ASSIGN(const Measurement m,
@@ -157,11 +159,11 @@ Status ablation(Experiment& experiment) {
             return {};
         };
         SUNFLECK_TRY(measure(brute_force(lights), "naive"));
-        step.visibility = true;
+        step.of<gi::ManyLightSettings>().visibility = true;
         SUNFLECK_TRY(measure(step, "+ visibility"));
         step.low_resolution = 4;
         SUNFLECK_TRY(measure(step, "+ low resolution"));
-        step.light_maps = true;
+        step.of<gi::ManyLightSettings>().light_maps = true;
         SUNFLECK_TRY(measure(step, "+ light maps"));
         step.static_maps = step.map_detail = true;
         SUNFLECK_TRY(measure(step, "+ kept static maps, detail"));
@@ -201,7 +203,7 @@ Status map_updates(Experiment& experiment) {
                              "thesis: maps dominate at high counts");
             if (budget == 100)
                 experiment.value("5-5", c.scene, std::string(c.keep) + ", vertices a map", budget,
-                                 double(m.counters.shadow_map_vertices) / double(m.counters.shadow_map_updates),
+                                 double(m.counters["shadow_map_vertices"]) / double(m.counters["shadow_map_updates"]),
                                  c.note);
         }
         if (c.scene == std::string("four_pillars") && c.keep == std::string("knot")) {
@@ -240,14 +242,14 @@ Status passes(Experiment& experiment) {
     const auto measure = [&](const std::string& scene, const std::string& camera, const char* figure) -> Status {
         SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, scene, camera, {64, 48}));
         gi::Settings settings = many_light(300);
-        settings.count_passes = true;
+        settings.of<gi::ManyLightSettings>().count_passes = true;
         settings.patch_levels = 3;
         const std::string where = scene + " " + camera;
         for (const bool extras : {false, true}) {
-            settings.pass_extras = extras;
+            settings.of<gi::ManyLightSettings>().pass_extras = extras;
             SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 3, 1, true));
-            const double before = double(m.counters.render_passes_unoptimised),
-                         after = double(m.counters.render_passes);
+            const double before = double(m.counters["render_passes_unoptimised"]),
+                         after = double(m.counters["render_passes"]);
             const std::string how = extras ? ", with harmless extras" : ", as the thesis";
             if (!extras)
                 experiment.value(figure, where, "passes before", 7, before, "thesis fig. 4-12: 1563");
@@ -255,7 +257,7 @@ Status passes(Experiment& experiment) {
             experiment.value(figure, where, "removed" + how, 7, 1.0 - after / std::max(before, 1.0),
                              "target 0.7 in fig. 4-12's view");
             if (extras)
-                experiment.value(figure, where, "pairs drawn over needed", 7, m.counters.pass_fill, "");
+                experiment.value(figure, where, "pairs drawn over needed", 7, m.counters["pass_fill"], "");
         }
         return {};
     };
@@ -294,9 +296,9 @@ Status many_movers(Experiment& experiment) {
         settings.visibility_tests = grouping;
         settings.map_budget = 1;
         SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 2, experiment.options.repeat, true));
-        tests[i] = double(m.counters.visibility.tests);
+        tests[i] = double(m.counters["visibility_tests"]);
         times[i] = cpu_median(m, "visibility");
-        pairs = 102.0 * 300.0 * double(m.counters.surface_patches + 102);
+        pairs = 102.0 * 300.0 * double(m.counters["surface_patches"] + 102);
         experiment.row("movers", "four_pillars", std::string("102 movers, tests of ") + names[i], 300, m);
     }
     const auto report = [&](const char* what, double value, const char* note) {
@@ -316,8 +318,8 @@ Status quality(Experiment& experiment) {
     bench->request.view = shared::view_irradiance;
     bench->request.tone_map = false;
     const auto picture = [&](gi::Settings settings) -> Result<io::Picture> {
-        settings.indirect = gi::IndirectTechnique::none;
-        SUNFLECK_TRY(bench->measure(settings, settings.direct == gi::DirectTechnique::light_samples ? 5 : 0, 1, false));
+        settings.with("indirect", "none");
+        SUNFLECK_TRY(bench->measure(settings, settings.get("direct") == "light_samples" ? 5 : 0, 1, false));
         return bench->renderer->read_back();
     };
     gi::Settings truth = brute_force(2000);

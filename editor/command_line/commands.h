@@ -3,21 +3,15 @@
 
 #include "editor/command_line/common.h"
 
-#include <set>
-
 namespace sunfleck::command_line {
 
 struct RenderOptions {
     SceneOptions scene;
     std::string output;
-    std::string direct = "light_samples", indirect = "light_samples", specular = "none", source = "random_walk";
-    std::uint32_t lights = 300;
-    float direct_share = 0.25f;
     std::string view = "final";
     std::vector<std::string> settings;
     std::string statistics;
     bool print_graph = false;
-    std::set<std::string> given; // settings that the command line names
 };
 std::vector<std::string> view_names();
 Status render(const RenderOptions& options);

@@ -2,8 +2,11 @@
 
 #include "engine/core/log.h"
 
+#include "gi_module/technique.h"
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -105,23 +108,19 @@ Status apply_setting(gi::Settings& settings, const std::string& assignment) {
     if (equals == std::string::npos)
         return Error{"--set '" + assignment + "': name=value is needed"};
     const std::string name = assignment.substr(0, equals);
-    const Field* field = gi::Settings::description().find(name);
-    if (field == nullptr) {
-        std::string names;
-        for (const Field& known : gi::Settings::description().fields)
-            names += (names.empty() ? "" : ", ") + std::string(known.name);
-        return Error{"--set: no setting is called '" + name + "' (there are: " + names + ")"};
-    }
-    return field_from_text(*field, &settings, assignment.substr(equals + 1));
+    if (const Status status = settings.set(name, assignment.substr(equals + 1)); !status)
+        return gi::Settings::find(name) == nullptr ? Error{"--set: " + status.error().message} : status.error();
+    return {};
 }
 
 Json settings_json(const gi::Settings& settings) {
     Json json = Json::object();
-    for (const Field& field : gi::Settings::description().fields) {
-        const std::string text = field_to_text(field, &settings);
-        const bool is_text = field.kind == FieldKind::choice || field.kind == FieldKind::text;
-        json[std::string(field.name)] = is_text ? Json(text) : Json::parse(text);
-    }
+    for (const gi::Settings::ConstPart& part : settings.parts())
+        for (const Field& field : part.type->fields) {
+            const std::string text = field_to_text(field, part.values);
+            const bool is_text = field.kind == FieldKind::choice || field.kind == FieldKind::text;
+            json[std::string(field.name)] = is_text ? Json(text) : Json::parse(text);
+        }
     return json;
 }
 
@@ -154,8 +153,15 @@ Json medians(const std::vector<std::map<std::string, double>>& frames) {
 
 } // namespace
 
+// Whole numbers as such.
+Json number_json(double value) {
+    if (value == std::floor(value) && std::abs(value) < 9e15)
+        return Json(std::int64_t(value));
+    return Json(value);
+}
+
 Json measurement_json(const gpu::Device& device, const Measurement& measurement) {
-    const gi::Counters& counters = measurement.counters;
+    const gi::Report& counters = measurement.counters;
     Json json;
     json["device"] = device.traits().name;
     json["driver"] = device.traits().driver;
@@ -170,33 +176,11 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
                         {"max", percentile(measurement.frame_ms, 1.0)}};
     json["cpu_ms"] = medians(measurement.cpu_ms);
     json["gpu_ms"] = medians(measurement.gpu_ms);
-    json["counters"] = {{"light_samples", counters.light_samples},
-                        {"light_samples_direct", counters.light_samples_direct},
-                        {"shadow_map_updates", counters.shadow_map_updates},
-                        {"shadow_map_faces", counters.shadow_map_faces},
-                        {"shadow_map_vertices", counters.shadow_map_vertices},
-                        {"shadow_maps_stale", counters.shadow_maps_stale},
-                        {"light_batches", counters.light_batches},
-                        {"render_passes", counters.render_passes},
-                        {"transfer_vertices", counters.transfer_vertices},
-                        {"pass_fill", counters.pass_fill},
-                        {"render_passes_unoptimised", counters.render_passes_unoptimised},
-                        {"clamped_flux", counters.clamped_flux},
-                        {"clamped_irradiance", counters.clamped_irradiance},
-                        {"visibility_tests", counters.visibility.tests},
-                        {"pairs_full", counters.visibility.full},
-                        {"pairs_partial", counters.visibility.partial},
-                        {"pairs_none", counters.visibility.none},
-                        {"pairs_unlit", counters.visibility.unlit},
-                        {"surface_patches", counters.surface_patches},
-                        {"light_map_updates", counters.light_map_updates},
-                        {"light_map_texels", counters.light_map_texels},
-                        {"baked_light_updates", counters.baked_light_updates},
-                        {"baked_light_waiting", counters.baked_light_waiting},
-                        {"pixels_low_resolution", counters.pixels.pixels_low_resolution},
-                        {"pixels_repaired", counters.pixels.pixels_repaired},
-                        {"pixels_not_repaired", counters.pixels.pixels_not_repaired}};
+    json["counters"] = Json::object();
     json["memory_bytes"] = Json::object();
+    for (const gi::Counter* counter : gi::all_counters())
+        json[counter->group == gi::memory_group ? "memory_bytes" : "counters"][std::string(counter->name)] =
+            number_json(counters[counter->name]);
     for (const auto& [what, bytes] : measurement.memory)
         json["memory_bytes"][what] = bytes;
     return json;

@@ -18,14 +18,12 @@ struct SceneOptions {
     std::string scene;
     std::string camera;
     std::string size = "1280x720";
-    std::string movers = "per_pixel";
     bool motion = true;
     float orbit_degrees = 0.0f; // per frame
     std::uint32_t frames = 1;
     std::uint32_t warmup = 3;
-    std::uint32_t seed = 1;
-    std::uint32_t bounces = 5;
-    float ev100 = -1000.0f; // the scene's own
+    std::map<std::string, std::string> lighting; // lighting settings that have options of their own, as given
+    float ev100 = -1000.0f;                      // the scene's own
     io::ImportOptions import;
     std::string environment; // picture file
     std::string device;
@@ -63,7 +61,7 @@ struct Measurement {
     Size size{};
     std::vector<double> frame_ms;
     std::vector<std::map<std::string, double>> cpu_ms, gpu_ms;
-    gi::Counters counters; // of the last frame
+    gi::Report counters; // of the last frame
     std::map<std::string, std::uint64_t> memory;
     std::uint32_t render_passes = 0;
 };

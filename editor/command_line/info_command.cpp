@@ -27,6 +27,14 @@ Json device_json(gpu::Device& device, const std::vector<std::string>& devices) {
             {"scenes", built_in_scene_names()}};
 }
 
+std::string describe_settings() {
+    std::string text;
+    const gi::Settings defaults;
+    for (const gi::Settings::ConstPart& part : defaults.parts())
+        text += document(*part.type, part.values);
+    return text;
+}
+
 } // namespace
 
 Status describe_device(const std::string& wanted, bool as_json) {
@@ -44,8 +52,7 @@ Status describe_device(const std::string& wanted, bool as_json) {
     std::printf("features  %s, missing %s\n", json["features_used"].dump().c_str(),
                 json["features_missing"].dump().c_str());
     std::printf("limits    %s\nscenes    %s\n\nLighting settings for --set name=value:\n%s",
-                json["limits"].dump().c_str(), json["scenes"].dump().c_str(),
-                document(gi::Settings::description(), std::make_unique<gi::Settings>().get()).c_str());
+                json["limits"].dump().c_str(), json["scenes"].dump().c_str(), describe_settings().c_str());
     return {};
 }
 

@@ -27,18 +27,33 @@ struct Command {
     std::function<int()> run;
 };
 
+// Lighting settings as options: --direct-share is the setting direct_share. Text, range and default are the setting's.
+void add_setting_options(CLI::App& app, std::map<std::string, std::string>& given,
+                         std::initializer_list<const char*> settings) {
+    const gi::Settings defaults;
+    for (const char* setting : settings) {
+        std::string option = std::string("--") + setting;
+        std::replace(option.begin(), option.end(), '_', '-');
+        const Field& field = *gi::Settings::find(setting);
+        app.add_option_function<std::string>(
+               option, [&given, setting](const std::string& text) { given[setting] = text; },
+               std::string(field.tooltip))
+            ->type_name(allowed_values(field))
+            ->default_str(defaults.get(setting))
+            ->check([setting](const std::string& text) {
+                const Status status = gi::Settings().set(setting, text);
+                return status ? std::string() : status.error().message;
+            });
+    }
+}
+
 // Options that name a scene, a camera and a time, on `render` and `reference` alike.
 void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")
         ->required();
     app.add_option("--size", options.size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
     app.add_option("--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (degrees)");
-    app.add_option("--movers", options.movers,
-                   "per_pixel: movers receive light; static: they also reflect it; prt: complex ones are lit at their "
-                   "vertices, "
-                   "by precomputed radiance transfer")
-        ->check(CLI::IsMember({"per_pixel", "static", "prt"}))
-        ->capture_default_str();
+    add_setting_options(app, options.lighting, {"movers"});
     app.add_option_function<std::string>(
            "--motion", [&options](const std::string& text) { options.motion = text == "on"; },
            "on: frame k shows step k; off: movers stay at step 0 (default on)")
@@ -52,10 +67,7 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
     app.add_option("--warmup", options.warmup, "Frames before those")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
-    app.add_option("--seed", options.seed, "Another seed gives another set of samples")->capture_default_str();
-    app.add_option("--bounces", options.bounces, "Reflections before the surface that is shown")
-        ->check(CLI::Range(0, 64))
-        ->capture_default_str();
+    add_setting_options(app, options.lighting, {"seed", "bounces"});
     app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
     app.add_option("--environment", options.environment,
                    "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)");
@@ -75,36 +87,14 @@ Command make_render_command(CLI::App& program) {
     add_scene_options(*app, options->scene);
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
         ->required();
-    app->add_option("--direct", options->direct, "Technique for direct light")
-        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
-        ->capture_default_str();
-    app->add_option("--indirect", options->indirect, "Technique for reflected light")
-        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
-        ->capture_default_str();
-    app->add_option("--specular", options->specular, "Technique for mirrors and glass")
-        ->check(CLI::IsMember({"none"}))
-        ->capture_default_str();
-    app->add_option("--source", options->source, "Where light samples come from")
-        ->check(CLI::IsMember({"random_walk"}))
-        ->capture_default_str();
-    app->add_option("--lights", options->lights, "Number of light samples, exactly")
-        ->check(CLI::Range(0, 65536))
-        ->capture_default_str();
-    app->add_option("--direct-share", options->direct_share, "Share of the samples on emitters")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
+    add_setting_options(*app, options->scene.lighting,
+                        {"direct", "indirect", "specular", "source", "lights", "direct_share"});
     app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(view_names()))->capture_default_str();
     app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
     app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
-    return {app, [app, options] {
+    return {app, [options] {
                 watch_interrupts();
-                for (const char* name : {"direct", "indirect", "movers", "lights", "direct-share", "bounces", "seed"})
-                    if (app->count(std::string("--") + name) > 0) {
-                        std::string setting = name;
-                        std::replace(setting.begin(), setting.end(), '-', '_');
-                        options->given.insert(setting);
-                    }
                 const Status status = render(*options);
                 return status ? 0 : fail(status.error());
             }};

@@ -69,11 +69,14 @@ Status reference(const ReferenceOptions& options) {
     const scene::CameraView camera = camera_of_frame(start, options.scene, last_frame);
     const PathTracer tracer(*rays, gi::collect_emitters(registry, meshes, bounds));
 
+    gi::Settings lighting;
+    for (const auto& [name, value] : options.scene.lighting)
+        SUNFLECK_TRY(lighting.set(name, value));
     ReferenceSettings settings;
     settings.width = size.width;
     settings.height = size.height;
-    settings.bounces = options.unlimited ? unlimited_bounces : options.scene.bounces;
-    settings.seed = options.scene.seed;
+    settings.bounces = options.unlimited ? unlimited_bounces : lighting.bounces;
+    settings.seed = lighting.seed;
     settings.antialiasing = options.antialiasing;
     settings.view = options.view == "irradiance" ? ReferenceView::irradiance
                     : options.view == "direct"   ? ReferenceView::direct

@@ -9,49 +9,41 @@
 namespace sunfleck::command_line {
 namespace {
 
-// Views that the lighting itself draws, in false colours.
-const std::map<std::string, std::uint32_t> lighting_views = {
-    {"tiles", shared::show_tiles},           {"repaired", shared::show_repaired},
-    {"visibility", shared::show_visibility}, {"staleness", shared::show_staleness},
-    {"light_maps", shared::show_light_maps}, {"baked", shared::show_baked}};
+// Views of the picture; those of the lighting come from gi::debug_views().
+const std::map<std::string, std::uint32_t> picture_views = {
+    {"final", shared::view_final},         {"irradiance", shared::view_irradiance}, {"direct", shared::view_irradiance},
+    {"indirect", shared::view_irradiance}, {"normals", shared::view_normals},       {"albedo", shared::view_albedo},
+    {"depth", shared::view_depth},         {"surfaces", shared::view_surfaces},     {"motion", shared::view_motion},
+    {"samples", shared::view_final}};
 
-const std::map<std::string, std::uint32_t> views = {{"final", shared::view_final},
-                                                    {"irradiance", shared::view_irradiance},
-                                                    {"direct", shared::view_irradiance},
-                                                    {"indirect", shared::view_irradiance},
-                                                    {"normals", shared::view_normals},
-                                                    {"albedo", shared::view_albedo},
-                                                    {"depth", shared::view_depth},
-                                                    {"surfaces", shared::view_surfaces},
-                                                    {"motion", shared::view_motion},
-                                                    {"samples", shared::view_final},
-                                                    {"tiles", shared::view_false_colours},
-                                                    {"repaired", shared::view_false_colours},
-                                                    {"visibility", shared::view_false_colours},
-                                                    {"staleness", shared::view_false_colours},
-                                                    {"light_maps", shared::view_irradiance},
-                                                    {"baked", shared::view_false_colours}};
+void set_view(const std::string& name, viewer::FrameRequest& request) {
+    for (const gi::DebugView* view : gi::debug_views())
+        if (view->name == name) {
+            request.lighting_view = name;
+            // Light is shown as light, with its exposure; all else as it is.
+            request.view = view->unit == "W/m2" ? shared::view_irradiance : shared::view_false_colours;
+            return;
+        }
+    request.view = picture_views.at(name);
+    request.show_samples = name == "samples";
+}
 
 // The command line's options come before what the scene file says, that before their defaults.
 Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<std::string, std::string>& of_scene) {
     gi::Settings settings;
-    SUNFLECK_TRY(apply_setting(settings, "direct=" + options.direct));
-    SUNFLECK_TRY(apply_setting(settings, "indirect=" + options.indirect));
-    SUNFLECK_TRY(apply_setting(settings, "movers=" + options.scene.movers));
-    settings.lights = options.lights;
-    settings.direct_share = options.direct_share;
-    settings.bounces = options.scene.bounces;
-    settings.seed = options.scene.seed;
-    settings.count_clamped = !options.statistics.empty();
+    if (!options.statistics.empty() && gi::Settings::find("count_clamped") != nullptr)
+        settings.with("count_clamped", "on");
     for (const auto& [name, value] : of_scene)
-        if (!options.given.count(name))
-            SUNFLECK_TRY(apply_setting(settings, name + "=" + value));
+        SUNFLECK_TRY(settings.set(name, value));
+    for (const auto& [name, value] : options.scene.lighting)
+        SUNFLECK_TRY(settings.set(name, value));
     for (const std::string& assignment : options.settings)
         SUNFLECK_TRY(apply_setting(settings, assignment));
     if (options.view == "direct")
-        settings.indirect = gi::IndirectTechnique::none;
+        settings.with("indirect", "none");
     if (options.view == "indirect")
-        settings.direct = gi::DirectTechnique::none;
+        settings.with("direct", "none");
+    SUNFLECK_TRY(settings.validate());
     return settings;
 }
 
@@ -59,8 +51,10 @@ Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<
 
 std::vector<std::string> view_names() {
     std::vector<std::string> names;
-    for (const auto& [name, view] : views)
+    for (const auto& [name, view] : picture_views)
         names.push_back(name);
+    for (const gi::DebugView* view : gi::debug_views())
+        names.emplace_back(view->name);
     return names;
 }
 
@@ -87,15 +81,8 @@ Status render(const RenderOptions& options) {
     viewer::FrameRequest request;
     request.width = size.width;
     request.height = size.height;
-    request.view = views.at(options.view);
-    if (const auto found = lighting_views.find(options.view); found != lighting_views.end()) {
-        if (options.direct == "brute_force" || options.indirect == "brute_force")
-            return Error{"--view " + options.view +
-                         " shows the technique light_samples; brute_force has no such thing"};
-        request.show = found->second;
-    }
+    set_view(options.view, request);
     request.tone_map = kind == io::PictureKind::png;
-    request.show_samples = options.view == "samples";
     request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer->registry());
     Measurement measurement;
     const std::uint32_t total = options.scene.warmup + options.scene.frames;
@@ -123,10 +110,7 @@ Status render(const RenderOptions& options) {
     if (!options.statistics.empty()) {
         // What the GPU counted reaches the CPU one frame later.
         SUNFLECK_TRY(renderer->render_and_wait(request));
-        const gi::Counters& newest = renderer->statistics().counters;
-        measurement.counters.clamped_flux = newest.clamped_flux;
-        measurement.counters.clamped_irradiance = newest.clamped_irradiance;
-        measurement.counters.pixels = newest.pixels;
+        measurement.counters.take_gpu_counts(renderer->statistics().counters);
         measurement.scene = options.scene.scene;
         measurement.settings = settings;
         measurement.size = size;

@@ -20,16 +20,37 @@ const T& member(const Field& field, const void* object) {
     return *reinterpret_cast<const T*>(static_cast<const char*>(object) + field.offset);
 }
 
+// "1, 2, 4 or 8"
+std::string list_of(const std::vector<double>& values) {
+    std::string text;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        text += fmt::format("{}{}", i == 0 ? "" : i + 1 == values.size() ? " or " : ", ", values[i]);
+    return text;
+}
+
 Error range_error(const Field& field, std::string_view text) {
-    return Error{fmt::format("'{}' is not a value of '{}': a finite number from {} to {}{}{} is needed", text,
-                             field.name, field.minimum, field.maximum, field.unit.empty() ? "" : " ", field.unit)};
+    const std::string unit = field.unit.empty() ? "" : fmt::format(" {}", field.unit);
+    if (!field.allowed.empty())
+        return Error{
+            fmt::format("'{}' is not a value of '{}': {}{} is needed", text, field.name, list_of(field.allowed), unit)};
+    const std::string kind =
+        field.multiple_of > 1 ? fmt::format("a multiple of {}", field.multiple_of) : std::string("a finite number");
+    return Error{fmt::format("'{}' is not a value of '{}': {} from {} to {}{} is needed", text, field.name, kind,
+                             field.minimum, field.maximum, unit)};
+}
+
+bool is_allowed(const Field& field, double value) {
+    if (!std::isfinite(value) || value < field.minimum || value > field.maximum)
+        return false;
+    if (!field.allowed.empty() && std::find(field.allowed.begin(), field.allowed.end(), value) == field.allowed.end())
+        return false;
+    return field.multiple_of <= 1 || std::fmod(value, double(field.multiple_of)) == 0.0;
 }
 
 Result<double> parse_number(const Field& field, std::string_view text) {
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < field.minimum ||
-        value > field.maximum)
+    if (code != std::errc() || end != text.data() + text.size() || !is_allowed(field, value))
         return range_error(field, text);
     return value;
 }
@@ -152,34 +173,85 @@ Status field_from_text(const Field& field, void* object, std::string_view text) 
     return {};
 }
 
-Status validate(const TypeDescription& type, const void* object) {
-    for (const Field& field : type.fields) {
-        Status status;
-        if (field.kind == FieldKind::real)
-            status = validate_numbers(field, &member<float>(field, object), 1);
-        else if (field.kind == FieldKind::vector3)
-            status = validate_numbers(field, &member<vec3>(field, object).x, 3);
-        else if (field.kind == FieldKind::quaternion)
-            status = validate_numbers(field, &member<quat>(field, object).x, 4);
-        if (!status)
-            return Error{fmt::format("{}: {}", type.name, status.error().message)};
+namespace {
+
+Status validate_field(const Field& field, const void* object) {
+    switch (field.kind) {
+    case FieldKind::real:
+        return validate_numbers(field, &member<float>(field, object), 1);
+    case FieldKind::vector3:
+        return validate_numbers(field, &member<vec3>(field, object).x, 3);
+    case FieldKind::quaternion:
+        return validate_numbers(field, &member<quat>(field, object).x, 4);
+    case FieldKind::integer:
+    case FieldKind::unsigned_integer:
+        if (const std::string text = field_to_text(field, object); !is_allowed(field, std::stod(text)))
+            return range_error(field, text);
+        return {};
+    case FieldKind::choice:
+        if (const std::uint32_t index = member<std::uint32_t>(field, object); index >= field.choices.size())
+            return Error{fmt::format("{} is not a value of '{}': there are {} choices", index, field.name,
+                                     field.choices.size())};
+        return {};
+    default:
+        return {};
     }
+}
+
+bool equal_field(const Field& field, const void* a, const void* b) {
+    const auto same = [&]<typename T>(const T& left) { return left == member<T>(field, b); };
+    switch (field.kind) {
+    case FieldKind::boolean:
+        return same(member<bool>(field, a));
+    case FieldKind::real:
+        return same(member<float>(field, a));
+    case FieldKind::vector3:
+        return same(member<vec3>(field, a));
+    case FieldKind::quaternion:
+        return same(member<quat>(field, a));
+    case FieldKind::text:
+        return same(member<std::string>(field, a));
+    case FieldKind::entity:
+        return same(member<EntityBits>(field, a));
+    default:
+        return same(member<std::uint32_t>(field, a));
+    }
+}
+
+} // namespace
+
+Status validate(const TypeDescription& type, const void* object) {
+    for (const Field& field : type.fields)
+        if (const Status status = validate_field(field, object); !status)
+            return Error{fmt::format("{}: {}", type.name, status.error().message)};
     return {};
+}
+
+bool equal_fields(const TypeDescription& type, const void* a, const void* b, std::uint32_t flags) {
+    for (const Field& field : type.fields)
+        if ((field.flags & flags) != 0 && !equal_field(field, a, b))
+            return false;
+    return true;
+}
+
+std::string allowed_values(const Field& field) {
+    if (field.kind == FieldKind::choice)
+        return fmt::format("{}", fmt::join(field.choices, " | "));
+    if (field.kind == FieldKind::boolean)
+        return "true | false";
+    if (!field.allowed.empty())
+        return list_of(field.allowed);
+    if (field.maximum >= unbounded || field.kind == FieldKind::text)
+        return {};
+    const std::string steps = field.multiple_of > 1 ? fmt::format(", multiples of {}", field.multiple_of) : "";
+    return fmt::format("{} to {}{}", field.minimum, field.maximum, steps);
 }
 
 std::string document(const TypeDescription& type, const void* defaults) {
     std::string text = fmt::format("{} (version {}): {}\n", type.name, type.version, type.tooltip);
-    for (const Field& field : type.fields) {
-        std::string range;
-        if (field.kind == FieldKind::choice)
-            range = fmt::format("{}", fmt::join(field.choices, " | "));
-        else if (field.maximum < unbounded && field.kind != FieldKind::boolean && field.kind != FieldKind::text)
-            range = fmt::format("{} to {}", field.minimum, field.maximum);
-        else if (field.kind == FieldKind::boolean)
-            range = "true | false";
-        text += fmt::format("  {:<24} {:<28} {:<8} default {:<14} {}\n", field.name, range, field.unit,
+    for (const Field& field : type.fields)
+        text += fmt::format("  {:<24} {:<28} {:<8} default {:<14} {}\n", field.name, allowed_values(field), field.unit,
                             field_to_text(field, defaults), field.tooltip);
-    }
     return text;
 }
 

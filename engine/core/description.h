@@ -29,6 +29,25 @@ struct Field {
     double minimum; // for numbers, and for each component of vectors
     double maximum;
     std::vector<std::string_view> choices; // for FieldKind::choice, whose storage is a 32-bit enumeration
+    std::vector<double> allowed{};         // for whole numbers: if not empty, one of these
+    std::uint32_t multiple_of = 1;         // for whole numbers
+    std::uint32_t flags = 0;               // meaning given by whoever describes the struct
+
+    Field only(std::vector<double> values) const {
+        Field result = *this;
+        result.allowed = std::move(values);
+        return result;
+    }
+    Field multiple(std::uint32_t of) const {
+        Field result = *this;
+        result.multiple_of = of;
+        return result;
+    }
+    Field flagged(std::uint32_t flag) const {
+        Field result = *this;
+        result.flags |= flag;
+        return result;
+    }
 };
 
 struct TypeDescription {
@@ -94,8 +113,15 @@ std::string field_to_text(const Field& field, const void* object);
 // that names field, range and unit; the object is unchanged then.
 Status field_from_text(const Field& field, void* object, std::string_view text);
 
-// Checks every number of `object` against its range, and that it is finite.
+// Checks every number of `object` against its range and allowed values, and that it is finite; choices against their
+// number.
 Status validate(const TypeDescription& type, const void* object);
+
+// The values that a field takes, as text: "a | b", "1, 2, 4 or 8", "0 to 1"; empty where anything goes.
+std::string allowed_values(const Field& field);
+
+// Whether two objects have the same values in all fields that carry one of `flags`.
+bool equal_fields(const TypeDescription& type, const void* a, const void* b, std::uint32_t flags);
 
 // One line a field: name, kind, range, unit, default, tooltip.
 std::string document(const TypeDescription& type, const void* defaults);

@@ -33,15 +33,15 @@ bool emits_towards(const Emitter& emitter, vec3 normal, vec3 direction) {
 
 } // namespace
 
-void DynamicLights::reset(const std::vector<Emitter>& emitters, std::uint32_t count, const Settings& settings,
+void DynamicLights::reset(const std::vector<Emitter>& emitters, std::uint32_t count, const SampleRequest& settings,
                           const raytrace::RayScene& rays) {
     settings_ = settings;
     lights_.clear();
     samples_.clear();
     moved_.clear();
     resampled_ = paths_made_ = 0;
-    const bool direct = settings.direct != DirectTechnique::none;
-    const bool indirect = settings.indirect != IndirectTechnique::none && settings.bounces > 0;
+    const bool direct = settings.direct;
+    const bool indirect = settings.indirect && settings.bounces > 0;
     if (emitters.empty() || (!direct && !indirect))
         return;
     std::vector<double> weights;

@@ -10,14 +10,14 @@
 
 #include "engine/raytrace/ray_scene.h"
 #include "gi_module/light_sampling/emitters.h"
-#include "gi_module/settings.h"
+#include "gi_module/light_sampling/sampling_settings.h"
 
 namespace sunfleck::gi {
 
 class DynamicLights {
 public:
     // Starts anew with `count` samples for these emitters together (each gets one at least, so there may be more).
-    void reset(const std::vector<Emitter>& emitters, std::uint32_t count, const Settings& settings,
+    void reset(const std::vector<Emitter>& emitters, std::uint32_t count, const SampleRequest& settings,
                const raytrace::RayScene& rays);
     // Follows the same emitters, in the same order. A pure function of all updates since reset.
     void update(const std::vector<Emitter>& emitters, const raytrace::RayScene& rays);
@@ -54,7 +54,7 @@ private:
     void fill_gaps(Light& light, std::uint32_t most, const raytrace::RayScene& rays);
     void share_flux(Light& light);
 
-    Settings settings_;
+    SampleRequest settings_;
     std::vector<Light> lights_;
     std::vector<LightSample> samples_;
     std::vector<std::uint8_t> moved_;

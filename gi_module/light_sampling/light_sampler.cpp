@@ -18,12 +18,12 @@ constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
 constexpr std::uint64_t most_candidates = 1u << 18;
 
-SequenceKind sequence_kind(const Settings& settings) {
+SequenceKind sequence_kind(const SampleRequest& settings) {
     return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
 }
 
-raytrace::Scope walk_scope(const Settings& settings) {
-    return settings.movers == MoverHandling::as_static ? raytrace::Scope::everything : raytrace::Scope::static_only;
+raytrace::Scope walk_scope(const SampleRequest& settings) {
+    return settings.movers_are_static ? raytrace::Scope::everything : raytrace::Scope::static_only;
 }
 
 LightSample delta_sample(const Emitter& emitter) {
@@ -74,7 +74,7 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
 
 // Fewer samples than emitters: systematic sampling of emitters by flux.
 std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                              const Settings& settings, const raytrace::RayScene& rays) {
+                                              const SampleRequest& settings, const raytrace::RayScene& rays) {
     std::vector<double> cumulative;
     double total = 0;
     for (const Emitter& emitter : emitters)
@@ -108,7 +108,7 @@ void add_way_point(LightSample& sample, vec3 point) {
 
 // The samples of one walk, for a flux of 1 W in all walks together (divided by their number later).
 std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::vector<double>& cumulative,
-                              std::uint32_t index, const Settings& settings, const raytrace::RayScene& rays) {
+                              std::uint32_t index, const SampleRequest& settings, const raytrace::RayScene& rays) {
     std::vector<LightSample> samples;
     RandomSequence random(sequence_kind(settings), hash_combine(settings.seed, 0x1d1), index);
     const float numbers[4] = {random.at(0), random.at(1), random.at(2), random.at(3)};
@@ -203,7 +203,7 @@ std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::ui
 }
 
 LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std::uint32_t count,
-                               const Settings& settings, const raytrace::RayScene& rays) {
+                               const SampleRequest& settings, const raytrace::RayScene& rays) {
     if (emitter.is_delta())
         return delta_sample(emitter);
     return shared_sample(emitter, float(count),
@@ -216,12 +216,12 @@ vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, ray
     return position + normal * (hit ? 0.5f * hit->distance : lift_distance);
 }
 
-SampleBudget divide_samples(const Settings& settings, const std::vector<Emitter>& emitters) {
+SampleBudget divide_samples(const SampleRequest& settings, const std::vector<Emitter>& emitters) {
     SampleBudget budget;
     if (emitters.empty() || settings.lights == 0)
         return budget;
-    const bool direct = settings.direct != DirectTechnique::none;
-    const bool indirect = settings.indirect != IndirectTechnique::none && settings.bounces > 0;
+    const bool direct = settings.direct;
+    const bool indirect = settings.indirect && settings.bounces > 0;
     if (!direct && !indirect)
         return budget;
     std::uint32_t share = std::uint32_t(std::lround(double(settings.direct_share) * settings.lights));
@@ -241,7 +241,7 @@ SampleBudget divide_samples(const Settings& settings, const std::vector<Emitter>
 }
 
 std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                       const Settings& settings, const raytrace::RayScene& rays) {
+                                       const SampleRequest& settings, const raytrace::RayScene& rays) {
     if (count == 0 || emitters.empty())
         return {};
     if (count < emitters.size())
@@ -269,7 +269,7 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
 }
 
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                         const Settings& settings, const raytrace::RayScene& rays) {
+                                         const SampleRequest& settings, const raytrace::RayScene& rays) {
     if (count == 0 || emitters.empty() || settings.bounces == 0)
         return {};
     std::vector<double> cumulative;

@@ -2,12 +2,10 @@
 #pragma once
 
 #include "gi_module/many_light/pass_grouping.h"
+#include "gi_module/visibility/view_bounds.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
-
-// Whether any of a box may lie in the view. `view_projection`: world to clip, reverse depth without a far plane.
-bool may_be_seen(const mat4& view_projection, const Bounds& bounds);
 
 // Of the leaves and movers that the view may show: the samples in state "partial", and with `extras` those that are
 // harmless to test besides (all but the blocked ones), by node.

@@ -6,7 +6,7 @@
 // that.
 #pragma once
 
-#include "gi_module/settings.h"
+#include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/transport/light_sample.h"
 
 #include <span>

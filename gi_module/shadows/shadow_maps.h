@@ -4,7 +4,7 @@
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
-#include "gi_module/settings.h"
+#include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/shadows/map_area.h"
 #include "gi_module/shadows/shadow_map_shared.h"
 #include "gi_module/transport/light_row.h"

@@ -12,7 +12,7 @@ namespace {
 constexpr VkFormat drawn_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 // The pixels that the boxes of all draws may cover; the whole picture if one reaches behind the camera.
-shared::TransferMergeConstants covered(const std::vector<TransferDraw>& draws, const gpu::UploadSlice& camera,
+PixelArea covered(const std::vector<TransferDraw>& draws, const gpu::UploadSlice& camera,
                                        const GBufferInput& g_buffer) {
     shared::CameraRow row;
     std::memcpy(&row, camera.data, sizeof row);
@@ -51,11 +51,6 @@ Result<std::unique_ptr<TransferPass>> TransferPass::create(gpu::Device& device, 
     drawing.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     drawing.colour_formats = {drawn_format};
     SUNFLECK_ASSIGN(pass->draw_, pipelines.graphics(drawing));
-    gpu::ComputeDescription merging;
-    merging.shader = "gi_module/transfer/transfer_merge.comp";
-    merging.bindings = {sampled_image, storage_image};
-    merging.push_constant_bytes = sizeof(shared::TransferMergeConstants);
-    SUNFLECK_ASSIGN(pass->merge_, pipelines.compute(merging));
     return pass;
 }
 
@@ -63,37 +58,19 @@ TransferPass::~TransferPass() {
     device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
-Status TransferPass::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferInput& g_buffer,
-                                const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws,
-                                gpu::ResourceId output) {
-    const shared::TransferMergeConstants area = covered(draws, camera, g_buffer);
-    if (draws.empty() || area.width == 0 || area.height == 0)
-        return {};
-    const gpu::ResourceId drawn =
-        graph.create_image("transferred light", drawn_format, g_buffer.width, g_buffer.height);
+void TransferPass::add_passes(gpu::FrameGraph& graph, const std::vector<TransferDraw>& draws, LightTarget& target) {
+    target.area = draws.empty() ? PixelArea() : covered(draws, target.camera, target.g_buffer);
+    if (target.area.width == 0 || target.area.height == 0)
+        return;
     graph.add_pass("transfer")
-        .read(g_buffer.depth, gpu::Usage::sampled)
-        .read(g_buffer.surface, gpu::Usage::sampled)
-        .write(drawn, gpu::Usage::colour_attachment)
-        .execute([this, &scene, g_buffer, camera, &draws, drawn, area](gpu::PassContext& context) {
+        .read(target.g_buffer.depth, gpu::Usage::sampled)
+        .read(target.g_buffer.surface, gpu::Usage::sampled)
+        .write(target.irradiance, gpu::Usage::colour_attachment)
+        .execute([this, &scene = target.gpu_scene, g_buffer = target.g_buffer, camera = target.camera, &draws,
+                  drawn = target.irradiance, area = target.area](gpu::PassContext& context) {
             const VkRect2D rectangle{{int(area.x), int(area.y)}, {area.width, area.height}};
             return draw(context, scene, g_buffer, camera, draws, drawn, rectangle);
         });
-    graph.add_pass("transfer merge")
-        .read(drawn, gpu::Usage::sampled)
-        .write(output, gpu::Usage::storage_write)
-        .execute([this, drawn, output, area](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::sampled_image(context.graph.view(drawn), sampler_),
-                                             gpu::Binding::storage_image(context.graph.view(output))};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *merge_, bindings));
-            context.resources.push(context.commands, *merge_, area);
-            const auto groups = [](std::uint32_t pixels) {
-                return (pixels + shared::transfer_merge_side - 1) / shared::transfer_merge_side;
-            };
-            context.device.vk.vkCmdDispatch(context.commands, groups(area.width), groups(area.height), 1);
-            return {};
-        });
-    return {};
 }
 
 Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene, const GBufferInput& g_buffer,

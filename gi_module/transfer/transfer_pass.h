@@ -1,10 +1,10 @@
-// Puts the light of movers with precomputed transfer into the irradiance image.
+// Draws the light of movers with precomputed transfer into a technique's target.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/pipeline.h"
 #include "gi_module/transfer/transfer_lighting.h"
-#include "gi_module/transport/g_buffer.h"
+#include "gi_module/technique.h"
 
 namespace sunfleck::gi {
 
@@ -14,10 +14,9 @@ public:
     static Result<std::unique_ptr<TransferPass>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
     ~TransferPass();
 
-    // Replaces `output` where the G-buffer shows one of the movers. After the passes that write the rest of it.
-    // `camera` holds a CameraRow; `draws` must live until the graph was executed.
-    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferInput& g_buffer,
-                      const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws, gpu::ResourceId output);
+    // Draws the movers into the target, where the G-buffer shows them, and sets its area. `draws` must live until the
+    // graph was executed.
+    void add_passes(gpu::FrameGraph& graph, const std::vector<TransferDraw>& draws, LightTarget& target);
 
 private:
     explicit TransferPass(gpu::Device& device) : device_(device) {}
@@ -28,7 +27,6 @@ private:
     gpu::Device& device_;
     VkSampler sampler_ = VK_NULL_HANDLE;
     const gpu::Pipeline* draw_ = nullptr;
-    const gpu::Pipeline* merge_ = nullptr;
 };
 
 } // namespace sunfleck::gi

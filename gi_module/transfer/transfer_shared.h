@@ -9,13 +9,6 @@ struct TransferConstants {
     int first_vertex; // of the mesh, in the vertex buffers
 };
 
-// A rectangle of pixels.
-struct TransferMergeConstants {
-    uint x, y, width, height;
-};
-
-SHARED_CONSTANT uint transfer_merge_side = 8u; // pixels of a group
-
 // Of the reverse depth, relative: what differs by more is another layer of the mover.
 SHARED_CONSTANT float transfer_depth_tolerance = 5e-4f;
 

@@ -22,16 +22,4 @@ const TypeDescription& LightSample::description() {
     return type;
 }
 
-const TypeDescription& ShadowMap::description() {
-    static const TypeDescription type{
-        "ShadowMap",
-        1,
-        "The shadow map of a light sample.",
-        {SUNFLECK_FIELD(ShadowMap, slot, "", 0, 4294967295.0, "Place in the map store"),
-         SUNFLECK_FIELD(ShadowMap, resolution, "texels", 0, 4096, "Texels along a side"),
-         SUNFLECK_FIELD(ShadowMap, frames_out_of_date, "frames", 0, 4294967295.0, "Age of what it shows"),
-         SUNFLECK_FIELD(ShadowMap, faces_with_occluders, "", 0, 4095, "Bit per octahedron face")}};
-    return type;
-}
-
 } // namespace sunfleck::gi

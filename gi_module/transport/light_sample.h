@@ -38,14 +38,4 @@ struct LightSample {
     static const TypeDescription& description();
 };
 
-// Where the sample's shadow map is and how old. Kept beside each LightSample.
-struct ShadowMap {
-    std::uint32_t slot = 0;
-    std::uint32_t resolution = 0;           // texels along a side
-    std::uint32_t frames_out_of_date = 0;   // 0: it shows the last completed step
-    std::uint32_t faces_with_occluders = 0; // bit per octahedron face
-
-    static const TypeDescription& description();
-};
-
 } // namespace sunfleck::gi

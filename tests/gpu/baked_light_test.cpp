@@ -1,5 +1,7 @@
 // Baked light against rays: what its texels hold, what smooth cells say between them, and what movers leave of it.
 #include "tests/support/gpu_world.h"
+#include "gi_module/many_light/many_light_settings.h"
+#include "tests/support/techniques.h"
 
 #include <glm/gtc/packing.hpp>
 
@@ -18,9 +20,9 @@ struct Baked {
 };
 
 Baked read_baked(GpuWorld& world) {
-    const gi::ManyLight& many = world.renderer->lighting().many_light();
+    const gi::ManyLight& many = tests::many_light(world.renderer->lighting());
     const std::uint64_t texels =
-        many.light_maps().counters().texels + world.renderer->lighting().curved_charts().points().size();
+        many.light_maps().counters().texels + tests::curved_charts(world.renderer->lighting()).points().size();
     const gpu::Buffer words = read_back(world, many.baked_light().texels(), texels * 8);
     const auto* halves = reinterpret_cast<const glm::uint64*>(words.mapped());
     Baked baked;
@@ -33,7 +35,7 @@ Baked read_baked(GpuWorld& world) {
 void bake_all(GpuWorld& world) {
     for (int i = 0; i < 60; ++i) {
         world.render();
-        if (world.renderer->lighting().many_light().baked_light().counters().waiting == 0)
+        if (tests::many_light(world.renderer->lighting()).baked_light().counters().waiting == 0)
             return;
     }
     FAIL() << "patches still wait";
@@ -51,7 +53,7 @@ vec3 irradiance_by_rays(GpuWorld& world, vec3 position, vec3 normal, vec3 geomet
             continue;
         const float at_light = std::max(glm::dot(sample.normal, -glm::normalize(to_light)), 0.0f);
         const float geometry = at_light * cosine / glm::dot(to_light, to_light);
-        sum += sample.flux / pi * std::min(geometry, lighting.light_rows()[sample.index].position_bound.w);
+        sum += sample.flux / pi * std::min(geometry, lighting.sample_set().rows()[sample.index].position_bound.w);
     }
     return sum;
 }
@@ -129,7 +131,7 @@ TEST_F(BakedLightTest, CurvedSurfacesHoldWhatRaysSay) {
     GpuWorld world(assets::make_area_room, "bench_1");
     bake_all(world);
     const Baked baked = read_baked(world);
-    const gi::CurvedCharts& curved = world.renderer->lighting().curved_charts();
+    const gi::CurvedCharts& curved = tests::curved_charts(world.renderer->lighting());
     const std::size_t first_point = baked.texels.size() - curved.points().size();
     std::mt19937 random(6);
     const auto uniform = [&] { return float(random() >> 8) * 0x1p-24f; };
@@ -184,14 +186,14 @@ TEST_F(BakedLightTest, CurvedChartsAreFoundWhenWanted) {
     gi::Settings settings;
     settings.lights = 60;
     settings.shadow_map_resolution = 64;
-    settings.baked_light = false;
+    settings.of<gi::ManyLightSettings>().baked_light = false;
     world.set(settings);
     world.render();
-    EXPECT_TRUE(world.renderer->lighting().curved_charts().points().empty());
-    settings.baked_light = true;
+    EXPECT_TRUE(tests::curved_charts(world.renderer->lighting()).points().empty());
+    settings.of<gi::ManyLightSettings>().baked_light = true;
     world.set(settings);
     bake_all(world);
-    const std::size_t points = world.renderer->lighting().curved_charts().points().size();
+    const std::size_t points = tests::curved_charts(world.renderer->lighting()).points().size();
     ASSERT_GT(points, 1000u);
     const Baked baked = read_baked(world);
     const auto first = baked.texels.end() - std::ptrdiff_t(points);
@@ -211,10 +213,10 @@ TEST_F(BakedLightTest, WaitsForTheMaps) {
     int bakes = 0;
     for (int frame = 0; frame < 6; ++frame) {
         world.render();
-        const gi::Counters& counters = world.renderer->lighting().counters();
-        bakes += counters.baked_light_updates > 0;
+        const gi::Report& counters = world.renderer->lighting().counters();
+        bakes += counters["baked_light_updates"] > 0;
         EXPECT_EQ(bakes, frame < 2 ? 0 : 1);
-        EXPECT_EQ(world.renderer->lighting().many_light().baked_light().in_use(), frame >= 2);
+        EXPECT_EQ(tests::many_light(world.renderer->lighting()).baked_light().in_use(), frame >= 2);
     }
 }
 
@@ -255,14 +257,14 @@ TEST_F(BakedLightTest, RoughPixelsAreAsWithoutIt) {
         bake_all(world);
         const io::Picture with = world.picture();
         world.request.view = shared::view_false_colours;
-        world.request.show = shared::show_baked;
+        world.request.lighting_view = "baked";
         const io::Picture kinds = world.picture();
         world.request.view = shared::view_irradiance;
-        world.request.show = shared::show_nothing;
-        settings.baked_light = false;
+        world.request.lighting_view.clear();
+        settings.of<gi::ManyLightSettings>().baked_light = false;
         world.set(settings);
         const io::Picture without = world.picture();
-        settings.visibility = false;
+        settings.of<gi::ManyLightSettings>().visibility = false;
         world.set(settings);
         const io::Picture all_tested = world.picture();
         int rough = 0, unmapped = 0, other = 0;
@@ -298,7 +300,7 @@ TEST_F(BakedLightTest, MoversTakeAwayWhatTheyDid) {
     bake_all(world);
     world.request.step = 9;
     const io::Picture with = world.picture();
-    settings.baked_light = false;
+    settings.of<gi::ManyLightSettings>().baked_light = false;
     world.set(settings);
     const io::Picture without = world.picture();
     double off = 0.0, total = 0.0;

@@ -105,7 +105,7 @@ TEST_F(Imported, HolesAreHolesForPicturesShadowsAndRays) {
     assets::SceneBuilder builder(stage.renderer->registry(), stage.renderer->meshes());
     builder.point_light("lamp", vec3(0.3f, 0.5f, 2.5f), vec3(9.0f));
     stage.finish("view");
-    for (const gi::Settings& technique : {gi::Settings::brute_force(), gi::Settings()}) {
+    for (const gi::Settings& technique : {gi::Settings().all_light_by("brute_force"), gi::Settings()}) {
         gi::Settings settings = technique;
         settings.lights = 1;
         settings.shadow_map_resolution = 512;
@@ -266,7 +266,7 @@ TEST_F(Imported, SurroundingsLightAsTheirIntegralSays) {
     world.renderer->registry().emplace<scene::Environment>(sky, {vec3(1.0f)});
     world.renderer->registry().emplace<scene::EnvironmentMap>(sky, {"", 0.0f, image});
     world.finish("view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 4096;
     settings.direct_share = 1.0f;
     settings.shadow_map_resolution = 16;

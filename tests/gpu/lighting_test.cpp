@@ -1,7 +1,9 @@
 // Brute force against closed forms.
 #include "tests/support/gpu_world.h"
+#include "gi_module/brute_force/brute_force_settings.h"
 
 #include "gi_module/reference/path_tracer.h"
+#include "tests/support/techniques.h"
 
 #include <cmath>
 
@@ -18,9 +20,9 @@ void add_floor(GpuWorld& world) {
 }
 
 gi::Settings one_light() {
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 1;
-    settings.indirect = gi::IndirectTechnique::none;
+    settings.with("indirect", "none");
     return settings;
 }
 
@@ -145,11 +147,11 @@ TEST_F(Lighting, FurnaceWithinThreePercent) {
             assets::SceneBuilder builder(world.renderer->registry(), world.renderer->meshes());
             assets::make_furnace_of(builder, albedo, 1.0f);
             world.finish("view");
-            gi::Settings settings = gi::Settings::brute_force();
+            gi::Settings settings = gi::Settings().all_light_by("brute_force");
             settings.lights = 16384;
             settings.direct_share = 0.5f;
             settings.bounces = bounces;
-            settings.count_clamped = true;
+            settings.of<gi::BruteForceSettings>().count_clamped = true;
             settings.shadow_map_resolution = 32;
             world.set(settings);
             world.request.width = 32;
@@ -159,7 +161,7 @@ TEST_F(Lighting, FurnaceWithinThreePercent) {
             double mean = 0;
             for (const vec4& pixel : picture.pixels)
                 mean += double(pixel.x) / double(picture.pixels.size());
-            const double clamped = world.renderer->lighting().counters().clamped_irradiance;
+            const double clamped = world.renderer->lighting().counters()["clamped_irradiance"];
             double expected = 0, power = 1;
             for (std::uint32_t k = 0; k <= bounces; ++k, power *= double(albedo))
                 expected += power;
@@ -169,10 +171,10 @@ TEST_F(Lighting, FurnaceWithinThreePercent) {
 
 TEST_F(Lighting, WhatTheBoundTakesAwayIsCounted) {
     GpuWorld world(assets::make_furnace, "view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 512;
     settings.direct_share = 0.5f;
-    settings.count_clamped = true;
+    settings.of<gi::BruteForceSettings>().count_clamped = true;
     settings.clamp_scale = 0.1f; // clamps much
     world.set(settings);
     world.request.width = 128;
@@ -186,8 +188,8 @@ TEST_F(Lighting, WhatTheBoundTakesAwayIsCounted) {
     };
     const double clamped_mean = mean();
     world.render();
-    const double counted = world.renderer->lighting().counters().clamped_irradiance;
-    EXPECT_GT(world.renderer->lighting().counters().clamped_flux, 0.0);
+    const double counted = world.renderer->lighting().counters()["clamped_irradiance"];
+    EXPECT_GT(world.renderer->lighting().counters()["clamped_flux"], 0.0);
     settings.clamp_scale = 1e6f; // hardly any
     world.set(settings);
     const double free_mean = mean();
@@ -200,7 +202,7 @@ TEST_F(Lighting, EveryKernelShapeGivesTheSamePicture) {
     GpuWorld world(assets::make_four_pillars, "view");
     world.request.width = 100; // not a multiple of any tile
     world.request.height = 37;
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 70;
     settings.shadow_map_resolution = 64;
     world.set(settings);
@@ -212,7 +214,7 @@ TEST_F(Lighting, EveryKernelShapeGivesTheSamePicture) {
     for (const std::uint32_t pixels : {1u, 2u, 4u, 8u, 16u})
         for (const std::uint32_t maps : {shared::maps_texel_buffer, shared::maps_storage_buffer})
             for (const bool storage_lights : {false, true}) {
-                world.renderer->lighting().brute_force().set_shape({pixels, maps, storage_lights});
+                tests::brute_force_kernel(world.renderer->lighting()).set_shape({pixels, maps, storage_lights});
                 const io::Picture picture = world.picture();
                 int different = 0;
                 for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -225,7 +227,7 @@ TEST_F(Lighting, EveryKernelShapeGivesTheSamePicture) {
 
 TEST_F(Lighting, FewerSlotsThanSamplesGiveTheSamePicture) {
     GpuWorld world(assets::make_cornell, "corner");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 100;
     settings.shadow_map_resolution = 256;
     world.set(settings);
@@ -235,7 +237,7 @@ TEST_F(Lighting, FewerSlotsThanSamplesGiveTheSamePicture) {
     GpuWorld small(assets::make_cornell, "corner");
     small.set(settings);
     const io::Picture picture = small.picture();
-    EXPECT_EQ(small.renderer->lighting().shadow_maps().slots(), 16u);
+    EXPECT_EQ(small.renderer->lighting().shadows().maps().slots(), 16u);
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         ASSERT_LE(glm::length(vec3(picture.pixels[i] - expected.pixels[i])),
                   2e-3f * (1.0f + glm::length(vec3(expected.pixels[i]))));
@@ -244,14 +246,14 @@ TEST_F(Lighting, FewerSlotsThanSamplesGiveTheSamePicture) {
 TEST_F(Lighting, AnyNumberOfSamples) {
     for (const std::uint32_t lights : {0u, 1u, 7u, 300u, 2049u, 65536u}) {
         GpuWorld world(assets::make_cornell, "view");
-        gi::Settings settings = gi::Settings::brute_force();
+        gi::Settings settings = gi::Settings().all_light_by("brute_force");
         settings.lights = lights;
         settings.shadow_map_resolution = 16;
         world.set(settings);
         world.request.width = 24;
         world.request.height = 16;
         const io::Picture picture = world.picture();
-        EXPECT_EQ(world.renderer->lighting().counters().light_samples, lights);
+        EXPECT_EQ(world.renderer->lighting().counters()["light_samples"], lights);
         double sum = 0;
         for (const vec4& pixel : picture.pixels) {
             ASSERT_TRUE(is_finite(vec3(pixel)));
@@ -262,30 +264,31 @@ TEST_F(Lighting, AnyNumberOfSamples) {
 }
 
 TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
-    for (const gi::MoverHandling movers : {gi::MoverHandling::per_pixel, gi::MoverHandling::as_static}) {
+    for (const std::uint32_t movers : {gi::movers_per_pixel, gi::movers_static}) {
         GpuWorld world(assets::make_four_pillars, "view");
-        gi::Settings settings = gi::Settings::brute_force();
+        gi::Settings settings = gi::Settings().all_light_by("brute_force");
         settings.lights = 300;
         settings.shadow_map_resolution = 32;
         settings.movers = movers;
         world.set(settings);
         world.render();
-        const std::vector<gi::LightSample> before = world.renderer->lighting().samples();
+        const auto now = world.renderer->lighting().samples();
+        const std::vector<gi::LightSample> before(now.begin(), now.end());
         world.request.step = 60;
         world.render();
-        const std::vector<gi::LightSample>& after = world.renderer->lighting().samples();
+        const std::span<const gi::LightSample> after = world.renderer->lighting().samples();
         ASSERT_EQ(before.size(), after.size());
         bool same = true;
         for (std::size_t i = 0; i < before.size(); ++i)
             same = same && before[i].position == after[i].position;
-        EXPECT_EQ(same, movers == gi::MoverHandling::per_pixel);
-        EXPECT_EQ(world.renderer->registry().count<gi::LightSample>(), 300u);
+        EXPECT_EQ(same, movers == gi::movers_per_pixel);
+        EXPECT_EQ(after.size(), 300u);
     }
 }
 
 TEST_F(Lighting, AFilteredLookUpKeepsTheMean) {
     GpuWorld world(assets::make_table_room, "view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 64;
     settings.shadow_filter = false;
     world.set(settings);

@@ -1,5 +1,7 @@
 // The many-light system against brute force: what each optimisation may change of the picture, and what it may not.
+#include "gi_module/many_light/many_light_settings.h"
 #include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
 
 #include <random>
 
@@ -14,7 +16,7 @@ struct Pair {
         : brute(make, camera), many(make, camera) {}
     void set(const gi::Settings& settings) {
         many.set(settings);
-        gi::Settings baseline = gi::Settings::brute_force();
+        gi::Settings baseline = gi::Settings().all_light_by("brute_force");
         baseline.lights = settings.lights;
         baseline.seed = settings.seed;
         baseline.shadow_filter = settings.shadow_filter;
@@ -83,14 +85,14 @@ TEST_F(ManyLightTest, ExactPartsChangeNothing) {
         pair.size(160, 120);
         gi::Settings settings;
         settings.lights = 200;
-        settings.light_maps = false;
+        settings.of<gi::ManyLightSettings>().light_maps = false;
         settings.low_resolution = 1;
         settings.map_detail = false;
         settings.map_budget = 65536;
         for (const bool filter : {false, true})
             for (const bool visibility : {false, true}) {
                 settings.shadow_filter = filter;
-                settings.visibility = visibility;
+                settings.of<gi::ManyLightSettings>().visibility = visibility;
                 pair.set(settings);
                 pair.run_to(4, 0.25f);
                 const Difference difference = compare(pair);
@@ -99,7 +101,7 @@ TEST_F(ManyLightTest, ExactPartsChangeNothing) {
                     EXPECT_LT(difference.largest, rounding) << "filter " << filter;
                 } else {
                     EXPECT_LT(difference.mean, 0.003 * difference.mean_brightness) << "filter " << filter;
-                    EXPECT_GT(pair.many.renderer->lighting().counters().visibility.none, 10000u);
+                    EXPECT_GT(pair.many.renderer->lighting().counters()["pairs_none"], 10000u);
                 }
                 EXPECT_GT(difference.mean_brightness, 0.01);
             }
@@ -126,9 +128,9 @@ TEST_F(ManyLightTest, AClosedDoorKeepsReflectedLightOut) {
         for (const vec4& pixel : picture.pixels)
             sum += double(pixel.r + pixel.g + pixel.b) / double(picture.pixels.size());
         if (!mover_paths) {
-            EXPECT_EQ(world.renderer->lighting().counters().light_samples_blocked, 0u);
+            EXPECT_EQ(world.renderer->lighting().counters()["light_samples_blocked"], 0u);
         } else if (step == 120) {
-            EXPECT_GT(world.renderer->lighting().counters().light_samples_blocked, 10u);
+            EXPECT_GT(world.renderer->lighting().counters()["light_samples_blocked"], 10u);
         }
         return sum;
     };
@@ -157,7 +159,7 @@ TEST_F(ManyLightTest, FollowsLightsThatMoveAndVary) {
         lamps[w++] = scene::find_by_name(registry, "lamp");
     }
     gi::Settings settings;
-    settings.light_maps = true;
+    settings.of<gi::ManyLightSettings>().light_maps = true;
     settings.low_resolution = 1;
     settings.map_detail = false;
     settings.map_budget = 65536;
@@ -175,11 +177,11 @@ TEST_F(ManyLightTest, FollowsLightsThatMoveAndVary) {
             world->request.step = step;
             world->render();
         }
-        const gi::Counters& counters = pair.many.renderer->lighting().counters();
-        EXPECT_EQ(counters.light_samples, 300u);
+        const gi::Report& counters = pair.many.renderer->lighting().counters();
+        EXPECT_EQ(counters["light_samples"], 300u);
         if (step > 8)
-            moved = std::max(moved, counters.light_samples_moved);
-        EXPECT_EQ(counters.light_samples_dynamic > 0, true);
+            moved = std::max(moved, std::uint64_t(counters["light_samples_moved"]));
+        EXPECT_EQ(counters["light_samples_dynamic"] > 0, true);
         if (step % 8 != 7)
             continue;
         const Difference difference = compare(pair);
@@ -217,11 +219,11 @@ TEST_F(ManyLightTest, TheWholeSystemStaysCloseToBruteForce) {
         EXPECT_LT(difference.mean, 1.0 / 255.0);
         EXPECT_LT(difference.beyond_8, 0.005);
         pair.many.render(); // counters arrive a frame later
-        const gi::ManyLightCounters& pixels = pair.many.renderer->lighting().counters().pixels;
-        EXPECT_EQ(pixels.pixels_low_resolution, 256u * 192u);
-        EXPECT_GT(pixels.pixels_repaired, 100u);
-        EXPECT_LT(pixels.pixels_repaired, 1024u * 768u / 20u);
-        EXPECT_EQ(pixels.pixels_not_repaired, 0u);
+        const gi::Report& pixels = pair.many.renderer->lighting().counters();
+        EXPECT_EQ(pixels["pixels_low_resolution"], 256u * 192u);
+        EXPECT_GT(pixels["pixels_repaired"], 100u);
+        EXPECT_LT(pixels["pixels_repaired"], 1024u * 768u / 20u);
+        EXPECT_EQ(pixels["pixels_not_repaired"], 0u);
     }
 }
 
@@ -254,9 +256,9 @@ TEST_F(ManyLightTest, NothingIsShadowedByWhereItWas) {
             scene::update_world_transforms(registry);
             world->render();
         }
-    const gi::Counters& counters = pair.many.renderer->lighting().counters();
-    EXPECT_EQ(counters.shadow_map_updates, 0u);
-    EXPECT_GT(counters.shadow_maps_stale, 30u);
+    const gi::Report& counters = pair.many.renderer->lighting().counters();
+    EXPECT_EQ(counters["shadow_map_updates"], 0u);
+    EXPECT_GT(counters["shadow_maps_stale"], 30u);
     const Difference difference = compare(pair);
     EXPECT_GT(difference.mean_brightness, 1.0);
     EXPECT_LT(difference.mean, 0.01 * difference.mean_brightness);
@@ -312,7 +314,7 @@ TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
     const Difference direct = compare(pair);
     settings.bounces = gi::Settings{}.bounces;
     pair.set(settings);
-    settings.light_maps = false;
+    settings.of<gi::ManyLightSettings>().light_maps = false;
     pair.brute.set(settings);
     pair.run_to(1, 0.0f);
     const Difference all = compare(pair);
@@ -371,11 +373,11 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
                 transform.rotation = glm::angleAxis(uniform(0, 6), vec3(0, 1, 0));
             });
         world.render();
-        updates += world.renderer->lighting().counters().light_map_updates;
+        updates += world.renderer->lighting().counters()["light_map_updates"];
     }
     std::printf("%llu light map updates\n", static_cast<unsigned long long>(updates));
     EXPECT_GT(updates, 10000u);
-    const auto kept = read_texels(world, world.renderer->lighting().many_light().light_maps());
+    const auto kept = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
     // Another seed and back: samples, database and light maps are made anew.
     settings.seed = 2;
     world.set(settings);
@@ -383,7 +385,7 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
     settings.seed = 1;
     world.set(settings);
     world.render();
-    const auto fresh = read_texels(world, world.renderer->lighting().many_light().light_maps());
+    const auto fresh = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
     ASSERT_EQ(kept.size(), fresh.size());
     EXPECT_EQ(kept, fresh);
     EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
@@ -403,8 +405,8 @@ TEST_F(ManyLightTest, LargeLightMapsAreFilledToTheEnd) {
     settings.low_resolution = 1;
     world.set(settings);
     const io::Picture with = world.picture();
-    EXPECT_GT(world.renderer->lighting().counters().light_map_texels, 100000u);
-    settings.light_maps = false;
+    EXPECT_GT(world.renderer->lighting().counters()["light_map_texels"], 100000u);
+    settings.of<gi::ManyLightSettings>().light_maps = false;
     world.set(settings);
     const io::Picture without = world.picture();
     std::size_t dark = 0;
@@ -442,11 +444,11 @@ TEST_F(ManyLightTest, AnyNumberOfSamplesAndAnyMovers) {
             const io::Picture picture = world.picture();
             for (const vec4& pixel : picture.pixels)
                 ASSERT_TRUE(is_finite(vec3(pixel)) && pixel.r >= 0.0f);
-            const gi::Counters& counters = world.renderer->lighting().counters();
-            EXPECT_EQ(counters.light_samples, lights);
-            const gi::VisibilityCounters& pairs = counters.visibility;
-            EXPECT_EQ(pairs.full + pairs.partial + pairs.none + pairs.unlit,
-                      std::uint64_t(lights) * (counters.surface_patches + movers.size()));
+            const gi::Report& counters = world.renderer->lighting().counters();
+            EXPECT_EQ(counters["light_samples"], lights);
+            EXPECT_EQ(counters["pairs_full"] + counters["pairs_partial"] + counters["pairs_none"] +
+                          counters["pairs_unlit"],
+                      double(lights) * (counters["surface_patches"] + double(movers.size())));
         }
     }
 }

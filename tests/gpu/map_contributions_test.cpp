@@ -2,7 +2,7 @@
 #include "tests/support/gpu_world.h"
 
 #include "engine/core/random.h"
-#include "gi_module/many_light/map_contributions.h"
+#include "gi_module/shadows/map_contributions.h"
 #include "gi_module/transport/arrival.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class MapContributions : public GpuTest {};
 std::vector<float> contributions(GpuWorld& world, const scene::CameraView& camera) {
     gi::System& lighting = world.renderer->lighting();
     const std::vector<std::uint8_t> wanted(lighting.samples().size(), 1);
-    return gi::map_contributions(lighting.visibility(), lighting.samples(), lighting.light_rows(),
+    return gi::map_contributions(lighting.visibility(), lighting.samples(), lighting.sample_set().rows(),
                                  world.renderer->gpu_scene().draws(),
                                  scene::make_camera_row(camera, 160, 120).view_projection, wanted);
 }
@@ -39,7 +39,7 @@ std::vector<float> light_that_movers_decide(GpuWorld& world, const scene::Camera
                 glm::dot(point.geometric_normal, towards) < 0.0f ? -point.geometric_normal : point.geometric_normal;
             const bool on_mover = !scene::is_static(world.renderer->registry(), point.entity);
             for (const gi::LightSample& sample : lighting.samples()) {
-                const gi::Arrival light = gi::arrival(lighting.light_rows()[sample.index], gi::light_class(sample.kind),
+                const gi::Arrival light = gi::arrival(lighting.sample_set().rows()[sample.index], gi::light_class(sample.kind),
                                                       point.position, 100.0f);
                 const float cosine = glm::dot(normal, glm::normalize(light.to_light));
                 if (cosine <= 0.0f)

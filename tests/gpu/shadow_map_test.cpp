@@ -19,7 +19,7 @@ class ShadowMapTest : public GpuTest {};
 struct Maps {
     Maps(GpuWorld& world, std::uint32_t map_bits) : bits(map_bits) {
         gi::System& lighting = world.renderer->lighting();
-        const gi::ShadowMaps& maps = lighting.shadow_maps();
+        const gi::ShadowMaps& maps = lighting.shadows().maps();
         resolution = maps.resolution();
         const std::size_t count = std::size_t(resolution) * resolution * maps.slots();
         const gpu::Buffer target = read_back(world, maps.texels(), count * bits / 8);
@@ -169,7 +169,7 @@ bool explained(const Maps& maps, const raytrace::RayScene& rays, std::size_t lig
 // rays differ, the difference is explained as for all maps.
 TEST_F(ShadowMapTest, SpotsHaveMapsOfTheirCone) {
     GpuWorld world(assets::make_near_occluder, "view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 8;
     world.set(settings);
     world.request.width = world.request.height = 8;
@@ -220,7 +220,7 @@ ecs::Entity first_lamp(GpuWorld& world) {
 
 void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs) {
     GpuWorld world(make);
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 96;
     settings.shadow_map_resolution = 512;
     settings.shadow_map_bits = bits;
@@ -308,9 +308,9 @@ void make_box_on_floor(assets::SceneBuilder& scene) {
 
 TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
     GpuWorld world(make_box_on_floor);
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 64;
-    settings.indirect = gi::IndirectTechnique::none;
+    settings.with("indirect", "none");
     settings.shadow_map_resolution = 256;
     world.set(settings);
     world.render();
@@ -347,32 +347,32 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
 
 TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
     GpuWorld world(assets::make_table_room, "view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);
     world.render();
-    const gi::Counters& counters = world.renderer->lighting().counters();
-    EXPECT_EQ(counters.shadow_map_updates, 100u);
-    EXPECT_LE(counters.shadow_map_faces, 400u);
+    const gi::Report& counters = world.renderer->lighting().counters();
+    EXPECT_EQ(counters["shadow_map_updates"], 100u);
+    EXPECT_LE(counters["shadow_map_faces"], 400u);
     world.render(); // a step later: only the mover has moved
-    EXPECT_LE(counters.shadow_map_updates, 100u);
+    EXPECT_LE(counters["shadow_map_updates"], 100u);
     world.request.step = 0;
     world.render();
     world.render();
-    EXPECT_EQ(world.renderer->lighting().counters().shadow_map_updates, 0u) << "nothing moves, nothing is drawn";
+    EXPECT_EQ(world.renderer->lighting().counters()["shadow_map_updates"], 0u) << "nothing moves, nothing is drawn";
 }
 
 TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     GpuWorld world(assets::make_four_pillars, "view");
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);
     world.request.map_budget = 30;
     for (const std::uint64_t left : {70u, 40u, 10u, 0u}) {
         world.render();
-        EXPECT_EQ(world.renderer->lighting().counters().shadow_maps_stale, left);
+        EXPECT_EQ(world.renderer->lighting().counters()["shadow_maps_stale"], left);
     }
     const io::Picture spread = world.picture();
     world.request.map_budget = 0xffffffffu;
@@ -401,7 +401,7 @@ TEST_F(ShadowMapTest, CopiedAreasLeaveNothingBehind) {
     fresh.set(settings);
     world.render();
     fresh.render();
-    ASSERT_EQ(world.renderer->lighting().counters().shadow_maps_stale, 0u);
+    ASSERT_EQ(world.renderer->lighting().counters()["shadow_maps_stale"], 0u);
     const Maps kept(world, 16), anew(fresh, 16);
     EXPECT_EQ(kept.values, anew.values);
 }

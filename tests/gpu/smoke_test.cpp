@@ -1,5 +1,7 @@
 // What runs under the address and undefined-behaviour sanitizers besides the CPU tests: loading, saving, one frame.
 #include "tests/support/gpu_world.h"
+#include "gi_module/many_light/many_light_settings.h"
+#include "gi_module/brute_force/brute_force_settings.h"
 
 #include "engine/core/file.h"
 #include "engine/core/random.h"
@@ -24,13 +26,13 @@ TEST_F(Smoke, OneFrameOfEveryScene) {
         // Too large to be built twice under a sanitizer, and nothing in them that smaller ones have not.
         if (scene.name == "atrium" || scene.name == "gallery" || scene.name == "hall" || scene.name == "classroom")
             continue;
-        for (const gi::Settings& technique : {gi::Settings::brute_force(), gi::Settings()}) {
+        for (const gi::Settings& technique : {gi::Settings().all_light_by("brute_force"), gi::Settings()}) {
             GpuWorld world(scene.make);
             gi::Settings settings = technique;
             settings.lights = 40;
             settings.shadow_map_resolution = 32;
-            settings.count_clamped = true;
-            settings.count_passes = std::string(scene.name) == "cornell"; // slow where patches are many
+            settings.of<gi::BruteForceSettings>().count_clamped = true;
+            settings.of<gi::ManyLightSettings>().count_passes = std::string(scene.name) == "cornell"; // slow where patches are many
             settings.shadow_filter = true;
             world.set(settings);
             world.request.tone_map = true;
@@ -53,12 +55,12 @@ TEST_F(Smoke, FalseColours) {
     settings.shadow_map_resolution = 32;
     world.set(settings);
     world.request.view = shared::view_false_colours;
-    for (std::uint32_t show = shared::show_tiles; show <= shared::show_baked; ++show) {
-        world.request.show = show;
+    for (const gi::DebugView* view : gi::debug_views()) {
+        world.request.lighting_view = view->name;
         double sum = 0;
         for (const vec4& pixel : world.picture().pixels)
             sum += double(pixel.x + pixel.y + pixel.z);
-        EXPECT_GT(sum, 10.0) << show;
+        EXPECT_GT(sum, 10.0) << view->name;
     }
 }
 

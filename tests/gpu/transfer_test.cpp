@@ -1,5 +1,6 @@
 // Movers lit by precomputed transfer, in pictures.
 #include "gi_module/reference/path_tracer.h"
+#include "gi_module/transfer/transfer_settings.h"
 #include "tests/support/gpu_world.h"
 
 namespace sunfleck::tests {
@@ -58,22 +59,22 @@ TEST_F(TransferTest, SeveralPointsLetAShadowCrossAMover) {
     world.request.width = width;
     world.request.height = height;
     gi::Settings settings;
-    settings.indirect = gi::IndirectTechnique::none;
+    settings.with("indirect", "none");
     settings.lights = 100;
     settings.shadow_map_resolution = 512;
     settings.low_resolution = 1;
-    settings.transfer_reflections = 0;
+    settings.of<gi::TransferSettings>().transfer_reflections = 0;
     world.set(settings);
     const io::Picture truth = world.picture();
     const std::vector<std::size_t> ball = pixels_of(world, "ball");
     ASSERT_GT(ball.size(), 500u);
-    settings.movers = gi::MoverHandling::transfer;
+    settings.with("movers", "prt");
     std::map<std::uint32_t, Error> errors;
     for (const std::uint32_t points : {1u, 4u, 6u}) {
-        settings.transfer_points = points;
+        settings.of<gi::TransferSettings>().transfer_points = points;
         world.set(settings);
         const io::Picture picture = world.picture();
-        EXPECT_GT(world.renderer->lighting().counters().transfer_vertices, 0u);
+        EXPECT_GT(world.renderer->lighting().counters()["transfer_vertices"], 0u);
         errors[points] = error_of(picture.pixels, truth.pixels, ball);
         std::printf("%u points a side: mean %+.3f, root mean square %.3f\n", points, errors[points].relative_mean,
                     errors[points].relative_root_mean_square);
@@ -99,7 +100,7 @@ TEST_F(TransferTest, AKnotInARoomIsAsThePathTracerSees) {
     settings.lights = 2000;
     settings.direct_share = 0.5f;
     settings.shadow_map_resolution = 64;
-    settings.movers = gi::MoverHandling::transfer;
+    settings.with("movers", "prt");
     world.set(settings);
     const io::Picture picture = world.picture();
     std::string name;

@@ -5,6 +5,7 @@
 #include "engine/simulation/path_movers.h"
 #include "gi_module/reference/path_tracer.h"
 #include "gi_module/reference/surface_distance.h"
+#include "tests/support/techniques.h"
 
 #include <cmath>
 
@@ -36,11 +37,11 @@ io::Picture reference_picture(GpuWorld& world, std::uint32_t samples) {
 }
 
 gi::Settings truth_settings(std::uint32_t lights, std::uint32_t seed) {
-    gi::Settings settings = gi::Settings::brute_force();
+    gi::Settings settings = gi::Settings().all_light_by("brute_force");
     settings.lights = lights;
     settings.seed = seed;
     settings.direct_share = 0.5f;
-    settings.movers = gi::MoverHandling::as_static;
+    settings.with("movers", "static");
     return settings;
 }
 
@@ -103,7 +104,7 @@ TEST_F(Truth, ErrorFallsWithTheNumberOfSamples) {
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
     std::vector<std::uint8_t> counted;
     std::size_t counted_pixels = 0;
-    world.renderer->lighting().brute_force().set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
+    tests::brute_force_kernel(world.renderer->lighting()).set_shape({4, shared::maps_texel_buffer, false}); // tiles fit the picture
     for (const std::uint32_t lights : {256u, 1024u, 4096u, 16384u}) {
         std::vector<double> errors;
         for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -113,7 +114,7 @@ TEST_F(Truth, ErrorFallsWithTheNumberOfSamples) {
             io::Picture picture = world.picture();
             if (counted.empty())
                 for (const float distance : distances) {
-                    counted.push_back(distance > 1.0f / std::sqrt(world.renderer->lighting().geometry_bound()));
+                    counted.push_back(distance > 1.0f / std::sqrt(world.renderer->lighting().sample_set().geometry_bound()));
                     counted_pixels += counted.back();
                 }
             for (std::size_t i = 0; i < counted.size(); ++i)

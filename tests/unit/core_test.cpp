@@ -83,8 +83,8 @@ TEST(Jobs, ChunksCoverEverythingOnceWhateverTheThreads) {
 }
 
 TEST(Description, TextRoundTripsAndRangesHold) {
-    gi::Settings settings;
-    const TypeDescription& type = gi::Settings::description();
+    gi::SamplingSettings settings;
+    const TypeDescription& type = gi::SamplingSettings::description();
     for (const Field& field : type.fields) {
         const std::string text = field_to_text(field, &settings);
         EXPECT_TRUE(field_from_text(field, &settings, text)) << field.name;

@@ -70,9 +70,9 @@ TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
         EXPECT_GT(settings.light_samples, before.light_samples);
         EXPECT_TRUE(validate(DemoSettings::description(), &settings));
         const gi::Settings lighting = lighting_of(settings);
-        EXPECT_TRUE(validate(gi::Settings::description(), &lighting));
+        EXPECT_TRUE(lighting.validate());
         EXPECT_EQ(lighting.lights, settings.light_samples);
-        EXPECT_EQ(lighting.movers == gi::MoverHandling::transfer, settings.transfer);
+        EXPECT_EQ(lighting.get("movers") == "prt", settings.transfer);
         EXPECT_TRUE(settings.transfer || !before.transfer);
         before = settings;
     }

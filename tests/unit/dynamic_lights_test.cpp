@@ -72,7 +72,7 @@ double flux_of(const std::vector<LightSample>& samples, ecs::Entity emitter, boo
 
 TEST(DynamicLights, CarryTheFluxOfPlainWalks) {
     World world;
-    Settings settings;
+    SampleRequest settings;
     settings.candidates = 1;
     settings.bounces = 4;
     // 40 moves of up to 5 cm: most paths stay, and what is left must be worth as much as fresh walks.

@@ -115,7 +115,7 @@ TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
     for (const Sequence sequence : {Sequence::sobol, Sequence::pseudo_random})
         for (const Termination termination : {Termination::bounce_limit, Termination::russian_roulette})
             for (const std::uint32_t count : {1u, 7u, 300u, 2049u}) {
-                Settings settings;
+                SampleRequest settings;
                 settings.sequence = sequence;
                 settings.termination = termination;
                 std::vector<LightSample> one, two;
@@ -147,7 +147,7 @@ TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
             world.registry.destroy(mover);
         ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
         constexpr std::uint32_t bounces = 3, points = 4096, rays_per_point = 16;
-        Settings settings;
+        SampleRequest settings;
         settings.bounces = bounces;
         double walked[bounces] = {};
         double walked_square[bounces] = {};
@@ -273,7 +273,7 @@ TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
 // Clusters keep the flux of all candidates, and every sample is one that a walk has left.
 TEST(LightSampling, ClustersKeepTheFlux) {
     const World world(assets::make_gap_room);
-    Settings plain;
+    SampleRequest plain;
     plain.candidates = 1;
     const auto many = sample_indirect(world.emitters, 20000, plain, *world.rays);
     for (const float spread : {0.0f, 0.5f, 1.0f})
@@ -341,7 +341,7 @@ TEST(LightSampling, ClustersSayWhatAllSay) {
     };
     double clusters = 0.0, walks = 0.0;
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        Settings settings;
+        SampleRequest settings;
         settings.candidates = 1;
         settings.seed = seed;
         const auto many = sample_indirect(world.emitters, 20000, settings, *world.rays);
@@ -371,7 +371,7 @@ TEST(LightSampling, ClustersKnowTheDarkSideOfTheGap) {
         double sum = 0, squares = 0;
         constexpr int seeds = 24;
         for (int seed = 1; seed <= seeds; ++seed) {
-            Settings settings;
+            SampleRequest settings;
             settings.candidates = candidates;
             settings.seed = std::uint32_t(seed);
             double flux = 0;

@@ -27,7 +27,7 @@ struct World {
                 bounds.add(transform_bounds(world.matrix, meshes.bounds(instance.mesh)));
             });
         const std::vector<Emitter> emitters = collect_emitters(registry, meshes, bounds);
-        Settings settings;
+        SampleRequest settings;
         settings.lights = lights;
         settings.direct_share = direct_share;
         const SampleBudget budget = divide_samples(settings, emitters);

@@ -1,6 +1,6 @@
-#include "gi_module/many_light/map_contributions.h"
+#include "gi_module/shadows/map_contributions.h"
 
-#include "gi_module/many_light/visible_nodes.h"
+#include "gi_module/visibility/view_bounds.h"
 #include "gi_module/transport/arrival.h"
 
 namespace sunfleck::gi {

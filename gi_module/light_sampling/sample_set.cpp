@@ -1,0 +1,223 @@
+#include "gi_module/light_sampling/sample_set.h"
+
+#include "engine/core/hash.h"
+#include "gi_module/light_sampling/sample_source.h"
+#include "gi_module/transport/clamping.h"
+
+#include <algorithm>
+#include <atomic>
+#include <tuple>
+
+namespace sunfleck::gi {
+namespace {
+
+// Tells whether anything about the emitters changed.
+std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
+    std::uint64_t hash = hash_start;
+    const auto add = [&](const void* data, std::size_t size) { hash = hash_bytes(hash, data, size); };
+    for (const Emitter& emitter : emitters) {
+        add(&emitter.kind, sizeof emitter.kind);
+        add(&emitter.entity, sizeof emitter.entity);
+        add(&emitter.matrix, sizeof emitter.matrix);
+        add(&emitter.flux, sizeof emitter.flux);
+        add(&emitter.area, sizeof emitter.area);
+        add(&emitter.inner_cosine, sizeof emitter.inner_cosine);
+        add(&emitter.outer_cosine, sizeof emitter.outer_cosine);
+        const scene::EnvironmentImage* image = emitter.map.image.get();
+        add(&image, sizeof image);
+        add(&emitter.map.rotation, sizeof emitter.map.rotation);
+    }
+    return hash;
+}
+
+std::uint64_t next_generation() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
+// Samples left for emitters that move or vary: their share, but at least two for each.
+std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_emitters, bool others) {
+    if (dynamic_emitters == 0 || request.lights == 0)
+        return 0;
+    if (!others)
+        return request.lights;
+    const std::uint32_t share = std::uint32_t(float(request.lights) * request.dynamic_share);
+    return std::min(request.lights, std::max(share, 2 * std::uint32_t(dynamic_emitters)));
+}
+
+constexpr Counter light_samples{"light_samples", "samples", "light samples", "Light samples (VPLs) in all"};
+constexpr Counter direct_samples{"light_samples_direct", "samples", "light samples",
+                                 "Light samples that lie on emitters"};
+constexpr Counter dynamic_samples{"light_samples_dynamic", "samples", "light samples",
+                                  "Light samples of emitters that move or vary"};
+constexpr Counter moved_samples{"light_samples_moved", "samples", "light samples",
+                                "Light samples whose place or direction changed in this frame"};
+constexpr Counter blocked_samples{"light_samples_blocked", "samples", "light samples",
+                                  "Reflected samples that get no light because a door or the like stands in its way"};
+
+} // namespace
+
+std::span<const Counter> SampleSet::counters() {
+    static const Counter all[] = {light_samples, direct_samples, dynamic_samples, moved_samples, blocked_samples};
+    return all;
+}
+
+void SampleSet::report(Report& report) const {
+    const auto direct =
+        std::count_if(samples_.begin(), samples_.end(), [](const LightSample& sample) { return sample.bounce == 0; });
+    report.set(light_samples, double(samples_.size()));
+    report.set(direct_samples, double(direct));
+    report.set(dynamic_samples, double(dynamic_samples_.size()));
+    report.set(moved_samples, double(moved_.size()));
+    report.set(blocked_samples, double(blocked_paths_.count()));
+}
+
+void SampleSet::update(const SceneView& scene, const SampleRequest& request) {
+    moved_.clear();
+    find_emitters(scene, request);
+    if (needs_new_samples(request, scene.rays))
+        make_samples(request, scene.rays);
+    else
+        follow_dynamic_lights(scene.rays);
+}
+
+// Those that move have samples of their own, and so have those that once changed their strength: the first change makes
+// new samples for all, later ones only scale.
+void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& request) {
+    const Bounds& fixed = scene.gpu_scene.static_bounds();
+    const Bounds bounds = fixed.empty() ? scene.gpu_scene.bounds() : fixed;
+    emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
+    if (find_varying(scene.registry))
+        emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
+    dynamic_emitters_.clear();
+    if (request.movers_are_static)
+        return;
+    const auto moves = [&](const Emitter& emitter) {
+        return DynamicLights::can_follow(emitter.kind) && (emitter.moves || varying_.count(emitter.entity));
+    };
+    for (const Emitter& emitter : emitters_)
+        if (moves(emitter))
+            dynamic_emitters_.push_back(emitter);
+    std::erase_if(emitters_, moves);
+}
+
+// True if there are new ones. One that went out is noticed by its absence.
+bool SampleSet::find_varying(ecs::Registry& registry) {
+    std::map<ecs::Entity, vec3> flux;
+    for (const Emitter& emitter : emitters_)
+        if (DynamicLights::can_follow(emitter.kind) && !emitter.moves)
+            flux[emitter.entity] = emitter.flux;
+    const std::size_t had = varying_.size();
+    for (const auto& [entity, before] : last_flux_) {
+        const auto now = flux.find(entity);
+        const bool out = now == flux.end() && registry.alive(entity);
+        if (out || (now != flux.end() && now->second != before))
+            varying_.insert(entity);
+    }
+    last_flux_ = std::move(flux);
+    return varying_.size() != had;
+}
+
+bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
+    std::uint64_t hash = hash_emitters(emitters_);
+    for (const Emitter& emitter : dynamic_emitters_) // only which they are
+        hash = hash * 0x100000001b3ull ^ (emitter.entity.bits() * 16 + std::uint64_t(emitter.kind));
+    // Where movers count as static geometry, their every move makes new walks.
+    const std::uint64_t geometry = request.movers_are_static ? rays.generation() : rays.static_generation();
+    const bool same =
+        valid_ && request.same_samples(sampled_) && hash == emitter_hash_ && geometry == geometry_generation_;
+    emitter_hash_ = hash;
+    geometry_generation_ = geometry;
+    sampled_ = request;
+    valid_ = true;
+    return !same;
+}
+
+void SampleSet::make_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
+    const std::uint32_t share = dynamic_share(request, dynamic_emitters_.size(), !emitters_.empty());
+    dynamic_lights_.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
+    SampleRequest fixed = request; // what is left for emitters that stay
+    fixed.lights = request.lights - std::min(request.lights, std::uint32_t(dynamic_lights_.samples().size()));
+    samples_ = sample_sources()[request.source].make(emitters_, fixed, rays);
+    const auto& dynamic = dynamic_lights_.samples();
+    samples_.insert(samples_.end(), dynamic.begin(), dynamic.end());
+    sort_samples();
+    generation_ = next_generation();
+}
+
+void SampleSet::sort_samples() {
+    const auto key = [](const LightSample& sample) { return std::pair(light_class(sample.kind), sample.dynamic); };
+    std::stable_sort(samples_.begin(), samples_.end(),
+                     [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
+    // Dynamic samples keep among themselves the order in which DynamicLights has them.
+    const auto& dynamic = dynamic_lights_.samples();
+    std::vector<std::uint32_t> order(dynamic.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return key(dynamic[a]) < key(dynamic[b]); });
+    dynamic_samples_.assign(dynamic.size(), 0);
+    for (std::uint32_t i = 0, next = 0; i < samples_.size(); ++i) {
+        samples_[i].index = i;
+        if (samples_[i].dynamic)
+            dynamic_samples_[order[next++]] = i;
+    }
+}
+
+void SampleSet::follow_dynamic_lights(const raytrace::RayScene& rays) {
+    if (dynamic_samples_.empty())
+        return;
+    dynamic_lights_.update(dynamic_emitters_, rays);
+    for (std::size_t k = 0; k < dynamic_samples_.size(); ++k) {
+        const std::uint32_t i = dynamic_samples_[k];
+        const LightSample& now = dynamic_lights_.samples()[k];
+        const bool moved = dynamic_lights_.moved()[k] != 0;
+        if (!moved && now.flux == samples_[i].flux)
+            continue;
+        samples_[i] = now;
+        samples_[i].index = i;
+        if (moved)
+            moved_.push_back(i);
+    }
+}
+
+void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
+                            float indirect_scale) {
+    if (settings.mover_paths && !sampled_.movers_are_static)
+        blocked_paths_.update(scene.registry, scene.meshes, scene.gpu_scene, samples_, generation_);
+    else
+        blocked_paths_ = {};
+    remapped_.clear();
+    slots_ = std::max(slots, 1u);
+    // Emitters that move have few samples of their own, each of which carries more: the bound of what they reflect is
+    // as if there were no others.
+    std::uint32_t surface_samples = 0, dynamic_reflected = 0;
+    for (const LightSample& sample : samples_) {
+        surface_samples += sample.kind == SampleKind::surface;
+        dynamic_reflected += sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0;
+    }
+    const float area = scene.rays.static_area();
+    bound_ = gi::geometry_bound(surface_samples, area, settings.clamp_scale);
+    const float dynamic_bound = gi::geometry_bound(dynamic_reflected, area, settings.clamp_scale);
+    // The maps of directional lights cover the scene's bounds, so all of them follow a change of those.
+    const Bounds bounds = scene.gpu_scene.bounds();
+    const bool resized = bounds.minimum != bounds_.minimum || bounds.maximum != bounds_.maximum;
+    bounds_ = bounds;
+    rows_.resize(samples_.size());
+    for (std::uint32_t i = 0; i < samples_.size(); ++i) {
+        const LightSample& sample = samples_[i];
+        const bool reflected = sample.bounce > 0;
+        const float cone = rows_[i].position_bound.w;
+        const float bound = geometry_bound_of(sample.radius, sample.dynamic && reflected ? dynamic_bound : bound_,
+                                              settings.clamp_scale);
+        rows_[i] = make_light_row(sample, slot(i), bound, bounds_);
+        // A spot's map covers its cone, whose angle may change where the light stays.
+        if ((resized && sample.kind == SampleKind::directional) ||
+            (sample.kind == SampleKind::spot && rows_[i].position_bound.w != cone))
+            remapped_.push_back(i);
+        if (reflected)
+            rows_[i].intensity_slot *= vec4(vec3(blocked_paths_.is_blocked(i) ? 0.0f : indirect_scale), 1.0f);
+    }
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,159 @@
+#include "gi_module/many_light/many_light_technique.h"
+
+#include "gi_module/shadows/light_batches.h"
+
+#include <chrono>
+
+namespace sunfleck::gpu {
+std::span<const EmbeddedShader> sunfleck_gi_many_light_shaders();
+}
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr std::uint64_t max_curved_points = std::uint64_t(1) << 20; // of baked light: 56 MiB
+
+constexpr Counter map_updates{"light_map_updates", "contributions", "light maps",
+                              "Contributions of single samples added to or subtracted from light maps in this frame"};
+constexpr Counter map_texels{"light_map_texels", "texels", "light maps", "Texels of all light maps"};
+constexpr Counter baked_updates{"baked_light_updates", "contributions", "light maps",
+                                "Contributions of single samples to baked light in this frame"};
+constexpr Counter baked_waiting{"baked_light_waiting", "patches", "light maps",
+                                "Patches and charts whose light is not baked yet"};
+constexpr Counter low_pixels{"pixels_low_resolution", "pixels", "pixels", "Pixels lit at low resolution", true};
+constexpr Counter repaired{"pixels_repaired", "pixels", "pixels", "Pixels lit again at full resolution", true};
+constexpr Counter not_repaired{"pixels_not_repaired", "pixels", "pixels",
+                               "Pixels that wanted it, but took their nearest neighbour's light: the lists were full",
+                               true};
+constexpr Counter render_passes{"render_passes", "passes", "render passes",
+                                "Render passes that a renderer with a few lights a pass would need, merged"};
+constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "render passes",
+                                      "The same with every object drawn by itself"};
+constexpr Counter pass_fill{"pass_fill", "", "render passes",
+                            "Pairs of object and light drawn in those passes, over those needed"};
+constexpr Counter memory{"many_light", "B", memory_group, "Lists, sums, light maps, baked light and tables on the GPU"};
+constexpr Counter technique_counters[] = {map_updates,         map_texels, baked_updates, baked_waiting,
+                                          low_pixels,          repaired,   not_repaired,  render_passes,
+                                          render_passes_alone, pass_fill,  memory};
+
+constexpr DebugView technique_views[] = {
+    {"tiles", "Length of each tile's lists of light samples",
+     "red: samples with a shadow test, green: samples without, as shares of all", "", "many-light", shared::show_tiles},
+    {"repaired", "Pixels that are lit again at full resolution", "pink: lit again", "", "many-light",
+     shared::show_repaired},
+    {"visibility", "What the visibility database knows of each surface patch",
+     "red: samples that are partly blocked, green: free, blue: fully blocked", "", "many-light",
+     shared::show_visibility},
+    {"staleness", "Age of the shadow maps that a surface needs", "blue: up to date, red: eight frames old", "frames",
+     "many-light", shared::show_staleness},
+    {"light_maps", "Unshadowed light in light maps", "irradiance", "W/m2", "many-light", shared::show_light_maps},
+    {"baked", "Where light is baked", "green: baked, with blue where movers change it; red: lit by all samples", "",
+     "many-light", shared::show_baked}};
+
+} // namespace
+
+const TechniqueEntry& many_light_technique();
+const TechniqueEntry& many_light_technique() {
+    static const TechniqueEntry entry{
+        .name = "light_samples",
+        .tooltip =
+            "The many-light system: light samples with shadow maps, tested only where something may be in the way",
+        .can_light = all_diffuse_cells(),
+        .wants_visibility = true,
+        .settings = settings_of<ManyLightSettings>(),
+        .counters = technique_counters,
+        .views = technique_views,
+        .shaders = gpu::sunfleck_gi_many_light_shaders,
+        .create = ManyLightTechnique::create,
+    };
+    return entry;
+}
+
+Result<std::unique_ptr<Technique>> ManyLightTechnique::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+    auto technique = std::make_unique<ManyLightTechnique>();
+    SUNFLECK_ASSIGN(technique->lighting_, ManyLight::create(device, pipelines));
+    return std::unique_ptr<Technique>(std::move(technique));
+}
+
+// Light can only be baked when the static part of every held sample's map is there: a host may have the first maps
+// drawn over many frames (FrameInput::map_budget).
+void ManyLightTechnique::find_static_maps(const Services& services, ManyLightOptions& options) const {
+    const ShadowService& shadows = services.shadows;
+    const auto waits = [&](std::uint32_t sample) {
+        return shadows.is_static_stale(sample) && held_by_light_maps(services.samples.samples()[sample]);
+    };
+    std::size_t waiting = 0, drawn = 0;
+    for (std::uint32_t sample = 0; sample < services.samples.size(); ++sample)
+        waiting += waits(sample);
+    for (const std::uint32_t sample : shadows.to_draw())
+        drawn += waits(sample);
+    options.baked_light = options.baked_light && services.settings.static_maps && waiting == drawn &&
+                          shadows.maps().slots() >= services.samples.size();
+    options.static_maps_changed = drawn > 0;
+}
+
+Status ManyLightTechnique::update(const SceneView& scene, Services& services, CellSet cells) {
+    const auto start = std::chrono::steady_clock::now();
+    const Settings& settings = services.settings;
+    const ManyLightSettings& own = settings.of<ManyLightSettings>();
+    const SampleSet& samples = services.samples;
+    cells_ = cells;
+    options_ = {};
+    options_.shadows = settings.shadows;
+    options_.filter = settings.shadow_filter;
+    options_.visibility = own.visibility;
+    options_.light_maps = own.light_maps && own.visibility;
+    options_.baked_light = own.baked_light;
+    options_.scale = settings.low_resolution;
+    options_.contrast = settings.repair_contrast;
+    options_.normal_degrees = settings.repair_angle;
+    find_static_maps(services, options_);
+    VisibilityDatabase& database = *services.visibility;
+    if (own.baked_light && curved_generation_ != database.generation()) {
+        curved_charts_.build(scene.registry, scene.meshes, database.patches(),
+                             light_map_texel(samples.geometry_bound()), max_curved_points);
+        curved_generation_ = database.generation();
+    }
+    SUNFLECK_TRY(lighting_->update(database, curved_charts_, scene.gpu_scene, samples.samples(),
+                                   owned_rows(samples, cells, owned_rows_), options_, services.input.serial,
+                                   services.input.completed_serial, services.resources));
+    if (own.count_passes && services.input.view_projection)
+        passes_.count(database, *services.input.view_projection, own);
+    else
+        passes_.forget();
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+    services.cpu_times["light lists"] += elapsed.count();
+    return {};
+}
+
+Status ManyLightTechnique::add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) {
+    const SampleSet& samples = services.samples;
+    SUNFLECK_ASSIGN(const std::vector<LightBatch> batches,
+                    make_light_batches(samples, services.shadows, cells_, 0, samples.size(), services.resources));
+    batches_ = batches.size();
+    options_.show = target.view != nullptr ? target.view->code : shared::show_nothing;
+    options_.simplified_movers = services.settings.map_detail;
+    options_.stale_maps = services.settings.shadows && services.shadows.stale() > 0;
+    return lighting_->add_passes(graph, target.g_buffer, target.camera, services.shadows.maps(), batches,
+                                 services.shadows.ages(), options_, services.resources, target.irradiance);
+}
+
+void ManyLightTechnique::report(Report& report) const {
+    report.set(light_batch_counter, double(batches_));
+    report.set(map_updates, double(lighting_->light_maps().counters().updates));
+    report.set(map_texels, double(lighting_->light_maps().counters().texels));
+    report.set(baked_updates, double(lighting_->baked_light().counters().updates));
+    report.set(baked_waiting, double(lighting_->baked_light().counters().waiting));
+    report.set(low_pixels, double(lighting_->counters().pixels_low_resolution));
+    report.set(repaired, double(lighting_->counters().pixels_repaired));
+    report.set(not_repaired, double(lighting_->counters().pixels_not_repaired));
+    report.set(memory, double(lighting_->memory_bytes()));
+    const PassGrouping* passes = passes_.passes();
+    report.set(pass_fill, passes != nullptr ? passes->fill() : 1.0);
+    if (passes == nullptr)
+        return;
+    report.set(render_passes, double(passes->passes()));
+    report.set(render_passes_alone, double(passes->passes_unoptimised()));
+}
+
+} // namespace sunfleck::gi

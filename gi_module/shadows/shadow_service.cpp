@@ -1,0 +1,198 @@
+#include "gi_module/shadows/shadow_service.h"
+
+#include "gi_module/shadows/light_batches.h"
+#include "gi_module/shadows/map_contributions.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+// Texels by which movers' simplified surfaces may be off. Shadows of direct light lie on each other and show their
+// outline; those of reflected light are scattered.
+constexpr float direct_detail = 0.35f, indirect_detail = 2.0f;
+
+constexpr Counter map_updates{"shadow_map_updates", "maps", "shadow maps", "Shadow maps drawn in this frame"};
+constexpr Counter map_faces{"shadow_map_faces", "faces", "shadow maps",
+                            "Octahedron faces drawn, those with an occluder"};
+constexpr Counter map_vertices{"shadow_map_vertices", "vertices", "shadow maps",
+                               "Vertices shaded for shadow maps, by the size of the meshes"};
+constexpr Counter maps_stale{"shadow_maps_stale", "maps", "shadow maps",
+                             "Shadow maps that show movers where they were, after this frame"};
+constexpr Counter map_memory{"shadow_maps", "B", memory_group, "Shadow maps, with static parts that are kept"};
+
+} // namespace
+
+std::span<const Counter> ShadowService::counters() {
+    static const Counter all[] = {map_updates, map_faces, map_vertices, maps_stale, light_batch_counter, map_memory};
+    return all;
+}
+
+void ShadowService::report(Report& report) const {
+    report.set(map_updates, double(drawn_.maps));
+    report.set(map_faces, double(drawn_.faces));
+    report.set(map_vertices, double(drawn_.vertices));
+    report.set(maps_stale, double(scheduler_.stale()));
+    report.set(map_memory, double(maps_->texels().size() + maps_->static_texels().size()));
+}
+
+Result<std::unique_ptr<ShadowService>> ShadowService::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
+    auto service = std::make_unique<ShadowService>();
+    SUNFLECK_ASSIGN(service->maps_, ShadowMaps::create(device, pipelines));
+    return service;
+}
+
+// With the database every sample keeps a map: with more samples than memory holds at full size, maps are smaller. Each
+// sample is then dimmer, too.
+Status ShadowService::configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
+                                gpu::FrameResources& resources) {
+    settings_ = settings;
+    policy_ = policy;
+    cleared_ = false;
+    drawn_ = {};
+    if (!settings.shadows)
+        return {};
+    MapLayout layout;
+    layout.resolution = settings.shadow_map_resolution;
+    layout.bits = settings.shadow_map_bits;
+    layout.wanted = count;
+    layout.memory_bytes = std::uint64_t(double(settings.shadow_memory) * 1048576.0);
+    layout.keep_static = policy.database && settings.static_maps;
+    layout.shrink = policy.database;
+    SUNFLECK_ASSIGN(cleared_, maps_->configure(layout, resources));
+    return {};
+}
+
+void ShadowService::follow(const SampleSet& samples, bool static_changed) {
+    if (static_changed || sample_generation_ != samples.generation())
+        scheduler_.reset(samples.size());
+    sample_generation_ = samples.generation();
+    for (std::uint32_t sample = 0; cleared_ && sample < samples.size(); ++sample)
+        scheduler_.mark_static(sample);
+    for (const std::span<const std::uint32_t> changed : {samples.moved(), samples.remapped()})
+        for (const std::uint32_t sample : changed)
+            scheduler_.mark_static(sample);
+}
+
+void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& input) {
+    database_ = input.database;
+    scheduler_.advance();
+    if (database_ != nullptr)
+        mark_by_visibility(samples, input);
+    else
+        mark_by_bounds(samples, input.gpu_scene);
+    to_draw_.clear();
+    if (settings_.shadows) {
+        const std::uint32_t budget = budget_of(input);
+        to_draw_ =
+            scheduler_.choose(samples.samples(), settings_.map_priority, budget, contributions(samples, input, budget));
+    }
+    budget_.drew(input.serial, to_draw_.size());
+    before_ = scheduler_;
+}
+
+// The host's budget is a limit; the setting's is exceeded for maps that could not be used otherwise.
+std::uint32_t ShadowService::budget_of(const ScheduleInput& input) const {
+    if (database_ == nullptr)
+        return input.host_budget;
+    const std::uint32_t usual = settings_.map_milliseconds > 0.0f
+                                    ? budget_.maps_in(double(settings_.map_milliseconds), settings_.map_budget)
+                                    : settings_.map_budget;
+    return std::min(input.host_budget, std::max(usual, std::uint32_t(scheduler_.unusable())));
+}
+
+void ShadowService::mark_by_visibility(const SampleSet& samples, const ScheduleInput& input) {
+    float distance = 0.0f;
+    lag_limit_ = 0.0f;
+    for (const scene::DrawItem& item : input.gpu_scene.draws())
+        if (!item.is_static) {
+            distance = std::max(distance, item.displacement);
+            lag_limit_ = std::max(lag_limit_, 0.5f * glm::length(item.bounds.extent()));
+        }
+    for (std::uint32_t i = 0; i < samples.size(); ++i)
+        if (database_->affected_samples()[i])
+            scheduler_.mark(i, distance);
+}
+
+// A moved object touches the map of every sample that sees the box where it was, or the one where it is.
+void ShadowService::mark_by_bounds(const SampleSet& samples, const scene::GpuScene& gpu_scene) {
+    std::vector<Bounds> touched(gpu_scene.removed_bounds().begin(), gpu_scene.removed_bounds().end());
+    for (const scene::DrawItem& item : gpu_scene.draws())
+        if (item.moved && item.casts_shadow) {
+            touched.push_back(item.bounds);
+            if (!item.previous_bounds.empty())
+                touched.push_back(item.previous_bounds);
+        }
+    if (touched.empty())
+        return;
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        const ShadowRequest request{0, samples.light_class_of(i), samples.rows()[i], true};
+        if (std::any_of(touched.begin(), touched.end(),
+                        [&](const Bounds& bounds) { return ShadowMaps::faces_that_see(request, bounds) != 0; }))
+            scheduler_.mark(i);
+    }
+}
+
+// Empty where the choice does not need them.
+std::vector<float> ShadowService::contributions(const SampleSet& samples, const ScheduleInput& input,
+                                                std::uint32_t budget) const {
+    if (database_ == nullptr || !input.view_projection || settings_.map_priority != MapPriority::contribution ||
+        scheduler_.stale() <= budget)
+        return {};
+    std::vector<std::uint8_t> stale(samples.size());
+    for (std::uint32_t i = 0; i < samples.size(); ++i)
+        stale[i] = scheduler_.frames_out_of_date(i) > 0 ? 1 : 0;
+    return map_contributions(*database_, samples.samples(), samples.rows(), input.gpu_scene.draws(),
+                             *input.view_projection, stale);
+}
+
+std::vector<ShadowRequest> ShadowService::requests(const SampleSet& samples,
+                                                   std::span<const std::uint32_t> drawn) const {
+    std::vector<ShadowRequest> requests;
+    requests.reserve(drawn.size());
+    for (const std::uint32_t sample : drawn) {
+        requests.push_back({samples.slot(sample),
+                            samples.light_class_of(sample),
+                            samples.rows()[sample],
+                            scheduler_.is_static_stale(sample),
+                            samples.samples()[sample].bounce == 0 ? direct_detail : indirect_detail,
+                            {}});
+        if (database_ != nullptr)
+            requests.back().hidden = database_->hidden_entities(sample);
+    }
+    return requests;
+}
+
+Status ShadowService::draw(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                           std::span<const std::uint32_t> drawn, gpu::FrameResources& resources) {
+    if (drawn.empty())
+        return {};
+    const MapOptions options{.keep_static = policy_.database && settings_.static_maps, .detail = simplifies_movers()};
+    SUNFLECK_TRY(maps_->add_passes(graph, gpu_scene, resources, requests(samples, drawn), options, drawn_));
+    scheduler_.done(drawn);
+    return {};
+}
+
+Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                                 gpu::FrameResources& resources) {
+    return draw(graph, gpu_scene, samples, to_draw_, resources);
+}
+
+Status ShadowService::add_group(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                                std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources) {
+    std::vector<std::uint32_t> drawn(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+        drawn[i] = first + i;
+    return draw(graph, gpu_scene, samples, drawn, resources);
+}
+
+void ShadowService::lost_frame() {
+    scheduler_ = before_;
+}
+
+MapState ShadowService::state(const SampleSet& samples, std::uint32_t sample) const {
+    return {samples.slot(sample), maps_->resolution(), scheduler_.frames_out_of_date(sample),
+            !scheduler_.is_static_stale(sample)};
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,107 @@
+// Shadow maps for all techniques: one store, one scheduler, one budget. Techniques say that they need maps by owning
+// light; which of them are redrawn in a frame is decided here.
+//
+// A frame: configure -> follow -> schedule (CPU, in System::update), add_passes (GPU work), and with the next frame's
+// begin_frame what was recorded counts as drawn, or not.
+#pragma once
+
+#include "gi_module/light_sampling/sample_set.h"
+#include "gi_module/shadows/map_budget.h"
+#include "gi_module/shadows/map_scheduler.h"
+#include "gi_module/shadows/shadow_maps.h"
+#include "gi_module/shadows/shadow_settings.h"
+#include "gi_module/visibility/visibility_database.h"
+
+namespace sunfleck::gi {
+
+// How a frame's maps are kept. `database`: the visibility database follows the scene, so it is known which maps a mover
+// touches and what they hide; maps are then kept for all samples, redrawn within a budget, and movers are drawn over
+// the kept static part. Without it (the baseline) every map that a mover may touch is redrawn whole.
+struct MapPolicy {
+    bool database = true;
+};
+
+struct ScheduleInput {
+    const scene::GpuScene& gpu_scene;
+    const VisibilityDatabase* database = nullptr; // null: policy without it
+    std::uint64_t serial = 0;
+    std::uint32_t host_budget = 0xffffffffu; // maps; a limit, whatever the settings say
+    std::optional<mat4> view_projection;
+};
+
+// Of one sample's map, for browsers of maps.
+struct MapState {
+    std::uint32_t slot = 0;
+    std::uint32_t resolution = 0;         // texels along a side
+    std::uint32_t frames_out_of_date = 0; // 0: it shows the last completed step
+    bool static_part_valid = false;       // false: nothing that it shows is true
+};
+
+class ShadowService {
+public:
+    static Result<std::unique_ptr<ShadowService>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+
+    // Makes room for the maps of `count` samples. Call before SampleSet::update_rows, which needs slots().
+    Status configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
+                     gpu::FrameResources& resources);
+    // Maps whose static part is void after what happened to the samples. `static_changed`: all of them.
+    void follow(const SampleSet& samples, bool static_changed);
+    // Marks what movers touched, and chooses the maps to redraw.
+    void schedule(const SampleSet& samples, const ScheduleInput& input);
+    // What the GPU took for an earlier frame's maps, ms; only for ShadowSettings::map_milliseconds.
+    void measured(std::uint64_t serial, double milliseconds) { budget_.took(serial, milliseconds); }
+
+    // Adds the passes that redraw the chosen maps.
+    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                      gpu::FrameResources& resources);
+    // Where there are more samples than slots, samples take turns: adds the passes that draw the maps of samples
+    // [first, first + count), over those that used the slots before.
+    Status add_group(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                     std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources);
+    // The frame's passes never reached the GPU: what they would have drawn is as stale as it was.
+    void lost_frame();
+
+    const ShadowMaps& maps() const { return *maps_; }
+    const ShadowSettings& settings() const { return settings_; }
+    std::uint32_t slots() const { return std::max(maps_->slots(), 1u); }
+    bool slots_are_shared(std::uint32_t samples) const { return settings_.shadows && samples > slots(); }
+    // Samples whose maps this frame redraws, in rising order.
+    std::span<const std::uint32_t> to_draw() const { return to_draw_; }
+    // What the maps show is as of this frame's to_draw, once add_passes was called.
+    std::uint32_t frames_out_of_date(std::uint32_t sample) const { return scheduler_.frames_out_of_date(sample); }
+    std::span<const std::uint32_t> ages() const { return scheduler_.ages(); }
+    bool is_static_stale(std::uint32_t sample) const { return scheduler_.is_static_stale(sample); }
+    std::size_t stale() const { return scheduler_.stale(); }
+    // How far movers are at most from where the sample's map shows them, m, as far as that can matter.
+    float lag(std::uint32_t sample) const { return std::min(scheduler_.lag(sample), lag_limit_); }
+    // Whether maps show movers with less detail than pictures.
+    bool simplifies_movers() const { return policy_.database && settings_.map_detail; }
+    MapState state(const SampleSet& samples, std::uint32_t sample) const;
+
+    static std::span<const Counter> counters();
+    void report(Report& report) const;
+
+private:
+    void mark_by_visibility(const SampleSet& samples, const ScheduleInput& input);
+    void mark_by_bounds(const SampleSet& samples, const scene::GpuScene& gpu_scene);
+    std::uint32_t budget_of(const ScheduleInput& input) const;
+    std::vector<float> contributions(const SampleSet& samples, const ScheduleInput& input, std::uint32_t budget) const;
+    std::vector<ShadowRequest> requests(const SampleSet& samples, std::span<const std::uint32_t> drawn) const;
+    Status draw(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+                std::span<const std::uint32_t> drawn, gpu::FrameResources& resources);
+
+    std::unique_ptr<ShadowMaps> maps_;
+    MapScheduler scheduler_;
+    MapBudget budget_;
+    ShadowSettings settings_;
+    MapPolicy policy_;
+    const VisibilityDatabase* database_ = nullptr; // of this frame
+    std::vector<std::uint32_t> to_draw_;
+    MapScheduler before_; // drawing this frame's maps
+    std::uint64_t sample_generation_ = 0;
+    bool cleared_ = false;   // all maps lost their content in configure
+    float lag_limit_ = 0.0f; // m: a mover that is farther from where it was does not touch itself
+    ShadowCounters drawn_;   // in this frame
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,46 @@
+#include "gi_module/technique.h"
+
+#include "gi_module/technique_list.h"
+#include "gi_module/visibility/scene_visibility.h"
+
+namespace sunfleck::gi {
+namespace {
+
+std::vector<TechniqueEntry>& all_techniques() {
+    static std::vector<TechniqueEntry> list = built_in_techniques();
+    return list;
+}
+
+} // namespace
+
+std::span<const TechniqueEntry> techniques() {
+    return all_techniques();
+}
+
+void add_technique(const TechniqueEntry& entry) {
+    all_techniques().push_back(entry);
+}
+
+std::vector<const Counter*> all_counters() {
+    std::vector<const Counter*> result;
+    const auto add = [&](std::span<const Counter> counters) {
+        for (const Counter& counter : counters)
+            result.push_back(&counter);
+    };
+    add(SampleSet::counters());
+    add(ShadowService::counters());
+    add(SceneVisibility::counters());
+    for (const TechniqueEntry& technique : techniques())
+        add(technique.counters);
+    return result;
+}
+
+std::vector<const DebugView*> debug_views() {
+    std::vector<const DebugView*> result;
+    for (const TechniqueEntry& technique : techniques())
+        for (const DebugView& view : technique.views)
+            result.push_back(&view);
+    return result;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,122 @@
+// What a technique is: a folder that gives gi::System a described settings struct and four functions (creation, update,
+// add_passes, report), announced by one TechniqueEntry. techniques() is the only list of them; neither System nor any
+// host, tool or document names one.
+//
+// To add one: a folder with a `technique.cmake`, its name in the list of gi_module/CMakeLists.txt. Or, from outside of
+// the module, add_technique().
+#pragma once
+
+#include "engine/gpu/frame_graph.h"
+#include "engine/gpu/shader_library.h"
+#include "gi_module/light_sum/light_sum.h"
+#include "gi_module/settings.h"
+#include "gi_module/shadows/shadow_service.h"
+#include "gi_module/transport/g_buffer.h"
+#include "gi_module/transport/light_plan.h"
+#include "gi_module/transport/report.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace sunfleck::gi {
+
+// Of one frame, from the host.
+struct FrameInput {
+    std::uint64_t serial = 1;
+    std::uint64_t completed_serial = 0;
+    // The frame that was recorded last never reached the GPU (its command buffer was not submitted): what it would have
+    // drawn or copied is done again.
+    bool previous_frame_lost = false;
+    // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; ShadowSettings::map_priority says
+    // which go first.
+    std::uint32_t map_budget = 0xffffffffu;
+    // What the GPU took for the passes called "shadow maps" and "shadow map copies" of an earlier frame, if the host
+    // measures it; only for ShadowSettings::map_milliseconds.
+    std::uint64_t measured_serial = 0;
+    double measured_map_milliseconds = 0.0;
+    // Reflected light is multiplied by this: 0 shows direct light alone, from the same samples.
+    float indirect_scale = 1.0f;
+    // Name of a debug view (debug_views()) in place of the irradiance; empty: none.
+    std::string_view view{};
+    // Called with the share that is done, 0 to 1, while an update takes long because everything is decided afresh (the
+    // first one of a level), from any thread, never concurrently. Returning false ends the update with an error; the
+    // next one begins again.
+    std::function<bool(float)> progress;
+    // World to clip, of this frame's camera or the one before: which shadow maps matter most to the picture, and what
+    // passes are counted for. Without it, maps are redrawn by flux, and no passes are counted.
+    std::optional<mat4> view_projection;
+};
+
+// Milliseconds on the CPU, by stage.
+using StageTimes = std::map<std::string, double>;
+
+// What all techniques share in a frame. Valid during the call that it is handed to.
+struct Services {
+    const Settings& settings;
+    const FrameInput& input;
+    const SampleSet& samples;
+    ShadowService& shadows;
+    // Null unless a technique in use wants it (TechniqueEntry::wants_visibility).
+    VisibilityDatabase* visibility;
+    gpu::FrameResources& resources;
+    // What was handed to the GPU since the last frame that reached it is lost: upload and sum everything again.
+    bool restart = false;
+    // Where precomputed data is kept from run to run; empty: nowhere.
+    const std::filesystem::path& cache_folder;
+    StageTimes& cpu_times;
+};
+
+// Where light goes: W/m2 without albedo; alpha 1 where there is a surface, else 0.
+struct LightTarget {
+    const scene::GpuScene& gpu_scene;
+    const GBufferInput& g_buffer;
+    const gpu::UploadSlice& camera; // a CameraRow, the camera of the G-buffer
+    // The technique writes every pixel of `area` (at first the whole picture, which it may make smaller where it has
+    // light in a part only), with the light that it owns.
+    gpu::ResourceId irradiance;
+    PixelArea area{};
+    // False colours instead, if they are one of the technique's views; else null.
+    const DebugView* view = nullptr;
+};
+
+class Technique {
+public:
+    virtual ~Technique() = default;
+    // Follows the scene on the CPU. `cells`: the light that is the technique's in this frame; at least one.
+    virtual Status update(const SceneView& scene, Services& services, CellSet cells) = 0;
+    // Declares the frame's GPU work. Once after each update.
+    virtual Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) = 0;
+    // Counters and memory of the last frame; for what the GPU counts, of the newest one that is complete.
+    virtual void report(Report& report) const = 0;
+};
+
+struct TechniqueEntry {
+    std::string_view name; // --direct NAME, --indirect NAME, --movers NAME
+    std::string_view tooltip;
+    CellSet can_light;
+    // Null: it lights every receiver of those cells. Else it lights only movers for which this holds; the others are
+    // lit by whoever would light them without it.
+    bool (*supports)(const scene::DrawItem& mover, const ecs::Registry& registry,
+                     const scene::MeshStore& meshes) = nullptr;
+    bool wants_visibility = false;
+    TechniqueSettings settings;
+    std::span<const Counter> counters{};
+    std::span<const DebugView> views{};
+    std::span<const gpu::EmbeddedShader> (*shaders)() = nullptr;
+    Result<std::unique_ptr<Technique>> (*create)(gpu::Device& device, gpu::PipelineStore& pipelines) = nullptr;
+};
+
+// All techniques, in the order in which they are offered and add their light; the first that can light a term is its
+// default.
+std::span<const TechniqueEntry> techniques();
+// Adds one from outside of the module, at the end. Call before anything else of the module is used; from one thread.
+void add_technique(const TechniqueEntry& entry);
+
+// Everything that is declared: of the rooms that techniques share, and of all techniques.
+std::vector<const Counter*> all_counters();
+std::vector<const DebugView*> debug_views();
+
+} // namespace sunfleck::gi

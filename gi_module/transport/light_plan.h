@@ -1,0 +1,111 @@
+// Which technique lights what. The light in a picture is divided into cells:
+//
+//     {direct, first bounce, later bounces}                         how often it was reflected before the visible
+//     surface
+//   x {fixed, dynamic: the emitter or a reflector moves or varies}  its path
+//   x {fixed, mover}                                                the surface that receives it
+//   x {diffuse, specular}                                           how that surface reflects it to the camera
+//
+// Each cell has exactly one owner, which may be nobody. A technique is only ever given the light that it owns, so no
+// light is counted twice. A technique that can light only some receivers (precomputed transfer: rigid, opaque movers)
+// leaves the others to the owner that the cell would have without it: the cell's rest.
+//
+// Pure CPU, without state: a plan is a value made from the settings.
+#pragma once
+
+#include "engine/core/result.h"
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace sunfleck::gi {
+
+enum class PathPart : std::uint8_t { direct, first_bounce, later_bounces };
+
+// What a number of reflections before the visible surface belongs to.
+constexpr PathPart path_part(std::uint32_t bounce) {
+    return bounce == 0 ? PathPart::direct : bounce == 1 ? PathPart::first_bounce : PathPart::later_bounces;
+}
+
+struct LightCell {
+    PathPart path = PathPart::direct;
+    bool dynamic = false;
+    bool on_mover = false;
+    bool specular = false;
+
+    constexpr std::size_t index() const {
+        return std::size_t(path) + 3u * (dynamic ? 1u : 0u) + 6u * (on_mover ? 1u : 0u) + 12u * (specular ? 1u : 0u);
+    }
+    static constexpr LightCell at(std::size_t index) {
+        return {PathPart(index % 3), (index / 3) % 2 != 0, (index / 6) % 2 != 0, index / 12 != 0};
+    }
+    // "first_bounce.dynamic.on_mover.diffuse", in the words that LightPlan::make reads.
+    std::string name() const;
+};
+
+inline constexpr std::size_t light_cell_count = 24;
+using CellSet = std::bitset<light_cell_count>;
+
+// Cells for which `holds(LightCell)`.
+template <typename Predicate>
+CellSet cells_where(Predicate holds) {
+    CellSet cells;
+    for (std::size_t i = 0; i < light_cell_count; ++i)
+        cells[i] = holds(LightCell::at(i));
+    return cells;
+}
+CellSet all_diffuse_cells();
+
+// What the plan needs to know of a technique.
+struct PlannedTechnique {
+    std::string_view name;
+    CellSet can_light;
+    bool some_receivers = false; // of those cells it lights only the receivers that it supports
+};
+
+inline constexpr std::int32_t nobody = -1;
+
+// Choices by term, as indices into the list of techniques, or nobody.
+struct TermOwners {
+    std::int32_t direct = nobody;
+    std::int32_t indirect = nobody;
+    std::int32_t specular = nobody;
+    std::int32_t movers = nobody; // a technique that lights movers in place of the two above
+    // Owners of single cells, on top: "cells=technique" separated by commas, where `cells` joins with dots what
+    // restricts them: direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover; diffuse,
+    // specular. Example: "first_bounce.dynamic=brute_force,specular=none". Naming a cell twice is an error.
+    std::string_view exceptions{};
+};
+
+class LightPlan {
+public:
+    LightPlan() { owner_.fill(nobody), rest_.fill(nobody); }
+
+    // One message if a cell is given to a technique that cannot light it, is named twice, or if a technique would have
+    // to light other receivers for some paths than for others (a pass lights all paths of a pixel at once).
+    static Result<LightPlan> make(const TermOwners& terms, std::span<const PlannedTechnique> techniques);
+
+    // Index of the technique, or nobody.
+    std::int32_t owner(LightCell cell) const { return owner_[cell.index()]; }
+    // Who lights the receivers of the cell that the owner does not support; nobody where the owner supports all.
+    std::int32_t rest(LightCell cell) const { return rest_[cell.index()]; }
+    // Cells that the technique lights, those as rest among them.
+    CellSet lit_by(std::int32_t technique) const;
+    bool uses(std::int32_t technique) const { return lit_by(technique).any(); }
+    // Whether any technique lights a cell of these.
+    bool lights_any(CellSet cells) const;
+
+    bool operator==(const LightPlan&) const = default;
+
+private:
+    bool shares_movers(std::int32_t technique) const;
+
+    std::array<std::int32_t, light_cell_count> owner_;
+    std::array<std::int32_t, light_cell_count> rest_;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,51 @@
+// The visibility database of a scene, kept in step with it: built when samples, static geometry or options changed, and
+// following movers in every frame.
+#pragma once
+
+#include "engine/scene/gpu_scene.h"
+#include "gi_module/transport/report.h"
+#include "gi_module/visibility/visibility_database.h"
+#include "gi_module/visibility/visibility_settings.h"
+
+#include <functional>
+#include <optional>
+
+namespace sunfleck::gi {
+
+struct VisibilityInput {
+    ecs::Registry& registry;
+    const scene::MeshStore& meshes;
+    const scene::GpuScene& gpu_scene;
+    std::span<const LightSample> samples;
+    std::uint64_t sample_generation = 0;
+    std::span<const std::uint32_t> moved_samples;
+    bool static_changed = false; // static geometry did
+    // Whether a mover is lit by a technique that needs nothing of the database; null: none is.
+    std::function<bool(const scene::DrawItem&)> lit_elsewhere;
+    std::function<bool(float)> progress; // of building
+};
+
+class SceneVisibility {
+public:
+    Status update(const VisibilitySettings& settings, const VisibilityInput& input);
+    // Nobody needs it: the next update builds it from scratch.
+    void forget() { sample_generation_ = 0; }
+
+    VisibilityDatabase& database() { return database_; }
+    const VisibilityDatabase& database() const { return database_; }
+    // Of the last update, ms: what samples that moved took.
+    double sample_milliseconds() const { return sample_milliseconds_; }
+
+    static std::span<const Counter> counters();
+    void report(Report& report) const;
+
+private:
+    void follow_movers(const VisibilityInput& input);
+
+    VisibilityDatabase database_;
+    std::optional<VisibilityOptions> options_; // that it was built with
+    std::uint64_t sample_generation_ = 0;      // of the samples that it knows; 0: none
+    double sample_milliseconds_ = 0.0;
+};
+
+} // namespace sunfleck::gi

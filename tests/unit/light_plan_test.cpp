@@ -1,0 +1,136 @@
+// The plan of light terms: every cell has one owner, and what is refused is refused with one message.
+#include "gi_module/settings.h"
+#include "gi_module/technique.h"
+
+#include <gtest/gtest.h>
+#include <set>
+
+namespace sunfleck::gi {
+namespace {
+
+const CellSet diffuse = all_diffuse_cells();
+const CellSet on_movers = cells_where([](LightCell cell) { return cell.on_mover && !cell.specular; });
+const std::vector<PlannedTechnique> three = {{"many", diffuse}, {"brute", diffuse}, {"prt", on_movers, true}};
+constexpr std::int32_t many = 0, brute = 1, prt = 2;
+
+LightPlan plan_of(const TermOwners& terms) {
+    const Result<LightPlan> plan = LightPlan::make(terms, three);
+    EXPECT_TRUE(plan) << (plan ? "" : plan.error().message);
+    return plan ? *plan : LightPlan();
+}
+
+std::string refusal_of(const TermOwners& terms) {
+    const Result<LightPlan> plan = LightPlan::make(terms, three);
+    EXPECT_FALSE(plan);
+    return plan ? "" : plan.error().message;
+}
+
+TEST(LightPlan, CellsAreDistinctAndNamed) {
+    std::set<std::string> names;
+    for (std::size_t i = 0; i < light_cell_count; ++i) {
+        EXPECT_EQ(LightCell::at(i).index(), i);
+        names.insert(LightCell::at(i).name());
+    }
+    EXPECT_EQ(names.size(), light_cell_count);
+}
+
+// All choices of terms: each diffuse cell belongs to the technique of its term.
+TEST(LightPlan, TermsOwnTheirCells) {
+    for (const std::int32_t direct : {nobody, many, brute})
+        for (const std::int32_t indirect : {nobody, many, brute})
+            for (const std::int32_t movers : {nobody, prt}) {
+                const LightPlan plan = plan_of({direct, indirect, nobody, movers});
+                for (std::size_t i = 0; i < light_cell_count; ++i) {
+                    const LightCell cell = LightCell::at(i);
+                    const std::int32_t base = cell.specular                   ? nobody
+                                              : cell.path == PathPart::direct ? direct
+                                                                              : indirect;
+                    const bool taken = cell.on_mover && movers == prt && base != nobody;
+                    EXPECT_EQ(plan.owner(cell), taken ? prt : base) << cell.name();
+                    EXPECT_EQ(plan.rest(cell), taken ? base : nobody) << cell.name();
+                }
+            }
+}
+
+// Every single cell can be somebody's, everything else nobody's.
+TEST(LightPlan, SingleCells) {
+    for (std::size_t i = 0; i < light_cell_count; ++i) {
+        const LightCell cell = LightCell::at(i);
+        const std::string exception = cell.name() + "=brute";
+        const TermOwners terms{nobody, nobody, nobody, nobody, exception};
+        if (cell.specular) {
+            EXPECT_NE(refusal_of(terms).find("brute cannot light " + cell.name()), std::string::npos);
+            continue;
+        }
+        const LightPlan plan = plan_of(terms);
+        EXPECT_EQ(plan.lit_by(brute).count(), 1u);
+        EXPECT_EQ(plan.owner(cell), brute);
+        EXPECT_FALSE(plan.uses(many));
+    }
+}
+
+TEST(LightPlan, ExceptionsAndRefusals) {
+    const LightPlan plan = plan_of({many, many, nobody, nobody, "indirect.dynamic=brute,later_bounces.fixed=none"});
+    EXPECT_EQ(plan.owner({PathPart::first_bounce, true, false, false}), brute);
+    EXPECT_EQ(plan.owner({PathPart::first_bounce, false, true, false}), many);
+    EXPECT_EQ(plan.owner({PathPart::later_bounces, false, true, false}), nobody);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct=brute,direct.dynamic=none"}).find("two owners"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct=torch"}).find("no technique is called 'torch'"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "sideways=brute"}).find("'sideways' is not a part"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_fixed=prt"}).find("prt cannot light"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_mover=none"}).find("same paths"), std::string::npos);
+    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_mover=prt"}).find("must own all light on movers"),
+              std::string::npos);
+}
+
+// Exhaustive over three owners for six groups of cells: a plan is either refused or gives each cell to one owner, and
+// no technique lights what it cannot.
+TEST(LightPlan, EveryAssignmentHasOneOwnerACell) {
+    const char* groups[] = {"direct.on_fixed",       "direct.on_mover",        "first_bounce.on_fixed",
+                            "first_bounce.on_mover", "later_bounces.on_fixed", "later_bounces.on_mover"};
+    const char* owners[] = {"none", "many", "prt"};
+    int accepted = 0;
+    for (int code = 0; code < 729; ++code) {
+        std::string text;
+        for (int g = 0, rest = code; g < 6; ++g, rest /= 3)
+            text += std::string(g > 0 ? "," : "") + groups[g] + "=" + owners[rest % 3];
+        const Result<LightPlan> plan = LightPlan::make({brute, brute, nobody, nobody, text}, three);
+        if (!plan) {
+            EXPECT_FALSE(plan.error().message.empty());
+            continue;
+        }
+        ++accepted;
+        for (std::int32_t t = 0; t < 3; ++t)
+            EXPECT_TRUE((plan->lit_by(t) & ~three[std::size_t(t)].can_light).none()) << text;
+        for (std::size_t i = 0; i < light_cell_count; ++i)
+            if (plan->owner(LightCell::at(i)) == prt) {
+                EXPECT_NE(plan->rest(LightCell::at(i)), prt);
+            }
+    }
+    EXPECT_GT(accepted, 20);
+}
+
+TEST(LightPlan, SettingsAreDistinctDescribedAndReadTheirOwnText) {
+    Settings settings;
+    std::set<std::string_view> names;
+    for (const std::string_view name : Settings::names()) {
+        EXPECT_TRUE(names.insert(name).second) << name << " is described twice";
+        const Field& field = *Settings::find(name);
+        EXPECT_FALSE(field.tooltip.empty()) << name;
+        EXPECT_TRUE(settings.set(name, settings.get(name))) << name;
+    }
+    EXPECT_TRUE(settings.validate());
+    EXPECT_FALSE(settings.set("low_resolution", "3"));
+    EXPECT_FALSE(settings.set("shadow_map_resolution", "33"));
+    EXPECT_FALSE(settings.set("shadow_map_bits", "24"));
+    EXPECT_FALSE(settings.set("lights", "65537"));
+    settings.plan = "direct=none,direct=none";
+    EXPECT_FALSE(settings.validate());
+}
+
+} // namespace
+} // namespace sunfleck::gi
