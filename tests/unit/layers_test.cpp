@@ -32,6 +32,7 @@ const Layers& allowed() {
         {"engine/render", {"engine/core", "engine/ecs", "engine/gpu", "engine/scene"}},
         {"engine/app", {"engine/core", "engine/gpu"}},
         {"gi_module/transport", foundation},
+        {"gi_module/g_buffer", with(foundation, {"gi_module/transport"})},
         {"gi_module/light_sampling", with(foundation, {"gi_module/transport", "gi_module"})},
         {"gi_module/shadows", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module/visibility", with(foundation, {"gi_module/transport"})},
@@ -41,7 +42,7 @@ const Layers& allowed() {
         {"gi_module/transfer", with(foundation, {"gi_module/transport", "gi_module/visibility"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/g_buffer", "gi_module/light_sampling",
                                         "gi_module/shadows", "gi_module/brute_force", "gi_module/visibility",
                                         "gi_module/many_light", "gi_module/transfer"})},
     };
