@@ -42,9 +42,9 @@ const Layers& allowed() {
         {"gi_module/transfer", with(foundation, {"gi_module/transport", "gi_module/visibility"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/g_buffer", "gi_module/light_sampling",
-                                        "gi_module/shadows", "gi_module/brute_force", "gi_module/visibility",
-                                        "gi_module/many_light", "gi_module/transfer"})},
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/g_buffer",
+                                        "gi_module/light_sampling", "gi_module/shadows", "gi_module/brute_force",
+                                        "gi_module/visibility", "gi_module/many_light", "gi_module/transfer"})},
     };
     return layers;
 }
