@@ -3,6 +3,7 @@
 #include "engine/io/scene_file.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
+#include "gi_module/frame_times.h"
 
 #include <chrono>
 
@@ -99,11 +100,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.view = request.lighting_view;
-    const gpu::FrameTimes& times = timers_->latest();
-    input.measured_serial = times.serial;
-    for (const char* pass : {"shadow maps", "shadow map copies"})
-        if (const auto found = times.milliseconds.find(pass); found != times.milliseconds.end())
-            input.measured_map_milliseconds += found->second;
+    gi::set_measured_times(input, timers_->latest());
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;

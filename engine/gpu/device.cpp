@@ -304,6 +304,7 @@ Result<std::unique_ptr<Device>> Device::adopt(const HostDevice& host) {
     if (host.get_instance_proc_addr != nullptr)
         volkInitializeCustom(host.get_instance_proc_addr);
     volkLoadInstanceOnly(host.instance);
+    device->debug_labels_ = vkCmdBeginDebugUtilsLabelEXT != nullptr; // null unless the host enabled the extension
     device->instance_ = host.instance;
     device->physical_device_ = host.physical_device;
     device->device_ = host.device;

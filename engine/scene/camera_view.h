@@ -54,6 +54,7 @@ inline shared::CameraRow make_camera_row(const CameraView& view, std::uint32_t w
     row.forward = vec4(forward, float(width));
     row.right = vec4(side * half_width, float(height));
     row.down = vec4(-up * half_height, 0.0f);
+    row.axis = vec4(forward, 0.0f);
     return row;
 }
 

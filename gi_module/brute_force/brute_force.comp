@@ -52,7 +52,7 @@ float map_side() { return float(constants.map_resolution); }
 // Area of the surface that a pixel shows, m2.
 float pixel_area(Pixel pixel, vec2 centre) {
     const vec3 ray = camera_ray(camera, centre);
-    const float distance_along = dot(pixel.position - camera.position.xyz, camera.forward.xyz);
+    const float distance_along = dot(pixel.position - camera.position.xyz, camera.axis.xyz);
     const float facing = max(abs(dot(pixel.geometric_normal, ray)), 1e-3);
     const float plane_area = 4.0 * length(camera.right.xyz) * length(camera.down.xyz) /
                              (camera.forward.w * camera.right.w);

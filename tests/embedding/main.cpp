@@ -1,6 +1,7 @@
 // A foreign Vulkan program that lights its own frames with the installed package: its own device, its own G-buffer, its
 // own frame loop. It runs with 1 to 4 frames in flight and hands its images over in all kinds of layouts; then two
-// contexts on two devices take turns. The validation layer must stay silent.
+// contexts on two devices take turns; then its G-buffer has other forms (own_projection.h). The validation layer must
+// stay silent.
 #include "vulkan_program.h"
 
 // [sunfleck: begin]
@@ -58,6 +59,8 @@ sunfleck::Status record(Lighting& lighting, VkCommandBuffer commands, VulkanProg
     return lighting.context->record(commands, lighting.camera, images);
 }
 // [sunfleck: end]
+
+#include "own_projection.h"
 
 #include <cmath>
 #include <cstdio>
@@ -162,5 +165,6 @@ int main() {
     failures += finish(first, "first of two devices") + finish(second, "second of two devices");
     one->context.reset();
     two->context.reset();
+    failures += run_own_projection();
     return failures == 0 ? 0 : 1;
 }

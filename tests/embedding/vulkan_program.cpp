@@ -6,6 +6,7 @@
 #include <cstring>
 
 namespace {
+#include "geometry_float_frag.h"
 #include "geometry_frag.h"
 #include "geometry_vert.h"
 
@@ -30,14 +31,6 @@ VkShaderModule make_module(VkDevice device, const std::uint32_t* words, std::siz
     VkShaderModule module = VK_NULL_HANDLE;
     require(vkCreateShaderModule(device, &info, nullptr, &module), "vkCreateShaderModule");
     return module;
-}
-
-float half_to_float(std::uint16_t half) {
-    const int exponent = half >> 10 & 31, mantissa = half & 1023;
-    const float value = exponent == 0    ? std::ldexp(float(mantissa), -24)
-                        : exponent == 31 ? std::nanf("")
-                                         : std::ldexp(float(mantissa + 1024), exponent - 25);
-    return half >> 15 ? -value : value;
 }
 
 struct Constants {
@@ -72,15 +65,11 @@ std::vector<std::uint32_t> cube_indices(bool inwards) {
     return indices;
 }
 
-VulkanProgram::VulkanProgram(std::uint32_t frames_in_flight, const Features& features) {
+VulkanProgram::VulkanProgram(std::uint32_t frames_in_flight, const Features& features,
+                             const GeometryFormats& geometry_formats)
+    : formats(geometry_formats) {
     make_device(features);
-    const VkImageUsageFlags colour = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-    depth = make_image(VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       true);
-    normals = make_image(VK_FORMAT_R32G32_UINT, colour, false);
-    surface = make_image(VK_FORMAT_R32_UINT, colour, false);
-    irradiance = make_image(VK_FORMAT_R16G16B16A16_SFLOAT, colour, false);
+    make_images();
     const std::vector<float> positions = cube_positions();
     const std::vector<std::uint32_t> indices = cube_indices(false);
     make_buffer(positions.data(), positions.size() * sizeof(float), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, vertices_,
@@ -101,6 +90,17 @@ VulkanProgram::VulkanProgram(std::uint32_t frames_in_flight, const Features& fea
     }
 }
 
+void VulkanProgram::make_images() {
+    const VkImageUsageFlags colour =
+        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    const VkImageUsageFlags output = colour | VK_IMAGE_USAGE_STORAGE_BIT;
+    depth = make_image(formats.depth, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, true);
+    normals = make_image(formats.normals, colour, false);
+    surface = make_image(VK_FORMAT_R32_UINT, colour, false);
+    irradiance = make_image(VK_FORMAT_R16G16B16A16_SFLOAT, output, false);
+    specular = make_image(VK_FORMAT_R16G16B16A16_SFLOAT, output, false);
+}
+
 VulkanProgram::~VulkanProgram() {
     vkDeviceWaitIdle(device);
     for (const Slot& slot : slots_)
@@ -110,7 +110,7 @@ VulkanProgram::~VulkanProgram() {
     vkDestroyPipelineLayout(device, layout_, nullptr);
     for (const VkBuffer buffer : {vertices_, indices_})
         vkDestroyBuffer(device, buffer, nullptr);
-    for (const TargetImage* image : {&depth, &normals, &surface, &irradiance}) {
+    for (const TargetImage* image : {&depth, &normals, &surface, &irradiance, &specular}) {
         vkDestroyImageView(device, image->view, nullptr);
         vkDestroyImage(device, image->image, nullptr);
         vkFreeMemory(device, image->memory, nullptr);
@@ -225,14 +225,20 @@ void VulkanProgram::make_pipeline() {
     layout.pushConstantRangeCount = 1;
     layout.pPushConstantRanges = &range;
     require(vkCreatePipelineLayout(device, &layout, nullptr, &layout_), "vkCreatePipelineLayout");
+    const bool packed = formats.normals == VK_FORMAT_R32G32_UINT;
     const VkShaderModule modules[] = {make_module(device, geometry_vert, sizeof geometry_vert),
-                                      make_module(device, geometry_frag, sizeof geometry_frag)};
+                                      packed ? make_module(device, geometry_frag, sizeof geometry_frag)
+                                             : make_module(device, geometry_float_frag, sizeof geometry_float_frag)};
+    const VkBool32 unsigned_format = formats.normals == VK_FORMAT_A2B10G10R10_UNORM_PACK32;
+    const VkSpecializationMapEntry entry{0, 0, sizeof unsigned_format};
+    const VkSpecializationInfo specialization{1, &entry, sizeof unsigned_format, &unsigned_format};
     VkPipelineShaderStageCreateInfo stages[2] = {{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO},
                                                  {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO}};
     for (int i = 0; i < 2; ++i) {
         stages[i].stage = i == 0 ? VK_SHADER_STAGE_VERTEX_BIT : VK_SHADER_STAGE_FRAGMENT_BIT;
         stages[i].module = modules[i];
         stages[i].pName = "main";
+        stages[i].pSpecializationInfo = i == 1 && !packed ? &specialization : nullptr;
     }
     const VkVertexInputBindingDescription binding{0, 12, VK_VERTEX_INPUT_RATE_VERTEX};
     const VkVertexInputAttributeDescription attribute{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0};
@@ -250,15 +256,15 @@ void VulkanProgram::make_pipeline() {
     samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
     VkPipelineDepthStencilStateCreateInfo depth_state{VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO};
     depth_state.depthTestEnable = depth_state.depthWriteEnable = VK_TRUE;
-    depth_state.depthCompareOp = VK_COMPARE_OP_GREATER;
+    depth_state.depthCompareOp = formats.forward_z ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_GREATER;
     VkPipelineColorBlendAttachmentState blend[2] = {};
     blend[0].colorWriteMask = blend[1].colorWriteMask = 15;
     VkPipelineColorBlendStateCreateInfo blending{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     blending.attachmentCount = 2;
     blending.pAttachments = blend;
-    const VkFormat formats[] = {VK_FORMAT_R32G32_UINT, VK_FORMAT_R32_UINT};
+    const VkFormat colours[] = {formats.normals, VK_FORMAT_R32_UINT};
     VkPipelineRenderingCreateInfo rendering{
-        VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO, nullptr, 0, 2, formats, VK_FORMAT_D32_SFLOAT};
+        VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO, nullptr, 0, 2, colours, formats.depth};
     VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO, &rendering};
     info.stageCount = 2;
     info.pStages = stages;
@@ -317,6 +323,7 @@ void VulkanProgram::draw(VkCommandBuffer commands, const std::vector<Box>& boxes
     colours[0].imageView = normals.view;
     colours[1].imageView = surface.view;
     depths.imageView = depth.view;
+    depths.clearValue.depthStencil.depth = formats.forward_z ? 1.0f : 0.0f;
     depths.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {width, height};
@@ -358,38 +365,4 @@ void VulkanProgram::frame(const std::vector<Box>& boxes, const std::function<voi
     submit.commandBufferInfoCount = 1;
     submit.pCommandBufferInfos = &commands;
     require(vkQueueSubmit2(queue, 1, &submit, slot.fence), "vkQueueSubmit2");
-}
-
-std::array<double, 3> VulkanProgram::mean_irradiance(bool& finite) {
-    VkBuffer buffer = VK_NULL_HANDLE;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    make_buffer(nullptr, width * height * 8, VK_BUFFER_USAGE_TRANSFER_DST_BIT, buffer, memory);
-    frame(
-        {}, [] {}, [] { return std::array<float, 16>{}; },
-        [&](VkCommandBuffer commands) {
-            transition(
-                commands, irradiance,
-                {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT},
-                false);
-            VkBufferImageCopy region{};
-            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-            region.imageExtent = {width, height, 1};
-            vkCmdCopyImageToBuffer(commands, irradiance.image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1,
-                                   &region);
-        });
-    wait();
-    void* mapped = nullptr;
-    require(vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
-    const auto* texels = static_cast<const std::uint16_t*>(mapped);
-    std::array<double, 3> sum{};
-    finite = true;
-    for (std::size_t i = 0; i < std::size_t(width) * height; ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float value = half_to_float(texels[i * 4 + c]);
-            finite = finite && std::isfinite(value);
-            sum[c] += double(value) / (width * height);
-        }
-    vkDestroyBuffer(device, buffer, nullptr);
-    vkFreeMemory(device, memory, nullptr);
-    return sum;
 }

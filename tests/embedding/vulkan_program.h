@@ -30,6 +30,13 @@ struct TargetImage {
 std::vector<float> cube_positions();
 std::vector<std::uint32_t> cube_indices(bool inwards);
 
+// What the geometry pass writes.
+struct GeometryFormats {
+    VkFormat depth = VK_FORMAT_D32_SFLOAT;
+    VkFormat normals = VK_FORMAT_R32G32_UINT; // or R16G16B16A16_SFLOAT, or A2B10G10R10_UNORM_PACK32
+    bool forward_z = false;                   // depth rises with distance
+};
+
 class VulkanProgram {
 public:
     static constexpr std::uint32_t width = 160, height = 120;
@@ -37,7 +44,7 @@ public:
     // `features`: fills in what the module needs.
     using Features = std::function<void(VkPhysicalDeviceFeatures*, VkPhysicalDeviceVulkan12Features*,
                                         VkPhysicalDeviceVulkan13Features*)>;
-    VulkanProgram(std::uint32_t frames_in_flight, const Features& features);
+    VulkanProgram(std::uint32_t frames_in_flight, const Features& features, const GeometryFormats& formats = {});
     ~VulkanProgram();
     VulkanProgram(const VulkanProgram&) = delete;
 
@@ -48,6 +55,10 @@ public:
                const std::function<void(VkCommandBuffer)>& after);
     // Brings an image into another state.
     void transition(VkCommandBuffer commands, TargetImage& image, const ImageUse& use, bool is_depth) const;
+    // The texels of an image of halves, four numbers each. Waits.
+    std::vector<float> read(TargetImage& image);
+    // Whether images of the format can be drawn to as depth, and sampled.
+    bool has_depth_format(VkFormat format) const;
     // Mean of the irradiance image's red, green and blue, and whether a number is not finite. Waits.
     std::array<double, 3> mean_irradiance(bool& finite);
     void wait() const { vkDeviceWaitIdle(device); }
@@ -56,7 +67,8 @@ public:
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
-    TargetImage depth, normals, surface, irradiance;
+    GeometryFormats formats;
+    TargetImage depth, normals, surface, irradiance, specular;
     std::uint64_t serial = 0;    // of the frame that is made
     std::uint64_t completed = 0; // finished on the GPU
     int messages = 0;            // of the validation layer
@@ -71,6 +83,7 @@ private:
     TargetImage make_image(VkFormat format, VkImageUsageFlags usage, bool is_depth);
     void make_buffer(const void* data, VkDeviceSize size, VkBufferUsageFlags usage, VkBuffer& buffer,
                      VkDeviceMemory& memory);
+    void make_images();
     void make_pipeline();
     void draw(VkCommandBuffer commands, const std::vector<Box>& boxes, const std::array<float, 16>& view_projection);
     std::uint32_t memory_type(std::uint32_t bits, VkMemoryPropertyFlags wanted) const;

@@ -32,6 +32,7 @@ const Layers& allowed() {
         {"engine/render", {"engine/core", "engine/ecs", "engine/gpu", "engine/scene"}},
         {"engine/app", {"engine/core", "engine/gpu"}},
         {"gi_module/transport", foundation},
+        {"gi_module/g_buffer", with(foundation, {"gi_module/transport"})},
         {"gi_module/light_sampling", with(foundation, {"gi_module/transport"})},
         {"gi_module/visibility", with(foundation, {"gi_module/transport"})},
         {"gi_module/shadows",
@@ -40,9 +41,9 @@ const Layers& allowed() {
         {"gi_module/light_sum", with(foundation, {"gi_module/transport"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module",
-         with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
-                           "gi_module/visibility", "gi_module/low_resolution", "gi_module/light_sum"})},
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
+                                        "gi_module/shadows", "gi_module/visibility", "gi_module/low_resolution",
+                                        "gi_module/light_sum", "gi_module/g_buffer"})},
     };
     return layers;
 }

@@ -52,18 +52,36 @@ struct MeshData {
     std::span<const float> positions; // three a vertex, m
     std::span<const float> normals;   // three a vertex, unit length; empty: made from the triangles
     std::span<const std::uint32_t> indices;
+    std::span<const float> texture_coordinates; // two a vertex, u to the right and v down the texture; may be empty
 };
 
 // Light samples lie on fixed geometry, and patches of it keep light maps: moving it makes all of that anew. What moves
 // receives light and casts shadows.
 enum class Mobility { fixed, moving };
 
+// RGBA of 8 bits, sRGB, rows from the top; repeats outside of 0 to 1. Read before the call returns.
+struct TextureData {
+    std::span<const std::uint8_t> pixels; // four a texel; empty: no texture
+    std::uint32_t width = 0, height = 0;
+};
+
+// A surface that instances share.
+struct MaterialData {
+    Vector3 albedo = {0.8f, 0.8f, 0.8f};     // what reflected light is multiplied by
+    Vector3 emission = {0.0f, 0.0f, 0.0f};   // radiance on the front side, W/(sr m2); not zero: an emitter of any shape
+    float metallic = 0.0f, roughness = 1.0f; // as in glTF; for specular light, which no technique has yet
+    TextureData albedo_texture;              // multiplies albedo, where the mesh has texture coordinates
+};
+
+inline constexpr std::uint32_t no_material = 0xffffffffu;
+
 struct InstanceData {
     std::uint32_t mesh = 0;
     Matrix4 transform = identity; // mesh to world
     Mobility mobility = Mobility::fixed;
-    Vector3 albedo = {0.8f, 0.8f, 0.8f};   // what reflected light is multiplied by
-    Vector3 emission = {0.0f, 0.0f, 0.0f}; // radiance on the front side, W/(sr m2); not zero: an emitter of any shape
+    Vector3 albedo = {0.8f, 0.8f, 0.8f}; // this and the next: as in MaterialData, for an instance without a material
+    Vector3 emission = {0.0f, 0.0f, 0.0f};
+    std::uint32_t material = no_material; // from add_material
 };
 
 enum class LightKind { point, spot, directional, sky };
@@ -83,9 +101,19 @@ struct Camera {
     float vertical_field_of_view = 0.9f; // rad
 };
 
-// The camera's matrix, world to clip: reverse Z without a far plane, y down. The depth that `record` reads must have
-// been written with it (near distance 1 cm).
+// The camera's matrix, world to clip: reverse Z without a far plane, y down. The depth that `record` reads together
+// with a Camera must have been written with it (near distance 1 cm).
 Matrix4 view_projection(const Camera& camera, std::uint32_t width, std::uint32_t height);
+
+// A camera by the host's own matrices, of any perspective projection: forward or reverse Z, near and far planes
+// anywhere (also at infinity), off-centre, jittered. Everything follows from the two, which must be the ones that depth
+// was written with, jitter included; a host that has only their product may give it as view_to_clip. Depth is the
+// viewport's 0 to 1, cleared to the far plane's value: 1 with forward Z, 0 with reverse Z.
+struct View {
+    Matrix4 world_to_view = identity;
+    Matrix4 view_to_clip = identity;
+    bool clip_y_up = false; // clip y runs up the picture: the host's viewport has a negative height
+};
 
 // An image of the host: in which state `record` finds it, and in which state it leaves it.
 struct ImageState {
@@ -95,21 +123,39 @@ struct ImageState {
 };
 struct HostImage {
     VkImage image = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE; // of the whole image; of depth and stencil formats: the depth aspect
     ImageState entry, exit;
+    VkFormat format = VK_FORMAT_UNDEFINED; // undefined: the first one in the list below
 };
 
-// | image      | format               | content                                                         | needs usage |
-// |------------|----------------------|-----------------------------------------------------------------|-------------|
-// | depth      | D32_SFLOAT           | near / distance along the camera's axis; 0 where nothing is     | sampled     |
-// | normals    | R32G32_UINT          | x shading, y geometric normal on the camera's side, each packed | sampled     |
-// |            |                      | by pack_normal of engine/core/octahedral.h (GLSL and C++)       |             |
-// | surface    | R32_UINT             | surface_id of the instance; 0 where nothing is                  | sampled     |
-// | irradiance | R16G16B16A16_SFLOAT  | written: W/m2 without albedo; a surface of albedo A shows the   | storage     |
-// |            |                      | radiance A * irradiance / pi                                    |             |
+// The images of one frame. Inputs need VK_IMAGE_USAGE_SAMPLED_BIT, outputs VK_IMAGE_USAGE_STORAGE_BIT; `record` reads
+// and writes them in compute shaders.
+//
+//   depth               D32_SFLOAT, D16_UNORM, X8_D24_UNORM_PACK32, D24_UNORM_S8_UINT, D32_SFLOAT_S8_UINT, R32_SFLOAT.
+//                       With a Camera: near / distance along its axis, 0 where nothing is. With a View: what it writes.
+//   normals             World space. R32G32_UINT: x shading, y geometric normal on the camera's side, each packed by
+//                       pack_normal of engine/core/octahedral.h (GLSL and C++). Or the shading normal alone:
+//                       A2B10G10R10_UNORM_PACK32, A2R10G10B10_UNORM_PACK32, R8G8B8A8_UNORM, R16G16B16A16_UNORM, holding
+//                       0.5 * normal + 0.5; R16G16B16A16_SFLOAT, R32G32B32A32_SFLOAT, R16G16B16A16_SNORM,
+//                       R8G8B8A8_SNORM, holding the normal.
+//   surface             R32_UINT or R16_UINT. surface_id of the instance; 0 where nothing is.
+//   irradiance          R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. Output, W/m2 without albedo: a surface of albedo A
+//                       shows the radiance A * irradiance / pi.
+// Optional (no image: not there):
+//   geometric_normals   R16G16B16A16_SFLOAT and all other formats of normals but R32G32_UINT. The triangle's normal,
+//                       from either side. Without it, geometric normals are derived from depth, which is rougher at
+//                       silhouettes and with D16.
+//   motion              R16G16_SFLOAT or R32G32_SFLOAT. Place in the previous frame minus place in this one; 1 is the
+//                       picture's width or height.
+//   metallic_roughness  R8G8_UNORM, R8G8B8A8_UNORM or R16G16_SFLOAT. x: metallic, y: roughness, as in glTF.
+//   specular            R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. Output, radiance W/(sr m2); 0 as long as no
+//                       technique lights it.
+// Motion, metallic and roughness are read by no technique yet: giving them costs no more than the change to the layout
+// at exit.
 struct FrameImages {
     std::uint32_t width = 0, height = 0; // of all of them
     HostImage depth, normals, surface, irradiance;
+    HostImage geometric_normals, motion, metallic_roughness, specular;
 };
 
 struct Frame {
@@ -120,6 +166,23 @@ struct Frame {
     // of a level); from any thread, but by one at a time. Returning false ends the update with an error; the next one
     // begins again.
     std::function<bool(float)> progress;
+    // The commands of the frame recorded last were never submitted. What they would have uploaded and drawn is recorded
+    // once more.
+    bool dropped = false;
+};
+
+// A number about the last frames, by its name.
+struct Statistic {
+    std::string name;
+    double value = 0.0;
+    std::string unit; // "" for what is counted
+};
+struct Statistics {
+    std::uint64_t gpu_serial = 0;      // the frame that gpu_passes is about: the newest that is complete, 0 for none
+    std::vector<Statistic> gpu_passes; // ms; passes of one name are summed. Empty where the device has no timestamps
+    std::vector<Statistic> cpu_stages; // ms of the last update
+    std::vector<Statistic> counters;   // of the last frame
+    std::vector<Statistic> memory;     // device memory, MiB by use
 };
 
 class Context {
@@ -134,8 +197,12 @@ public:
 
     // Meshes stay until the context goes. Rejects indices out of range and numbers that are not finite.
     Result<std::uint32_t> add_mesh(const MeshData& mesh);
+    // Materials and their textures stay, too. A changed material changes all instances that have it.
+    Result<std::uint32_t> add_material(const MaterialData& material);
+    Status set_material(std::uint32_t material, const MaterialData& data);
     Result<std::uint32_t> add_instance(const InstanceData& instance);
     Status set_transform(std::uint32_t instance, const Matrix4& transform);
+    // From then on the instance has a surface of its own, without a material.
     Status set_surface(std::uint32_t instance, const Vector3& albedo, const Vector3& emission);
     Status remove_instance(std::uint32_t instance);
 
@@ -148,7 +215,13 @@ public:
     // What the geometry pass writes for the instance; valid from one update to the next. 0 for no such instance.
     std::uint32_t surface_id(std::uint32_t instance) const;
     // The GPU's part, once after each update, into a command buffer that is being recorded outside of any rendering.
+    // Images or a view that are refused leave nothing recorded and may be followed by another try or another update.
+    // After any other error the command buffer must not be submitted.
     Status record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images);
+    Status record(VkCommandBuffer commands, const View& view, const FrameImages& images);
+
+    // Times, counters and memory: see Statistics. Waits for nothing.
+    Statistics statistics() const;
 
 private:
     Context();

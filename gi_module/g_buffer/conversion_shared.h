@@ -1,0 +1,28 @@
+// Constants of the passes that convert a host's G-buffer.
+#ifndef SUNFLECK_GI_G_BUFFER_CONVERSION_SHARED_H
+#define SUNFLECK_GI_G_BUFFER_CONVERSION_SHARED_H
+#include "engine/core/shader_language.h"
+SHARED_BEGIN
+
+SHARED_CONSTANT uint conversion_side = 8u; // pixels of a work group
+
+struct DepthConversionConstants { // scene::DepthMapping
+    vec2 slope;
+    float background;
+    float offset;
+    float scale;
+    uint width, height;
+};
+
+// How a normal is written.
+SHARED_CONSTANT uint normal_missing = 0u;  // geometric normals only: they are derived
+SHARED_CONSTANT uint normal_unsigned = 1u; // 0.5 * normal + 0.5
+SHARED_CONSTANT uint normal_signed = 2u;
+
+struct NormalConversionConstants {
+    float depth_step; // of near / distance: what the depth format cannot tell apart
+    uint width, height;
+};
+
+SHARED_END
+#endif

@@ -1,0 +1,35 @@
+// The numbers that a foreign host can show.
+#include "gi_module/host_context.h"
+
+namespace sunfleck::host {
+namespace {
+
+std::vector<Statistic> counters_of(const gi::System& system) {
+    std::vector<Statistic> list;
+    for (const gi::Counter* counter : gi::all_counters())
+        list.push_back({std::string(counter->name), system.counters()[counter->name], std::string(counter->unit)});
+    return list;
+}
+
+std::vector<Statistic> times_of(const std::map<std::string, double>& milliseconds) {
+    std::vector<Statistic> list;
+    for (const auto& [name, time] : milliseconds)
+        list.push_back({name, time, "ms"});
+    return list;
+}
+
+} // namespace
+
+Statistics Context::statistics() const {
+    const Implementation& self = *implementation_;
+    Statistics result;
+    result.gpu_serial = self.timers->latest().serial;
+    result.gpu_passes = times_of(self.timers->latest().milliseconds);
+    result.cpu_stages = times_of(self.system->cpu_times());
+    result.counters = counters_of(*self.system);
+    for (const auto& [name, bytes] : self.device->memory().usage())
+        result.memory.push_back({name, double(bytes) / 1048576.0, "MiB"});
+    return result;
+}
+
+} // namespace sunfleck::host
