@@ -1,5 +1,6 @@
 #include "gi_module/transfer/transfer_pass.h"
 
+#include "engine/gpu/compute_pass.h"
 #include "engine/gpu/rendering.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/transfer/transfer_shared.h"
@@ -42,19 +43,14 @@ Result<std::unique_ptr<TransferPass>> TransferPass::create(gpu::Device& device, 
     std::unique_ptr<TransferPass> pass(new TransferPass(device));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass->sampler_), "creating a sampler");
-    using enum gpu::BindingKind;
     gpu::GraphicsDescription drawing;
     drawing.vertex_shader = "gi_module/transfer/transfer.vert";
     drawing.fragment_shader = "gi_module/transfer/transfer.frag";
-    drawing.bindings = {uniform_buffer, storage_buffer, storage_buffer, sampled_image, sampled_image};
-    drawing.push_constant_bytes = sizeof(shared::TransferConstants);
     drawing.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     drawing.colour_formats = {drawn_format};
     SUNFLECK_ASSIGN(pass->draw_, pipelines.graphics(drawing));
     gpu::ComputeDescription merging;
     merging.shader = "gi_module/transfer/transfer_merge.comp";
-    merging.bindings = {sampled_image, storage_image};
-    merging.push_constant_bytes = sizeof(shared::TransferMergeConstants);
     SUNFLECK_ASSIGN(pass->merge_, pipelines.compute(merging));
     return pass;
 }
@@ -79,20 +75,14 @@ Status TransferPass::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& s
             const VkRect2D rectangle{{int(area.x), int(area.y)}, {area.width, area.height}};
             return draw(context, scene, g_buffer, camera, draws, drawn, rectangle);
         });
-    graph.add_pass("transfer merge")
-        .read(drawn, gpu::Usage::sampled)
-        .write(output, gpu::Usage::storage_write)
-        .execute([this, drawn, output, area](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::sampled_image(context.graph.view(drawn), sampler_),
-                                             gpu::Binding::storage_image(context.graph.view(output))};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *merge_, bindings));
-            context.resources.push(context.commands, *merge_, area);
-            const auto groups = [](std::uint32_t pixels) {
-                return (pixels + shared::transfer_merge_side - 1) / shared::transfer_merge_side;
-            };
-            context.device.vk.vkCmdDispatch(context.commands, groups(area.width), groups(area.height), 1);
-            return {};
-        });
+    const auto groups = [](std::uint32_t pixels) {
+        return (pixels + shared::transfer_merge_side - 1) / shared::transfer_merge_side;
+    };
+    gpu::ComputePass(graph, "transfer merge", *merge_)
+        .sampled(drawn, sampler_)
+        .storage_write(output)
+        .push(area)
+        .dispatch(groups(area.width), groups(area.height));
     return {};
 }
 
@@ -114,15 +104,16 @@ Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scen
     vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
     Status status;
     for (const TransferDraw& draw : draws) {
-        const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows()),
-                                         gpu::Binding::slice(draw.irradiance),
+        const gpu::Binding bindings[] = {gpu::Binding::uniform(camera), gpu::Binding::storage(scene.rows()),
+                                         gpu::Binding::storage(draw.irradiance),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_)};
         status = context.resources.bind(context.commands, *draw_, bindings);
+        if (status)
+            status = context.resources.push(context.commands, *draw_,
+                                            shared::TransferConstants{draw.item.row, draw.item.vertex_offset});
         if (!status)
             break;
-        context.resources.push(context.commands, *draw_,
-                               shared::TransferConstants{draw.item.row, draw.item.vertex_offset});
         vk.vkCmdDrawIndexed(context.commands, draw.item.index_count, 1, draw.item.first_index, draw.item.vertex_offset,
                             0);
     }
