@@ -183,7 +183,7 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
     if (!shadows_->slots_are_shared(samples_.size()))
         SUNFLECK_TRY(shadows_->add_passes(graph, gpu_scene, samples_, resources_));
     SUNFLECK_TRY(add_light(graph, {gpu_scene, g_buffer, camera, output}));
-    recorded_ = true;
+    graph.when_executed([this] { recorded_ = true; });
     make_report();
     return {};
 }

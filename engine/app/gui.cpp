@@ -61,8 +61,6 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
     gpu::GraphicsDescription description;
     description.vertex_shader = "engine/app/gui.vert";
     description.fragment_shader = "engine/app/gui.frag";
-    description.bindings.assign(3, gpu::BindingKind::storage_buffer);
-    description.push_constant_bytes = sizeof(Constants);
     description.colour_formats = {target_format};
     description.blend = true;
     SUNFLECK_ASSIGN(gui->pipeline_, pipelines.graphics(description));
@@ -181,15 +179,17 @@ Status Gui::add_pass(gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameR
             vk.vkCmdBeginRendering(context.commands, &rendering);
             const VkViewport viewport{0, 0, width, height, 0, 1};
             vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-            const gpu::Binding bindings[] = {gpu::Binding::slice(vertex_slice), gpu::Binding::slice(index_slice),
-                                             gpu::Binding::buffer(atlas_)};
-            const Status status = context.resources.bind(context.commands, *pipeline_, bindings);
+            const gpu::Binding bindings[] = {gpu::Binding::storage(vertex_slice), gpu::Binding::storage(index_slice),
+                                             gpu::Binding::storage(atlas_)};
+            Status status = context.resources.bind(context.commands, *pipeline_, bindings);
             for (const Draw& draw : draws) {
                 vk.vkCmdSetScissor(context.commands, 0, 1, &draw.scissor);
-                context.resources.push(context.commands, *pipeline_,
-                                       Constants{vec2(2.0f / width, 2.0f / height), vec2(white.x, white.y),
-                                                 glm::uvec2(atlas_width_, atlas_height_), draw.first_index,
-                                                 draw.first_vertex});
+                const Constants constants{vec2(2.0f / width, 2.0f / height), vec2(white.x, white.y),
+                                          glm::uvec2(atlas_width_, atlas_height_), draw.first_index, draw.first_vertex};
+                if (status)
+                    status = context.resources.push(context.commands, *pipeline_, constants);
+                if (!status)
+                    break;
                 vk.vkCmdDraw(context.commands, draw.count, 1, 0, 0);
             }
             vk.vkCmdEndRendering(context.commands);

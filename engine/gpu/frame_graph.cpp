@@ -1,113 +1,15 @@
 #include "engine/gpu/frame_graph.h"
 
+#include "engine/gpu/debug_label.h"
+
 #include <algorithm>
 #include <cassert>
 #include <sstream>
+#include <utility>
 #include <vulkan/vk_enum_string_helper.h>
 
 namespace sunfleck::gpu {
 namespace {
-
-struct UsageTraits {
-    const char* name;
-    VkPipelineStageFlags2 stages;
-    VkAccessFlags2 access;
-    VkImageLayout layout;
-    VkImageUsageFlags image_usage;
-};
-
-constexpr VkPipelineStageFlags2 shaders = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
-                                          VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT |
-                                          VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
-UsageTraits traits_of(Usage usage) {
-    switch (usage) {
-    case Usage::colour_attachment:
-        return {"colour attachment", VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
-                VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT};
-    case Usage::depth_attachment:
-        return {"depth attachment",
-                VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
-                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT,
-                VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT};
-    case Usage::sampled:
-        return {"sampled", VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-                VK_IMAGE_USAGE_SAMPLED_BIT};
-    case Usage::storage_read:
-        return {"storage read", shaders, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_IMAGE_LAYOUT_GENERAL,
-                VK_IMAGE_USAGE_STORAGE_BIT};
-    case Usage::storage_write:
-        return {"storage write", VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
-                VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_USAGE_STORAGE_BIT};
-    case Usage::storage_read_write:
-        return {"storage read and write", VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
-                VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL,
-                VK_IMAGE_USAGE_STORAGE_BIT};
-    case Usage::uniform_read:
-        return {"uniform", shaders, VK_ACCESS_2_UNIFORM_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case Usage::texel_read:
-        return {"texels", shaders, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case Usage::vertex_read:
-        return {"vertices", VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_VERTEX_ATTRIBUTE_READ_BIT,
-                VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case Usage::index_read:
-        return {"indices", VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, VK_ACCESS_2_INDEX_READ_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                0};
-    case Usage::indirect_read:
-        return {"indirect", VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
-                VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case Usage::transfer_source:
-        return {"copy source", VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
-    case Usage::transfer_destination:
-        return {"copy destination", VK_PIPELINE_STAGE_2_COPY_BIT | VK_PIPELINE_STAGE_2_CLEAR_BIT,
-                VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    case Usage::blit_source:
-        return {"blit source", VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
-    case Usage::blit_destination:
-        return {"blit destination", VK_PIPELINE_STAGE_2_BLIT_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-    case Usage::host_read:
-        return {"host read", VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT, VK_IMAGE_LAYOUT_GENERAL, 0};
-    case Usage::host:
-        return {"host", 0, 0, VK_IMAGE_LAYOUT_UNDEFINED, 0};
-    case Usage::present:
-        return {"present", VK_PIPELINE_STAGE_2_NONE, 0, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, 0};
-    }
-    return {};
-}
-
-// Advances `state` over one access; returns true and fills `barrier` if one is needed.
-bool advance(ResourceState& state, const UsageTraits& usage, bool write, bool is_image, PassBarrier& barrier) {
-    const bool change_layout = is_image && state.layout != usage.layout;
-    barrier.destination_stages = usage.stages;
-    barrier.destination_access = usage.access;
-    barrier.old_layout = state.layout;
-    barrier.new_layout = is_image ? usage.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-    if (write || change_layout) {
-        barrier.source_stages = state.write_stages | state.read_stages;
-        barrier.source_access = state.write_access;
-        const bool needed = change_layout || barrier.source_stages != 0;
-        // A layout change is itself a write, finished when the destination stages start.
-        state.write_stages = usage.stages;
-        state.write_access = write ? usage.access : 0;
-        state.read_stages = write ? 0 : usage.stages;
-        state.read_access = write ? 0 : usage.access;
-        state.layout = is_image ? usage.layout : VK_IMAGE_LAYOUT_UNDEFINED;
-        return needed;
-    }
-    const bool visible =
-        (state.read_stages & usage.stages) == usage.stages && (state.read_access & usage.access) == usage.access;
-    barrier.source_stages = state.write_stages;
-    barrier.source_access = state.write_access;
-    const bool needed = !visible && state.write_stages != 0;
-    state.read_stages |= usage.stages;
-    state.read_access |= usage.access;
-    return needed;
-}
 
 // How the host uses an image after the graph.
 UsageTraits exit_traits(const ImportedImage& image) {
@@ -143,6 +45,7 @@ void FrameGraph::reset() {
     passes_.clear();
     compiled_.clear();
     exit_ = {};
+    when_executed_.clear();
 }
 
 ResourceId FrameGraph::add_resource(Resource resource) {
@@ -234,6 +137,10 @@ FrameGraph::PassBuilder FrameGraph::add_pass(const std::string& name) {
     return PassBuilder(*this, std::uint32_t(passes_.size() - 1));
 }
 
+void FrameGraph::when_executed(std::function<void()> callback) {
+    when_executed_.push_back(std::move(callback));
+}
+
 // Backwards: a pass lives if it is kept, or writes something that is an output or that a later living pass reads.
 void FrameGraph::cull() {
     std::vector<bool> needed(resources_.size());
@@ -271,11 +178,9 @@ Status FrameGraph::derive_barriers(const Pass& pass, CompiledPass& compiled) {
     return {};
 }
 
-Status FrameGraph::compile() {
-    compiled_.clear();
-    cull();
-    // Created images keep the state that their last frame left, so that frames in flight do not overlap on them; their
-    // content is not kept.
+// Created images keep the state that their last frame left, so that frames in flight do not overlap on them; their
+// content is not kept.
+void FrameGraph::restore_states() {
     for (Resource& resource : resources_)
         if (const auto found = pool_.find(resource.pool_key); resource.created && found != pool_.end()) {
             const bool keep_content = resource.written;
@@ -283,6 +188,31 @@ Status FrameGraph::compile() {
             if (!keep_content)
                 resource.state.layout = VK_IMAGE_LAYOUT_UNDEFINED;
         }
+}
+
+void FrameGraph::derive_exit_barriers() {
+    constexpr VkAccessFlags2 writes =
+        VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+        VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    exit_ = {};
+    exit_.name = "exit";
+    for (std::uint32_t i = 0; i < resources_.size(); ++i) {
+        PassBarrier barrier;
+        Resource& resource = resources_[i];
+        const UsageTraits exit = exit_traits(resource.host);
+        if (!resource.has_exit || !advance(resource.state, exit, (exit.access & writes) != 0, true, barrier))
+            continue;
+        barrier.resource = resource.name;
+        barrier.resource_index = i;
+        barrier.is_image = true;
+        exit_.barriers.push_back(barrier);
+    }
+}
+
+Status FrameGraph::compile() {
+    compiled_.clear();
+    cull();
+    restore_states();
     for (std::uint32_t i = 0; i < passes_.size(); ++i) {
         if (!passes_[i].live)
             continue;
@@ -292,23 +222,7 @@ Status FrameGraph::compile() {
         SUNFLECK_TRY(derive_barriers(passes_[i], compiled));
         compiled_.push_back(std::move(compiled));
     }
-    exit_ = {};
-    exit_.name = "exit";
-    for (std::uint32_t i = 0; i < resources_.size(); ++i) {
-        PassBarrier barrier;
-        Resource& resource = resources_[i];
-        const UsageTraits exit = exit_traits(resource.host);
-        constexpr VkAccessFlags2 writes = VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
-                                          VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
-                                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
-                                          VK_ACCESS_2_TRANSFER_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-        if (!resource.has_exit || !advance(resource.state, exit, (exit.access & writes) != 0, true, barrier))
-            continue;
-        barrier.resource = resource.name;
-        barrier.resource_index = i;
-        barrier.is_image = true;
-        exit_.barriers.push_back(barrier);
-    }
+    derive_exit_barriers();
     return {};
 }
 
@@ -370,23 +284,25 @@ void FrameGraph::record_barriers(VkCommandBuffer commands, const std::vector<Pas
         device_->vk.vkCmdPipelineBarrier2(commands, &info);
 }
 
+Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compiled, Timers* timers) {
+    const DebugLabel label(*device_, context.commands, compiled.name);
+    const TimerScope timer(timers, context.commands, compiled.name);
+    record_barriers(context.commands, compiled.barriers);
+    const Pass& pass = passes_[compiled.pass_index];
+    const Status status = pass.execute ? pass.execute(context) : Status();
+    return status ? status : Error{"pass '" + pass.name + "': " + status.error().message};
+}
+
 Status FrameGraph::execute(VkCommandBuffer commands, FrameResources& resources, Timers* timers) {
     assert(device_ != nullptr && "a graph without a device cannot execute");
     SUNFLECK_TRY(realise_images());
     PassContext context{*device_, commands, resources, *this};
-    for (const CompiledPass& compiled : compiled_) {
-        if (timers != nullptr)
-            timers->begin_scope(commands, compiled.name);
-        record_barriers(commands, compiled.barriers);
-        const Pass& pass = passes_[compiled.pass_index];
-        const Status status = pass.execute ? pass.execute(context) : Status();
-        if (timers != nullptr)
-            timers->end_scope(commands);
-        if (!status)
-            return Error{"pass '" + pass.name + "': " + status.error().message};
-    }
+    for (const CompiledPass& compiled : compiled_)
+        SUNFLECK_TRY(record_pass(context, compiled, timers));
     record_barriers(commands, exit_.barriers);
     store_states();
+    for (const auto& callback : std::exchange(when_executed_, {}))
+        callback();
     return {};
 }
 

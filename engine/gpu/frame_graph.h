@@ -1,10 +1,11 @@
 // A frame as a list of passes that declare what they read and write. The graph removes passes that nothing needs,
 // derives the barriers between the rest, batches them (one call before each pass), and runs the passes in the order in
-// which they were added. It is built anew each frame; images it creates are kept from frame to frame by their names.
+// which they were added. It is built again each frame; images it creates are kept from frame to frame by their names.
 //
 // Without a device (a null pointer) everything but execution works, which is how it is tested.
 #pragma once
 
+#include "engine/gpu/barriers.h"
 #include "engine/gpu/frame_resources.h"
 #include "engine/gpu/timers.h"
 
@@ -14,28 +15,6 @@
 #include <vector>
 
 namespace sunfleck::gpu {
-
-// What a pass does with a resource; fixes stages, access and image layout.
-enum class Usage {
-    colour_attachment,
-    depth_attachment,
-    sampled,       // by fragment or compute shaders
-    storage_read,  // buffers and storage images, by any shader
-    storage_write, // by compute shaders; all or part is written, nothing read
-    storage_read_write,
-    uniform_read,
-    texel_read,
-    vertex_read,
-    index_read,
-    indirect_read,
-    transfer_source,
-    transfer_destination,
-    blit_source,
-    blit_destination,
-    host_read,
-    present,
-    host, // what ImportedImage::exit_... says; for exits only
-};
 
 struct ResourceId {
     std::uint32_t index = 0xffffffffu;
@@ -68,15 +47,6 @@ struct PassContext {
     FrameGraph& graph;
 };
 
-struct PassBarrier {
-    std::string resource;
-    VkPipelineStageFlags2 source_stages = 0, destination_stages = 0;
-    VkAccessFlags2 source_access = 0, destination_access = 0;
-    VkImageLayout old_layout = VK_IMAGE_LAYOUT_UNDEFINED, new_layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    std::uint32_t resource_index = 0;
-    bool is_image = false;
-};
-
 struct CompiledPass {
     std::string name;
     std::vector<PassBarrier> barriers;
@@ -104,7 +74,7 @@ public:
 
     explicit FrameGraph(Device* device) : device_(device) {}
 
-    // Starts a new frame: forgets passes and imports, keeps created images for reuse.
+    // Starts a new frame: forgets passes, imports and callbacks, keeps created images for reuse.
     void reset();
 
     // Objects with their own memory of state; they must outlive execution. Their content is an output: passes that
@@ -128,6 +98,9 @@ public:
     void mark_output(ResourceId id);
 
     PassBuilder add_pass(const std::string& name);
+    // Called once at the end of execute(), if all passes were recorded without an error: for state on the CPU that
+    // must not say that a frame's work was done when it was not.
+    void when_executed(std::function<void()> callback);
 
     // Culls and derives barriers. Returns an error if a pass reads what nothing has written.
     Status compile();
@@ -184,6 +157,9 @@ private:
 
     ResourceId add_resource(Resource resource);
     void cull();
+    void restore_states();
+    void derive_exit_barriers();
+    Status record_pass(PassContext& context, const CompiledPass& compiled, Timers* timers);
     Status derive_barriers(const Pass& pass, CompiledPass& compiled);
     Status realise_images();
     void record_barriers(VkCommandBuffer commands, const std::vector<PassBarrier>& barriers) const;
@@ -196,6 +172,7 @@ private:
     std::map<std::string, Image> pool_;
     std::map<std::string, HistoryEntry> histories_;
     CompiledPass exit_;
+    std::vector<std::function<void()>> when_executed_;
 };
 
 } // namespace sunfleck::gpu

@@ -1,7 +1,6 @@
 #include "engine/gpu/frame_resources.h"
 
 #include <algorithm>
-#include <cassert>
 
 namespace sunfleck::gpu {
 namespace {
@@ -109,42 +108,53 @@ Result<VkDescriptorSet> FrameResources::allocate_set(const Pipeline& pipeline) {
     return Error{"a descriptor set does not fit an empty pool"};
 }
 
+namespace {
+
+Status check_bindings(const Pipeline& pipeline, std::span<const Binding> bindings) {
+    const auto& declared = pipeline.bindings();
+    if (bindings.size() != declared.size())
+        return Error{"shader '" + pipeline.name() + "' declares " + std::to_string(declared.size()) +
+                     " bindings, but " + std::to_string(bindings.size()) + " are bound"};
+    for (std::size_t i = 0; i < declared.size(); ++i)
+        if (bindings[i].kind != declared[i].kind)
+            return Error{"shader '" + pipeline.name() + "' declares binding " + std::to_string(declared[i].number) +
+                         " as a " + name_of(declared[i].kind) + ", but a " + name_of(bindings[i].kind) + " is bound"};
+    return {};
+}
+
+} // namespace
+
 Status FrameResources::bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings) {
-    assert(bindings.size() == pipeline.bindings().size() && "one entry for each binding of the pipeline");
+    SUNFLECK_TRY(check_bindings(pipeline, bindings));
     device_.vk.vkCmdBindPipeline(commands, pipeline.bind_point(), pipeline.handle());
     if (bindings.empty())
         return {};
     SUNFLECK_ASSIGN(const VkDescriptorSet set, allocate_set(pipeline));
     std::vector<VkWriteDescriptorSet> writes;
-    for (std::uint32_t i = 0; i < bindings.size(); ++i) {
+    for (std::size_t i = 0; i < bindings.size(); ++i) {
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
         write.dstSet = set;
-        write.dstBinding = i;
+        write.dstBinding = pipeline.bindings()[i].number;
         write.descriptorCount = 1;
+        write.descriptorType = descriptor_type(bindings[i].kind);
         write.pBufferInfo = &bindings[i].buffer_info;
         write.pImageInfo = &bindings[i].image_info;
         write.pTexelBufferView = &bindings[i].texel_view;
-        switch (pipeline.bindings()[i]) {
-        case BindingKind::uniform_buffer:
-            write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-            break;
-        case BindingKind::storage_buffer:
-            write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            break;
-        case BindingKind::texel_buffer:
-            write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-            break;
-        case BindingKind::storage_image:
-            write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-            break;
-        case BindingKind::sampled_image:
-            write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-            break;
-        }
         writes.push_back(write);
     }
     device_.vk.vkUpdateDescriptorSets(device_.handle(), std::uint32_t(writes.size()), writes.data(), 0, nullptr);
     device_.vk.vkCmdBindDescriptorSets(commands, pipeline.bind_point(), pipeline.layout(), 0, 1, &set, 0, nullptr);
+    return {};
+}
+
+Status FrameResources::push_bytes(VkCommandBuffer commands, const Pipeline& pipeline,
+                                  std::span<const std::byte> constants) {
+    constexpr std::size_t most_padding = 12; // up to the next vec4
+    const std::uint32_t declared = pipeline.push_constant_bytes();
+    if (declared == 0 || constants.size() < declared || constants.size() > declared + most_padding)
+        return Error{"shader '" + pipeline.name() + "' declares " + std::to_string(declared) +
+                     " bytes of push constants, but " + std::to_string(constants.size()) + " are pushed"};
+    device_.vk.vkCmdPushConstants(commands, pipeline.layout(), pipeline.push_stages(), 0, declared, constants.data());
     return {};
 }
 

@@ -19,22 +19,52 @@ struct UploadSlice {
     std::byte* data = nullptr;
 };
 
+// A buffer, or a part of it.
+struct BufferRange {
+    BufferRange(const Buffer& whole) : buffer(&whole) {}
+    BufferRange(const Buffer& whole, VkDeviceSize first, VkDeviceSize bytes)
+        : buffer(&whole), offset(first), size(bytes) {}
+    const Buffer* buffer;
+    VkDeviceSize offset = 0, size = VK_WHOLE_SIZE;
+};
+
 // What is bound at one binding of a pipeline.
 struct Binding {
-    static Binding buffer(const Buffer& buffer) { return {{buffer.handle(), 0, VK_WHOLE_SIZE}, {}, {}}; }
-    static Binding slice(const UploadSlice& slice) { return {{slice.buffer, slice.offset, slice.size}, {}, {}}; }
-    static Binding range(const Buffer& buffer, VkDeviceSize offset, VkDeviceSize size) {
-        return {{buffer.handle(), offset, size}, {}, {}};
+    static Binding uniform(const UploadSlice& slice) { return of_slice(BindingKind::uniform_buffer, slice); }
+    static Binding storage(const UploadSlice& slice) { return of_slice(BindingKind::storage_buffer, slice); }
+    static Binding storage(const BufferRange& range) {
+        Binding binding{BindingKind::storage_buffer};
+        binding.buffer_info = {range.buffer->handle(), range.offset, range.size};
+        return binding;
     }
-    static Binding texels(const Buffer& buffer) { return {{}, {}, buffer.texel_view()}; }
-    static Binding storage_image(VkImageView view) { return {{}, {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL}, {}}; }
+    static Binding texels(const Buffer& buffer) {
+        Binding binding{BindingKind::texel_buffer};
+        binding.texel_view = buffer.texel_view();
+        return binding;
+    }
+    static Binding storage_image(VkImageView view) {
+        Binding binding{BindingKind::storage_image};
+        binding.image_info = {VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL};
+        return binding;
+    }
     static Binding sampled_image(VkImageView view, VkSampler sampler) {
-        return {{}, {sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL}, {}};
+        Binding binding{BindingKind::sampled_image};
+        binding.image_info = {sampler, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+        return binding;
     }
 
+    BindingKind kind{};
     VkDescriptorBufferInfo buffer_info{};
     VkDescriptorImageInfo image_info{};
     VkBufferView texel_view = VK_NULL_HANDLE;
+
+private:
+    static Binding of_slice(BindingKind kind, const UploadSlice& slice) {
+        Binding binding{kind};
+        binding.buffer_info = {slice.buffer, slice.offset, slice.size};
+        return binding;
+    }
+    explicit Binding(BindingKind what) : kind(what) {}
 };
 
 class FrameResources {
@@ -60,11 +90,14 @@ public:
         return upload(std::span<const T>(&value, 1));
     }
 
-    // Binds `pipeline` with one entry per binding, in order.
+    // Binds `pipeline` with one entry for each of its bindings, by ascending binding number. An error if their number
+    // or kinds are not what the shaders declare.
     Status bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings);
+    // All of the pipeline's push constants. Bytes after those that the shaders declare are padding, and left out.
+    Status push_bytes(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const std::byte> constants);
     template <typename T>
-    void push(VkCommandBuffer commands, const Pipeline& pipeline, const T& constants) {
-        device_.vk.vkCmdPushConstants(commands, pipeline.layout(), pipeline.push_stages(), 0, sizeof(T), &constants);
+    Status push(VkCommandBuffer commands, const Pipeline& pipeline, const T& constants) {
+        return push_bytes(commands, pipeline, std::as_bytes(std::span<const T>(&constants, 1)));
     }
 
     // Keeps `object` (a shared_ptr to a Buffer or Image, say) until the current frame is complete on the GPU.

@@ -1,22 +1,27 @@
-// Compute and graphics pipelines. Each has one descriptor set whose bindings are numbered in the order in which they
-// are listed, and push constants visible to all its stages.
+// Compute and graphics pipelines. Each has one descriptor set and one range of push constants, both laid out as its
+// shaders declare them (see spirv_reflection.h).
 #pragma once
 
 #include "engine/gpu/device.h"
 #include "engine/gpu/shader_library.h"
+#include "engine/gpu/spirv_reflection.h"
 
 #include <memory>
 #include <vector>
 
 namespace sunfleck::gpu {
 
-// How a shader sees a binding.
-enum class BindingKind { uniform_buffer, storage_buffer, texel_buffer, storage_image, sampled_image };
+// Values of the constant ids 0, 1, ..., as Vulkan takes them.
+struct SpecializationValues {
+    explicit SpecializationValues(const std::vector<std::uint32_t>& values);
+    SpecializationValues(const SpecializationValues&) = delete;
+    SpecializationValues& operator=(const SpecializationValues&) = delete;
+    std::vector<VkSpecializationMapEntry> entries;
+    VkSpecializationInfo info{};
+};
 
 struct ComputeDescription {
-    std::string shader; // path in the shader library
-    std::vector<BindingKind> bindings;
-    std::uint32_t push_constant_bytes = 0;
+    std::string shader;                        // path in the shader library
     std::vector<std::uint32_t> specialization; // values of constant_id 0, 1, ...
     std::string name;                          // for validation messages; empty takes the shader's path
 };
@@ -32,8 +37,6 @@ struct VertexAttribute {
 struct GraphicsDescription {
     std::string vertex_shader;
     std::string fragment_shader; // empty: depth only
-    std::vector<BindingKind> bindings;
-    std::uint32_t push_constant_bytes = 0;
     std::vector<std::uint32_t> specialization;
     std::vector<VertexAttribute> attributes;
     std::vector<VkFormat> colour_formats;
@@ -53,8 +56,12 @@ public:
     VkPipelineLayout layout() const { return layout_; }
     VkDescriptorSetLayout set_layout() const { return set_layout_; }
     VkPipelineBindPoint bind_point() const { return bind_point_; }
-    const std::vector<BindingKind>& bindings() const { return bindings_; }
-    VkShaderStageFlags push_stages() const { return push_stages_; }
+    // What its shaders declare.
+    const std::vector<ShaderBinding>& bindings() const { return interface_.bindings; }
+    std::uint32_t push_constant_bytes() const { return interface_.push_constant_bytes; }
+    VkShaderStageFlags push_stages() const { return interface_.push_stages; }
+    // Its shaders' names, for messages.
+    const std::string& name() const { return name_; }
 
 private:
     friend class PipelineStore;
@@ -62,8 +69,8 @@ private:
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
-    VkShaderStageFlags push_stages_ = 0;
-    std::vector<BindingKind> bindings_;
+    ShaderInterface interface_;
+    std::string name_;
 };
 
 // Owns pipelines; the pointers it returns stay valid, and change their content at refresh.
@@ -74,11 +81,12 @@ public:
     PipelineStore(const PipelineStore&) = delete;
     PipelineStore& operator=(const PipelineStore&) = delete;
 
+    // The same shader with the same values is made once.
     Result<const Pipeline*> compute(const ComputeDescription& description);
     Result<const Pipeline*> graphics(const GraphicsDescription& description);
 
-    // Makes all pipelines anew from the library's current code. On failure every pipeline stays as it was. The GPU must
-    // be idle.
+    // Makes all pipelines again from the library's current code, whose bindings and push constants must be those of the
+    // code before. On failure every pipeline stays as it was. The GPU must be idle.
     Status refresh();
 
 private:
@@ -87,9 +95,10 @@ private:
         ComputeDescription compute;
         GraphicsDescription graphics;
     };
-    Status make_layout(Pipeline& pipeline, const std::vector<BindingKind>& bindings, std::uint32_t push_bytes,
-                       VkShaderStageFlags stages);
+    Result<ShaderInterface> read_interface(const Entry& entry) const;
+    Status make_layout(Pipeline& pipeline);
     Result<VkPipeline> build(const Entry& entry);
+    Result<VkPipeline> rebuild(const Entry& entry);
     Result<VkPipeline> build_compute(const Entry& entry);
     Result<VkPipeline> build_graphics(const Entry& entry);
     Result<VkShaderModule> make_module(const std::string& path);

@@ -1,5 +1,6 @@
 #include "engine/gpu/timers.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace sunfleck::gpu {
@@ -14,34 +15,34 @@ Timers::~Timers() {
         device_.vk.vkDestroyQueryPool(device_.handle(), pool, nullptr);
 }
 
+// Null where there are no timestamps, or no pool could be made: the frame simply has no times then.
+VkQueryPool Timers::take_pool() {
+    VkQueryPool pool = VK_NULL_HANDLE;
+    if (!device_.traits().timestamps)
+        return pool;
+    if (!spare_.empty()) {
+        pool = spare_.back();
+        spare_.pop_back();
+    } else {
+        VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+        info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        info.queryCount = scopes_per_frame * 2;
+        if (device_.vk.vkCreateQueryPool(device_.handle(), &info, nullptr, &pool) != VK_SUCCESS)
+            return VK_NULL_HANDLE;
+    }
+    device_.vk.vkResetQueryPool(device_.handle(), pool, 0, scopes_per_frame * 2);
+    return pool;
+}
+
 void Timers::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
     collect(completed_serial);
     Frame frame;
     frame.serial = serial;
-    if (device_.traits().timestamps) {
-        if (spare_.empty()) {
-            VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-            info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-            info.queryCount = scopes_per_frame * 2;
-            // Without a pool the frame simply has no times.
-            if (device_.vk.vkCreateQueryPool(device_.handle(), &info, nullptr, &frame.pool) != VK_SUCCESS)
-                frame.pool = VK_NULL_HANDLE;
-        } else {
-            frame.pool = spare_.back();
-            spare_.pop_back();
-        }
-        if (frame.pool != VK_NULL_HANDLE)
-            device_.vk.vkResetQueryPool(device_.handle(), frame.pool, 0, scopes_per_frame * 2);
-    }
+    frame.pool = take_pool();
     frames_.push_back(std::move(frame));
 }
 
 void Timers::begin_scope(VkCommandBuffer commands, const std::string& name) {
-    if (device_.debug_labels() && vkCmdBeginDebugUtilsLabelEXT != nullptr) {
-        VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
-        label.pLabelName = name.c_str();
-        vkCmdBeginDebugUtilsLabelEXT(commands, &label);
-    }
     if (frames_.empty())
         return;
     Frame& frame = frames_.back();
@@ -53,36 +54,42 @@ void Timers::begin_scope(VkCommandBuffer commands, const std::string& name) {
 }
 
 void Timers::end_scope(VkCommandBuffer commands) {
-    if (!frames_.empty()) {
-        Frame& frame = frames_.back();
-        assert(!frame.open.empty() && "end_scope without begin_scope");
-        const std::uint32_t index = frame.open.back();
-        frame.open.pop_back();
-        if (frame.pool != VK_NULL_HANDLE && index < scopes_per_frame)
-            device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame.pool, index * 2 + 1);
+    if (frames_.empty())
+        return;
+    Frame& frame = frames_.back();
+    assert(!frame.open.empty() && "end_scope without begin_scope");
+    const std::uint32_t index = frame.open.back();
+    frame.open.pop_back();
+    if (frame.pool != VK_NULL_HANDLE && index < scopes_per_frame)
+        device_.vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, frame.pool, index * 2 + 1);
+}
+
+FrameTimes Timers::times_of(const Frame& frame, const std::vector<std::uint64_t>& stamps) const {
+    FrameTimes times;
+    times.serial = frame.serial;
+    const double tick_ms = double(device_.traits().timestamp_period_ns) * 1e-6;
+    for (std::size_t i = 0; i * 2 < stamps.size(); ++i) {
+        const std::uint64_t begin = stamps[i * 2], end = stamps[i * 2 + 1];
+        times.milliseconds[frame.names[i]] += double(end - begin) * tick_ms;
+        times.scopes.push_back(
+            {frame.names[i], double(begin - stamps[0]) * tick_ms, double(end - stamps[0]) * tick_ms});
     }
-    if (device_.debug_labels() && vkCmdEndDebugUtilsLabelEXT != nullptr)
-        vkCmdEndDebugUtilsLabelEXT(commands);
+    return times;
 }
 
 void Timers::collect(std::uint64_t completed_serial) {
     while (!frames_.empty() && frames_.front().serial <= completed_serial) {
-        Frame frame = std::move(frames_.front());
+        const Frame frame = std::move(frames_.front());
         frames_.pop_front();
         if (frame.pool == VK_NULL_HANDLE)
             continue;
         spare_.push_back(frame.pool);
         const std::uint32_t scopes = std::min<std::uint32_t>(std::uint32_t(frame.names.size()), scopes_per_frame);
         std::vector<std::uint64_t> stamps(scopes * 2);
-        if (scopes == 0 ||
+        if (scopes > 0 &&
             device_.vk.vkGetQueryPoolResults(device_.handle(), frame.pool, 0, scopes * 2, stamps.size() * 8,
-                                             stamps.data(), 8, VK_QUERY_RESULT_64_BIT) != VK_SUCCESS)
-            continue;
-        latest_ = {};
-        latest_.serial = frame.serial;
-        for (std::uint32_t i = 0; i < scopes; ++i)
-            latest_.milliseconds[frame.names[i]] +=
-                double(stamps[i * 2 + 1] - stamps[i * 2]) * double(device_.traits().timestamp_period_ns) * 1e-6;
+                                             stamps.data(), 8, VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
+            latest_ = times_of(frame, stamps);
     }
 }
 

@@ -1,5 +1,5 @@
-// One scope opens a debug label and a timestamp pair under one name. Results arrive when the GPU has finished the
-// frame, tagged with its serial; nothing waits for them.
+// GPU times of named scopes: a pair of timestamps each. Results arrive when the GPU has finished the frame, tagged with
+// its serial; nothing waits for them.
 #pragma once
 
 #include "engine/gpu/device.h"
@@ -12,9 +12,16 @@
 
 namespace sunfleck::gpu {
 
+// One scope of a frame, in ms from the first scope's begin.
+struct ScopeTime {
+    std::string name;
+    double begin_ms = 0.0, end_ms = 0.0;
+};
+
 struct FrameTimes {
     std::uint64_t serial = 0;
     std::map<std::string, double> milliseconds; // scopes of one name are summed
+    std::vector<ScopeTime> scopes;              // in the order in which they began
 };
 
 class Timers {
@@ -40,10 +47,33 @@ private:
         std::vector<std::uint32_t> open; // indices into names
     };
 
+    VkQueryPool take_pool();
+    FrameTimes times_of(const Frame& frame, const std::vector<std::uint64_t>& stamps) const;
+
     Device& device_;
     std::deque<Frame> frames_; // in flight, oldest first
     std::vector<VkQueryPool> spare_;
     FrameTimes latest_;
+};
+
+// A scope from construction to destruction; nothing without timers.
+class TimerScope {
+public:
+    TimerScope(Timers* timers, VkCommandBuffer commands, const std::string& name)
+        : timers_(timers), commands_(commands) {
+        if (timers_ != nullptr)
+            timers_->begin_scope(commands_, name);
+    }
+    ~TimerScope() {
+        if (timers_ != nullptr)
+            timers_->end_scope(commands_);
+    }
+    TimerScope(const TimerScope&) = delete;
+    TimerScope& operator=(const TimerScope&) = delete;
+
+private:
+    Timers* timers_;
+    VkCommandBuffer commands_;
 };
 
 } // namespace sunfleck::gpu

@@ -1,5 +1,6 @@
 #include "engine/render/composition.h"
 
+#include "engine/gpu/compute_pass.h"
 #include "engine/gpu/rendering.h"
 #include "engine/render/tone_map.h"
 
@@ -7,18 +8,12 @@ namespace sunfleck::render {
 
 Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::PipelineStore& pipelines,
                                                 VkFormat display_format) {
-    using enum gpu::BindingKind;
     CompositionPass pass;
     gpu::ComputeDescription views;
     views.shader = "engine/render/composition.comp";
-    views.bindings.assign(7, sampled_image);
-    views.bindings.insert(views.bindings.end(), {storage_buffer, storage_image, uniform_buffer, sampled_image});
-    views.push_constant_bytes = sizeof(shared::CompositionConstants);
     gpu::GraphicsDescription final;
     final.vertex_shader = "engine/render/composition.vert";
     final.fragment_shader = "engine/render/composition.frag";
-    final.bindings = {sampled_image, sampled_image, sampled_image, sampled_image, uniform_buffer};
-    final.push_constant_bytes = sizeof(shared::CompositionConstants);
     final.colour_formats = {display_format};
     for (const std::uint32_t emission : {0, 1})
         for (const std::uint32_t sky : {0, 1}) {
@@ -29,9 +24,7 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
     gpu::GraphicsDescription emission;
     emission.vertex_shader = "engine/render/composition_emission.vert";
     emission.fragment_shader = "engine/render/composition_emission.frag";
-    emission.bindings = {sampled_image, sampled_image, sampled_image, uniform_buffer};
     emission.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
-    emission.push_constant_bytes = sizeof(shared::EmissionConstants);
     emission.colour_formats = {display_format};
     SUNFLECK_ASSIGN(pass.emission_, pipelines.graphics(emission));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
@@ -103,15 +96,15 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
                                              image(emission_image ? g_buffer.emission : g_buffer.albedo),
                                              input.sky_image != nullptr ? input.sky_image->binding()
                                                                         : image(g_buffer.albedo),
-                                             gpu::Binding::slice(camera)};
+                                             gpu::Binding::uniform(camera)};
             gpu::begin_rendering(vk, context.commands, rendering, constants.width, constants.height);
             Status status = context.resources.bind(context.commands, kernel, bindings);
-            if (status) {
-                context.resources.push(context.commands, kernel, constants);
+            if (status)
+                status = context.resources.push(context.commands, kernel, constants);
+            if (status)
                 vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
-                if (!emission_image)
-                    status = draw_emission(context, scene, g_buffer, input.irradiance, camera, constants.exposure);
-            }
+            if (status && !emission_image)
+                status = draw_emission(context, scene, g_buffer, input.irradiance, camera, constants.exposure);
             vk.vkCmdEndRendering(context.commands);
             return status;
         });
@@ -130,7 +123,7 @@ Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::Gp
                 return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
             };
             const gpu::Binding bindings[] = {image(irradiance), image(g_buffer.albedo), image(g_buffer.surface),
-                                             gpu::Binding::slice(camera)};
+                                             gpu::Binding::uniform(camera)};
             SUNFLECK_TRY(context.resources.bind(context.commands, *emission_, bindings));
             const VkBuffer positions = scene.positions().handle();
             const VkDeviceSize offset = 0;
@@ -140,7 +133,7 @@ Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::Gp
         }
         const shared::EmissionConstants constants{
             {draw.model[0], draw.model[1], draw.model[2]}, vec4(vec3(draw.emission), exposure), draw.surface};
-        context.resources.push(context.commands, *emission_, constants);
+        SUNFLECK_TRY(context.resources.push(context.commands, *emission_, constants));
         context.device.vk.vkCmdDrawIndexed(context.commands, item.index_count, 1, item.first_index, item.vertex_offset,
                                            0);
     }
@@ -150,32 +143,26 @@ Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::Gp
 void CompositionPass::add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                                const CompositionInput& input, const gpu::UploadSlice& camera,
                                gpu::ResourceId output) const {
-    const gpu::ResourceId inputs[] = {input.irradiance, g_buffer.depth, g_buffer.normals, g_buffer.surface,
-                                      g_buffer.albedo,
-                                      // bound, but not read, where there is none
-                                      g_buffer.motion.valid() ? g_buffer.motion : g_buffer.albedo,
-                                      g_buffer.emission.valid() ? g_buffer.emission : g_buffer.albedo};
-    auto pass = graph.add_pass("composition");
-    for (const gpu::ResourceId id : inputs)
-        pass.read(id, gpu::Usage::sampled);
     const shared::CompositionConstants constants = make_constants(g_buffer, input);
-    const gpu::Pipeline* kernel = views_[g_buffer.emission.valid() ? 1 : 0][sky_has_picture(input) ? 1 : 0];
-    pass.write(output, gpu::Usage::storage_write)
-        .execute([this, &scene, kernel, output, constants, camera, sky = input.sky_image,
-                  inputs = std::vector(std::begin(inputs), std::end(inputs))](gpu::PassContext& context) -> Status {
-            std::vector<gpu::Binding> bindings;
-            for (const gpu::ResourceId id : inputs)
-                bindings.push_back(gpu::Binding::sampled_image(context.graph.view(id), sampler_));
-            bindings.push_back(gpu::Binding::slice(scene.rows()));
-            bindings.push_back(gpu::Binding::storage_image(context.graph.view(output)));
-            bindings.push_back(gpu::Binding::slice(camera));
-            // Without a picture something must be bound all the same.
-            bindings.push_back(sky != nullptr ? sky->binding() : bindings[4]);
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            context.device.vk.vkCmdDispatch(context.commands, (constants.width + 7) / 8, (constants.height + 7) / 8, 1);
-            return {};
-        });
+    const bool emission_image = g_buffer.emission.valid();
+    // Images that there are not must be bound all the same; others stand in for them, unread.
+    const gpu::ResourceId stand_in = g_buffer.albedo;
+    gpu::ComputePass pass(graph, "composition", *views_[emission_image ? 1 : 0][sky_has_picture(input) ? 1 : 0]);
+    pass.sampled(input.irradiance, sampler_)
+        .sampled(g_buffer.depth, sampler_)
+        .sampled(g_buffer.normals, sampler_)
+        .sampled(g_buffer.surface, sampler_)
+        .sampled(g_buffer.albedo, sampler_)
+        .sampled(g_buffer.motion.valid() ? g_buffer.motion : stand_in, sampler_)
+        .sampled(emission_image ? g_buffer.emission : stand_in, sampler_)
+        .storage_read(scene.rows())
+        .storage_write(output)
+        .uniform(camera);
+    if (input.sky_image != nullptr)
+        pass.constant(input.sky_image->binding());
+    else
+        pass.sampled(stand_in, sampler_);
+    pass.push(constants).dispatch((constants.width + 7) / 8, (constants.height + 7) / 8);
 }
 
 } // namespace sunfleck::render

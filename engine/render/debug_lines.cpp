@@ -10,7 +10,6 @@ Result<DebugLines> DebugLines::create(gpu::PipelineStore& pipelines, VkFormat ta
     gpu::GraphicsDescription description;
     description.vertex_shader = "engine/render/debug_lines.vert";
     description.fragment_shader = "engine/render/debug_lines.frag";
-    description.bindings = {gpu::BindingKind::uniform_buffer};
     description.attributes = {{0, VK_FORMAT_R32G32B32A32_SFLOAT, 16}};
     description.colour_formats = {target_format};
     description.depth_format = depth_format;
@@ -60,7 +59,7 @@ void DebugLines::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const gpu:
             rendering.pDepthAttachment = &depth;
             const VolkDeviceTable& vk = context.device.vk;
             gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
-            const gpu::Binding binding = gpu::Binding::slice(camera);
+            const gpu::Binding binding = gpu::Binding::uniform(camera);
             const Status status = context.resources.bind(context.commands, *pipeline_, {&binding, 1});
             vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &slice.buffer, &slice.offset);
             vk.vkCmdDraw(context.commands, std::uint32_t(vertices_.size()), 1, 0, 0);

@@ -14,13 +14,10 @@ void describe_kind(std::uint32_t kind, bool motion, gpu::GraphicsDescription& de
     const bool textured = kind >= scene::surface_kind_textured;
     description.vertex_shader = textured ? "engine/render/g_buffer_textured.vert" : "engine/render/g_buffer.vert";
     description.fragment_shader = textured ? "engine/render/g_buffer_textured.frag" : "engine/render/g_buffer.frag";
-    description.bindings = {gpu::BindingKind::uniform_buffer, gpu::BindingKind::storage_buffer};
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}, {1, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     description.specialization = {kind, motion};
     if (!textured)
         return;
-    description.bindings.push_back(gpu::BindingKind::storage_buffer);
-    description.bindings.insert(description.bindings.end(), 3, gpu::BindingKind::sampled_image);
     description.attributes.push_back({2, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({3, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({4, VK_FORMAT_R8G8B8A8_UNORM, 4});
@@ -34,7 +31,6 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     gpu::GraphicsDescription description;
     description.depth_format = depth_format;
     description.dynamic_cull = true;
-    description.push_constant_bytes = sizeof(shared::DrawConstants);
     for (std::uint32_t kind = 0; kind < scene::surface_kinds; ++kind) {
         describe_kind(kind, false, description);
         description.colour_formats = {normals_format, surface_format, albedo_format};
@@ -68,6 +64,17 @@ bool outside(const mat4& view_projection, const Bounds& bounds) {
 
 bool same_bindings(const scene::DrawItem& a, const scene::DrawItem& b) {
     return a.kind == b.kind && std::equal(std::begin(a.textures), std::end(a.textures), std::begin(b.textures));
+}
+
+std::vector<gpu::Binding> bindings_of(const scene::DrawItem& item, const scene::GpuScene& scene,
+                                      const gpu::UploadSlice& camera) {
+    std::vector<gpu::Binding> bindings = {gpu::Binding::uniform(camera), gpu::Binding::storage(scene.rows())};
+    if (item.kind < scene::surface_kind_textured)
+        return bindings;
+    bindings.push_back(gpu::Binding::storage(scene.materials()));
+    for (const std::int32_t texture : item.textures)
+        bindings.push_back(scene.textures().binding(texture));
+    return bindings;
 }
 
 // What the camera may see, nearest first: what is hidden by then is not shaded.
@@ -130,9 +137,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     if (target.emission.valid())
         colours.push_back(attachment(target.emission, colour));
     colours[0].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // normals: nobody reads them where no surface is
-    const auto& pipelines = pipelines_[target.emission.valid() ? motion_and_emission
-                                       : target.motion.valid() ? motion
-                                                               : nothing];
+    const Extra extra = target.emission.valid() ? motion_and_emission : target.motion.valid() ? motion : nothing;
     const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {target.width, target.height};
@@ -140,46 +145,43 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
     rendering.colorAttachmentCount = std::uint32_t(colours.size());
     rendering.pColorAttachments = colours.data();
     rendering.pDepthAttachment = &depth;
-    const VolkDeviceTable& vk = context.device.vk;
-    gpu::begin_rendering(vk, context.commands, rendering, target.width, target.height);
-    Status status;
-    if (!scene.draws().empty()) {
-        const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle(),
-                                    scene.texture_coordinates().handle(), scene.tangents().handle(),
-                                    scene.colours().handle()};
-        const VkDeviceSize offsets[5] = {};
-        vk.vkCmdBindVertexBuffers(context.commands, 0, 5, buffers, offsets);
-        vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
-        shared::CameraRow row;
-        std::memcpy(&row, camera.data, sizeof row);
-        const scene::DrawItem* bound = nullptr;
-        VkCullModeFlags cull = VK_CULL_MODE_NONE;
-        VkFrontFace front = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-        vk.vkCmdSetCullMode(context.commands, cull);
-        vk.vkCmdSetFrontFace(context.commands, front);
-        for (const scene::DrawItem* item : visible_from(row, scene.draws())) {
-            if ((bound == nullptr || !same_bindings(*bound, *item)) && status) {
-                std::vector<gpu::Binding> bindings = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows())};
-                if (item->kind >= scene::surface_kind_textured) {
-                    bindings.push_back(gpu::Binding::slice(scene.materials()));
-                    for (const std::int32_t texture : item->textures)
-                        bindings.push_back(scene.textures().binding(texture));
-                }
-                status = context.resources.bind(context.commands, *pipelines[item->kind], bindings);
-            }
-            bound = item;
-            const VkCullModeFlags wanted = item->single_sided ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
-            if (wanted != cull)
-                vk.vkCmdSetCullMode(context.commands, cull = wanted);
-            const VkFrontFace side = item->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
-            if (side != front)
-                vk.vkCmdSetFrontFace(context.commands, front = side);
-            context.resources.push(context.commands, *pipelines[item->kind], item->constants);
-            vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset, 0);
-        }
-    }
-    vk.vkCmdEndRendering(context.commands);
+    gpu::begin_rendering(context.device.vk, context.commands, rendering, target.width, target.height);
+    const Status status = scene.draws().empty() ? Status() : draw(context, scene, camera, extra);
+    context.device.vk.vkCmdEndRendering(context.commands);
     return status;
+}
+
+Status GBufferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
+                         Extra extra) const {
+    const VolkDeviceTable& vk = context.device.vk;
+    const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle(),
+                                scene.texture_coordinates().handle(), scene.tangents().handle(),
+                                scene.colours().handle()};
+    const VkDeviceSize offsets[5] = {};
+    vk.vkCmdBindVertexBuffers(context.commands, 0, 5, buffers, offsets);
+    vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
+    shared::CameraRow row;
+    std::memcpy(&row, camera.data, sizeof row);
+    const scene::DrawItem* bound = nullptr;
+    VkCullModeFlags cull = VK_CULL_MODE_NONE;
+    VkFrontFace front = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    vk.vkCmdSetCullMode(context.commands, cull);
+    vk.vkCmdSetFrontFace(context.commands, front);
+    for (const scene::DrawItem* item : visible_from(row, scene.draws())) {
+        const gpu::Pipeline& pipeline = *pipelines_[extra][item->kind];
+        if (bound == nullptr || !same_bindings(*bound, *item))
+            SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings_of(*item, scene, camera)));
+        bound = item;
+        const VkCullModeFlags hidden = item->single_sided ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
+        if (hidden != cull)
+            vk.vkCmdSetCullMode(context.commands, cull = hidden);
+        const VkFrontFace side = item->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
+        if (side != front)
+            vk.vkCmdSetFrontFace(context.commands, front = side);
+        SUNFLECK_TRY(context.resources.push(context.commands, pipeline, item->constants));
+        vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset, 0);
+    }
+    return {};
 }
 
 } // namespace sunfleck::render

@@ -34,6 +34,8 @@ private:
                   const GBuffer& target) const;
     // What is written besides normals, surface and albedo.
     enum Extra : std::uint32_t { nothing, motion, motion_and_emission, extras };
+    Status draw(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
+                Extra extra) const;
     const gpu::Pipeline* pipelines_[extras][scene::surface_kinds] = {};
 };
 

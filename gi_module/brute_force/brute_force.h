@@ -1,13 +1,12 @@
 // The baseline: every light sample with its shadow map at every pixel.
 #pragma once
 
+#include "engine/gpu/readback_ring.h"
 #include "gi_module/brute_force/brute_force_shared.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/transport/g_buffer.h"
 #include "gi_module/transport/light_batch.h"
-
-#include <map>
 
 namespace sunfleck::gi {
 
@@ -55,31 +54,34 @@ public:
     const ClampedLight& clamped() const { return clamped_; }
 
 private:
-    BruteForce(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
-    // Large pictures go in bands of rows, so that a band's sums fit one storage binding.
-    Status dispatch(gpu::PassContext& context, const gpu::Pipeline& kernel, const gpu::UploadSlice& camera,
-                    const LightBatch& batch, shared::BruteForceConstants constants, const GBufferInput& g_buffer,
-                    gpu::ResourceId output, const ShadowMaps& maps, const gpu::Buffer& clamped_sums) const;
+    BruteForce(gpu::Device& device, gpu::PipelineStore& pipelines)
+        : device_(device), pipelines_(pipelines),
+          readback_(device, "clamped flux", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
+    // What the passes of one frame share.
+    struct Frame {
+        gpu::FrameGraph& graph;
+        const GBufferInput& g_buffer;
+        const gpu::UploadSlice& camera;
+        const ShadowMaps& maps;
+        gpu::ResourceId output;
+    };
+    // Large pictures go in bands of rows, a pass each, so that a band's sums fit one storage binding.
+    void add_bands(const Frame& frame, const gpu::Pipeline& kernel, const LightBatch& batch,
+                   shared::BruteForceConstants constants);
+    void collect(std::uint64_t completed_serial);
     Result<const gpu::Pipeline*> pipeline(std::uint32_t light_class, const BruteForceOptions& options,
                                           std::uint32_t map_bits);
 
     // Rows of a picture whose sums one storage binding can hold.
     std::uint32_t band_rows(std::uint32_t width) const;
 
-    struct Readback {
-        gpu::Buffer sums;
-        std::uint64_t serial = 0;
-        std::uint32_t groups = 0;
-    };
-
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     KernelShape shape_;
     VkSampler sampler_ = VK_NULL_HANDLE;
-    std::map<std::vector<std::uint32_t>, const gpu::Pipeline*> kernels_; // by specialisation
     gpu::Buffer accumulation_, unused_texels_;
-    std::vector<Readback> readbacks_;
-    std::size_t current_readback_ = 0;
+    gpu::ReadbackRing readback_;
+    gpu::ReadbackRing::Slot* clamped_sums_ = nullptr; // of this frame
     std::uint64_t serial_ = 0;
     ClampedLight clamped_;
 };

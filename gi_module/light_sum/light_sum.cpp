@@ -1,15 +1,14 @@
 #include "gi_module/light_sum/light_sum.h"
 
+#include "engine/gpu/compute_pass.h"
+
 namespace sunfleck::gi {
 
 Result<std::unique_ptr<LightSum>> LightSum::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<LightSum> sum(new LightSum(device));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &sum->sampler_), "creating a sampler");
-    using enum gpu::BindingKind;
     gpu::ComputeDescription description;
-    description.bindings = {sampled_image, sampled_image, sampled_image, storage_buffer, storage_image};
-    description.push_constant_bytes = sizeof(shared::LightSumConstants);
     description.shader = "gi_module/light_sum/light_sum_16.comp";
     SUNFLECK_ASSIGN(sum->halves_, pipelines.compute(description));
     description.shader = "gi_module/light_sum/light_sum_32.comp";
@@ -47,25 +46,17 @@ Status LightSum::add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer, 
     const bool clears = constants.mode == shared::light_sum_clear;
     const gpu::Pipeline* kernel =
         graph.description(picture).format == VK_FORMAT_R32G32B32A32_SFLOAT ? floats_ : halves_;
-    auto pass = graph.add_pass(clears ? "light clear" : "light sum");
-    pass.read(g_buffer.depth, gpu::Usage::sampled).read(g_buffer.surface, gpu::Usage::sampled);
-    if (!clears)
-        pass.read(layer, gpu::Usage::sampled);
-    pass.write(picture, clears ? gpu::Usage::storage_write : gpu::Usage::storage_read_write)
-        .execute([this, kernel, g_buffer, layer, picture, receivers, constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(layer), sampler_), gpu::Binding::slice(receivers),
-                gpu::Binding::storage_image(context.graph.view(picture))};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            const auto groups = [](std::uint32_t pixels) {
-                return (pixels + shared::light_sum_side - 1) / shared::light_sum_side;
-            };
-            context.device.vk.vkCmdDispatch(context.commands, groups(constants.width), groups(constants.height), 1);
-            return {};
-        });
+    const auto groups = [](std::uint32_t pixels) {
+        return (pixels + shared::light_sum_side - 1) / shared::light_sum_side;
+    };
+    gpu::ComputePass(graph, clears ? "light clear" : "light sum", *kernel)
+        .sampled(g_buffer.depth, sampler_)
+        .sampled(g_buffer.surface, sampler_)
+        .sampled(layer, sampler_)
+        .storage_read(receivers)
+        .storage_read_write(picture)
+        .push(constants)
+        .dispatch(groups(constants.width), groups(constants.height));
     return {};
 }
 

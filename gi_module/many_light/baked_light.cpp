@@ -1,5 +1,7 @@
 #include "gi_module/many_light/baked_light.h"
 
+#include "engine/gpu/compute_pass.h"
+
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -205,31 +207,30 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
     return {};
 }
 
+// All texels become rough.
+void BakedLight::add_wipe(gpu::FrameGraph& graph) {
+    graph.add_pass("baked light wipe")
+        .write(graph.import_buffer(texels_), gpu::Usage::transfer_destination)
+        .execute([this](gpu::PassContext& context) -> Status {
+            context.device.vk.vkCmdFillBuffer(context.commands, texels_.handle(), 0, VK_WHOLE_SIZE,
+                                              0x3c003c00u); // ones: every cell is rough
+            return {};
+        });
+}
+
 Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter,
                               gpu::FrameResources& resources) {
-    const gpu::ResourceId texels = graph.import_buffer(texels_);
     points_.add_pass(graph);
     curved_rows_.add_pass(graph);
     if (wipe_)
-        graph.add_pass("baked light")
-            .write(texels, gpu::Usage::transfer_destination)
-            .execute([this](gpu::PassContext& context) -> Status {
-                context.device.vk.vkCmdFillBuffer(context.commands, texels_.handle(), 0, VK_WHOLE_SIZE,
-                                                  0x3c003c00u); // ones: every cell is rough
-                return {};
-            });
+        add_wipe(graph);
     if (jobs_.empty())
         return {};
     gpu::ComputeDescription description;
     description.shader = "gi_module/many_light/baked_light.comp";
-    description.bindings = {gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer,
-                            gpu::BindingKind::storage_buffer, gpu::BindingKind::texel_buffer,
-                            gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer};
-    description.push_constant_bytes = sizeof(shared::LightMapConstants);
     description.specialization = {filter, maps.bits()};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const bake, pipelines_.compute(description));
     description.shader = "gi_module/many_light/baked_light_cells.comp";
-    description.bindings.assign(4, gpu::BindingKind::storage_buffer);
     description.specialization = {};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const finish, pipelines_.compute(description));
 
@@ -237,43 +238,27 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     SUNFLECK_ASSIGN(const gpu::UploadSlice finish_jobs, resources.upload(finish_.jobs()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
-    const gpu::ResourceId sums = graph.import_buffer(sums_);
-    const auto dispatch = [](gpu::PassContext& context, const gpu::Pipeline& kernel,
-                             shared::LightMapConstants constants) {
-        constants.row_length = std::min(constants.jobs, 32768u);
-        context.resources.push(context.commands, kernel, constants);
-        context.device.vk.vkCmdDispatch(context.commands, constants.row_length,
-                                        (constants.jobs + constants.row_length - 1) / constants.row_length, 1);
-    };
     shared::LightMapConstants constants{};
     constants.fixed_point = fixed_point_;
     constants.map_resolution = maps.resolution();
     constants.roughness_limit = roughness_limit;
-    constants.jobs = std::uint32_t(jobs_.jobs().size());
-    graph.add_pass("baked light")
-        .read(graph.import_buffer(maps.static_texels()), gpu::Usage::texel_read)
-        .read(graph.import_buffer(points_.buffer()), gpu::Usage::storage_read)
-        .write(sums, gpu::Usage::storage_read_write)
-        .execute([this, bake, jobs, changes, rows, constants, dispatch, &maps](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::slice(jobs),   gpu::Binding::slice(changes),
-                                             gpu::Binding::slice(rows),   gpu::Binding::texels(maps.static_texels()),
-                                             gpu::Binding::buffer(sums_), gpu::Binding::buffer(points_.buffer())};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *bake, bindings));
-            dispatch(context, *bake, constants);
-            return {};
-        });
-    constants.jobs = std::uint32_t(finish_.jobs().size());
-    graph.add_pass("baked light")
-        .read(sums, gpu::Usage::storage_read)
-        .read(graph.import_buffer(points_.buffer()), gpu::Usage::storage_read)
-        .write(texels, gpu::Usage::storage_write)
-        .execute([this, finish, finish_jobs, constants, dispatch](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::slice(finish_jobs), gpu::Binding::buffer(sums_),
-                                             gpu::Binding::buffer(texels_), gpu::Binding::buffer(points_.buffer())};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *finish, bindings));
-            dispatch(context, *finish, constants);
-            return {};
-        });
+    const auto dispatch = [&](gpu::ComputePass& pass, std::size_t count) {
+        constants.jobs = std::uint32_t(count);
+        constants.row_length = std::min(constants.jobs, 32768u);
+        pass.push(constants).dispatch(constants.row_length,
+                                      (constants.jobs + constants.row_length - 1) / constants.row_length);
+    };
+    gpu::ComputePass bake_pass(graph, "baked light", *bake);
+    bake_pass.storage_read(jobs)
+        .storage_read(changes)
+        .storage_read(rows)
+        .texels(maps.static_texels())
+        .storage_read_write(sums_)
+        .storage_read(points_.buffer());
+    dispatch(bake_pass, jobs_.jobs().size());
+    gpu::ComputePass finish_pass(graph, "baked light cells", *finish);
+    finish_pass.storage_read(finish_jobs).storage_read(sums_).storage_write(texels_).storage_read(points_.buffer());
+    dispatch(finish_pass, finish_.jobs().size());
     return {};
 }
 

@@ -70,13 +70,14 @@ private:
     Status upload_charts(std::uint64_t first_texel, const CurvedCharts& curved, gpu::FrameResources& resources);
     bool follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
                           std::span<const std::uint32_t> changed);
+    void add_wipe(gpu::FrameGraph& graph);
     void bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples, std::uint64_t most);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     gpu::Buffer sums_;   // fixed point, as in light maps
     gpu::Buffer texels_; // what is shown
-    UploadedBuffer points_, curved_rows_;
+    gpu::UploadedBuffer points_, curved_rows_;
     std::vector<Piece> pieces_;
     bool in_use_ = false;
     bool wipe_ = false; // all texels become rough in this frame

@@ -1,5 +1,7 @@
 #include "gi_module/many_light/light_maps.h"
 
+#include "engine/gpu/compute_pass.h"
+
 #include <algorithm>
 
 namespace sunfleck::gi {
@@ -24,8 +26,6 @@ Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::P
     std::unique_ptr<LightMaps> maps(new LightMaps(device));
     gpu::ComputeDescription description;
     description.shader = "gi_module/many_light/light_maps.comp";
-    description.bindings.assign(4, gpu::BindingKind::storage_buffer);
-    description.push_constant_bytes = sizeof(shared::LightMapConstants);
     SUNFLECK_ASSIGN(maps->kernel_, pipelines.compute(description));
     SUNFLECK_ASSIGN(maps->texels_, gpu::Buffer::create(device, {"light maps", 16, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                                                 gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
@@ -142,19 +142,14 @@ Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resour
     SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(jobs_.jobs()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
-    graph.add_pass("light maps")
-        .write(graph.import_buffer(texels_), gpu::Usage::storage_read_write)
-        .execute([this, jobs, changes, rows,
-                  count = std::uint32_t(jobs_.jobs().size())](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::slice(jobs), gpu::Binding::slice(changes),
-                                             gpu::Binding::slice(rows), gpu::Binding::buffer(texels_)};
-            const std::uint32_t row_length = std::min(count, 32768u);
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel_, bindings));
-            context.resources.push(context.commands, *kernel_,
-                                   shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f});
-            context.device.vk.vkCmdDispatch(context.commands, row_length, (count + row_length - 1) / row_length, 1);
-            return {};
-        });
+    const std::uint32_t count = std::uint32_t(jobs_.jobs().size()), row_length = std::min(count, 32768u);
+    gpu::ComputePass(graph, "light maps", *kernel_)
+        .storage_read(jobs)
+        .storage_read(changes)
+        .storage_read(rows)
+        .storage_read_write(texels_)
+        .push(shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f})
+        .dispatch(row_length, (count + row_length - 1) / row_length);
     return {};
 }
 

@@ -100,13 +100,9 @@ Status ManyLight::make_buffers(const shared::ManyLightConstants& constants, gpu:
     return {};
 }
 
-Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
-                             const ShadowMaps& maps, std::span<const LightBatch> batches,
-                             std::span<const std::uint32_t> map_ages, const ManyLightOptions& wanted,
-                             gpu::FrameResources& resources, gpu::ResourceId output) {
-    ManyLightOptions options = wanted;
-    if (options.show >= shared::show_visibility)
-        options.scale = 1; // these are shown for every pixel
+shared::ManyLightConstants ManyLight::make_constants(const GBufferInput& g_buffer, const ShadowMaps& maps,
+                                                     std::span<const LightBatch> batches,
+                                                     const ManyLightOptions& options) const {
     shared::ManyLightConstants constants{};
     constants.width = g_buffer.width;
     constants.height = g_buffer.height;
@@ -137,6 +133,17 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     constants.group_capacity = std::uint32_t(
         std::clamp<std::uint64_t>(std::max(whole / least_repair_share, std::min(whole, small_picture_groups)), 64,
                                   repair_list_bytes / (std::uint64_t(constants.list_stride) * 4)));
+    return constants;
+}
+
+Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
+                             const ShadowMaps& maps, std::span<const LightBatch> batches,
+                             std::span<const std::uint32_t> map_ages, const ManyLightOptions& wanted,
+                             gpu::FrameResources& resources, gpu::ResourceId output) {
+    ManyLightOptions options = wanted;
+    if (options.show >= shared::show_visibility)
+        options.scale = 1; // these are shown for every pixel
+    const shared::ManyLightConstants constants = make_constants(g_buffer, maps, batches, options);
     SUNFLECK_TRY(make_buffers(constants, resources));
     tables_.add_passes(graph);
     if (options.light_maps && options.visibility)
@@ -147,25 +154,7 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     if (baked_light_->in_use())
         SUNFLECK_TRY(baked_light_->add_passes(graph, maps, options.filter, resources));
 
-    Frame frame{graph,
-                g_buffer,
-                camera,
-                maps,
-                options,
-                output,
-                constants,
-                graph.import_buffer(pixels_),
-                graph.import_buffer(nodes_),
-                graph.import_buffer(slots_),
-                graph.import_buffer(sums_),
-                graph.import_buffer(entries_),
-                graph.import_buffer(counts_),
-                graph.import_buffer(cell_masks_),
-                graph.import_buffer(block_groups_),
-                graph.import_buffer(commands_),
-                graph.import_buffer(rough_entries_),
-                graph.import_buffer(rough_commands_),
-                baked};
+    Frame frame{graph, g_buffer, camera, maps, options, output, constants, baked};
     const bool reconstructs = options.scale > 1;
     // A CPU device stores to buffers much faster than to images.
     frame.through_buffer = reconstructs && device_.traits().software && !graph.owned_by_host(output) &&
@@ -196,41 +185,13 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const GBufferInput& g_buffe
     return {};
 }
 
-// Copies what the compaction counted to where the CPU can read it, frames later.
-Status ManyLight::add_counters(const Frame& frame) {
-    auto free = std::find_if(readbacks_.begin(), readbacks_.end(),
-                             [&](const Readback& readback) { return readback.serial <= completed_serial_; });
-    if (free == readbacks_.end()) {
-        Readback fresh;
-        SUNFLECK_ASSIGN(fresh.words, gpu::Buffer::create(device_, {"repair counters", shared::command_words * 4,
-                                                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                                                   gpu::MemoryUse::readback, VK_FORMAT_UNDEFINED}));
-        readbacks_.push_back(std::move(fresh));
-        free = readbacks_.end() - 1;
-    }
-    free->serial = serial_;
-    free->low_resolution = std::uint64_t(frame.constants.low_width) * frame.constants.low_height;
-    const gpu::ResourceId target = frame.graph.import_buffer(free->words);
-    frame.graph.add_pass("repair counters")
-        .read(frame.commands, gpu::Usage::transfer_source)
-        .write(target, gpu::Usage::transfer_destination)
-        .execute([this, &words = free->words](gpu::PassContext& context) -> Status {
-            const VkBufferCopy region{0, 0, shared::command_words * 4};
-            context.device.vk.vkCmdCopyBuffer(context.commands, commands_.handle(), words.handle(), 1, &region);
-            return {};
-        });
-    frame.graph.add_pass("repair counters").read(target, gpu::Usage::host_read).keep();
-    return {};
-}
-
 void ManyLight::collect(std::uint64_t completed_serial) {
-    for (const Readback& readback : readbacks_) {
-        if (readback.serial == 0 || readback.serial > completed_serial || readback.serial <= counters_.serial)
-            continue;
-        const auto* words = reinterpret_cast<const std::uint32_t*>(readback.words.mapped());
-        const std::uint64_t wanted = words[shared::command_totals], lit = words[shared::command_totals + 1];
-        counters_ = {readback.low_resolution, lit, wanted - lit, readback.serial};
-    }
+    const gpu::ReadbackRing::Slot* const slot = readback_.collect(completed_serial);
+    if (slot == nullptr)
+        return;
+    const auto words = gpu::ReadbackRing::content<std::uint32_t>(*slot);
+    const std::uint64_t wanted = words[shared::command_totals], lit = words[shared::command_totals + 1];
+    counters_ = {slot->tag, lit, wanted - lit, slot->serial};
 }
 
 std::uint64_t ManyLight::memory_bytes() const {

@@ -6,15 +6,14 @@
 // its own two lists; see pass_optimisation.h for the passes that the thesis's renderer would need.
 #pragma once
 
+#include "engine/gpu/compute_pass.h"
+#include "engine/gpu/readback_ring.h"
 #include "gi_module/many_light/baked_light.h"
 #include "gi_module/many_light/light_maps.h"
 #include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/transport/g_buffer.h"
 #include "gi_module/transport/light_batch.h"
-
-#include <deque>
-#include <map>
 
 namespace sunfleck::gi {
 
@@ -72,12 +71,18 @@ private:
         baked = shared::phase_baked
     };
 
-    ManyLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    ManyLight(gpu::Device& device, gpu::PipelineStore& pipelines)
+        : device_(device), pipelines_(pipelines),
+          readback_(device, "repair counters", VK_BUFFER_USAGE_TRANSFER_DST_BIT) {}
+    shared::ManyLightConstants make_constants(const GBufferInput& g_buffer, const ShadowMaps& maps,
+                                              std::span<const LightBatch> batches,
+                                              const ManyLightOptions& options) const;
     Status make_buffers(const shared::ManyLightConstants& constants, gpu::FrameResources& resources);
     Status make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
                        gpu::FrameResources& resources, VkFormat texel_format = VK_FORMAT_UNDEFINED);
-    Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<gpu::BindingKind> bindings,
-                                          std::vector<std::uint32_t> specialization);
+    Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<std::uint32_t> specialization);
+    // What a pass is called in timings and captures.
+    static std::string pass_name(const char* low_resolution, const char* repair, Stage stage, Phase phase);
     Status add_gather(const Frame& frame, Stage stage);
     Status add_lighting(Frame& frame, Stage stage, std::span<const LightBatch> batches);
     Status add_rough_list(Frame& frame, Stage stage);
@@ -88,8 +93,7 @@ private:
     Status add_compaction(const Frame& frame);
     Status add_counters(const Frame& frame);
     Status add_show(const Frame& frame, std::span<const std::uint32_t> map_ages, gpu::FrameResources& resources);
-    void dispatch(gpu::PassContext& context, Stage stage, Phase phase, std::uint32_t command,
-                  std::uint32_t groups) const;
+    void dispatch(gpu::ComputePass& pass, Stage stage, Phase phase, std::uint32_t command, std::uint32_t groups) const;
     void collect(std::uint64_t completed_serial);
 
     gpu::Device& device_;
@@ -102,15 +106,9 @@ private:
     std::uint32_t words_per_row_ = 0, state_words_ = 0, flag_words_ = 0, first_mover_ = 0, mover_count_ = 0;
     gpu::UploadSlice movers_; // spheres
     VkSampler sampler_ = VK_NULL_HANDLE;
-    std::map<std::pair<std::string, std::vector<std::uint32_t>>, const gpu::Pipeline*> kernels_;
     gpu::Buffer pixels_, nodes_, slots_, sums_, entries_, counts_, cell_masks_, block_groups_, commands_,
         rough_entries_, rough_commands_, picture_, unused_texels_;
-    struct Readback {
-        gpu::Buffer words;
-        std::uint64_t serial = 0;
-        std::uint64_t low_resolution = 0;
-    };
-    std::deque<Readback> readbacks_; // a deque: passes hold on to its elements
+    gpu::ReadbackRing readback_; // tag: pixels of the low-resolution picture
     std::uint64_t serial_ = 0, completed_serial_ = 0;
     ManyLightCounters counters_;
 };

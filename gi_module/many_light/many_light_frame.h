@@ -13,8 +13,6 @@ struct ManyLight::Frame {
     const ManyLightOptions& options;
     gpu::ResourceId output;
     shared::ManyLightConstants constants;
-    gpu::ResourceId pixels, nodes, slots, sums, entries, counts, cell_masks, block_groups, commands, rough_entries,
-        rough_commands;
     bool baked = false;          // baked light is used
     bool through_buffer = false; // the reconstructed picture is written to a buffer, and copied
 

@@ -1,34 +1,37 @@
 // The passes of the many-light system, in the order of the frame.
 #include "gi_module/many_light/many_light_frame.h"
 
+#include "engine/gpu/compute_pass.h"
 #include "gi_module/shadows/octahedral_map.h"
 
 namespace sunfleck::gi {
 
-using enum gpu::BindingKind;
-
-Result<const gpu::Pipeline*> ManyLight::pipeline(const char* shader, std::vector<gpu::BindingKind> bindings,
-                                                 std::vector<std::uint32_t> specialization) {
-    const auto key = std::pair(std::string(shader), specialization);
-    if (const auto found = kernels_.find(key); found != kernels_.end())
-        return found->second;
+Result<const gpu::Pipeline*> ManyLight::pipeline(const char* shader, std::vector<std::uint32_t> specialization) {
     gpu::ComputeDescription description;
     description.shader = std::string("gi_module/many_light/") + shader;
-    description.bindings = std::move(bindings);
-    description.push_constant_bytes = sizeof(shared::ManyLightConstants);
     description.specialization = std::move(specialization);
-    SUNFLECK_ASSIGN(const gpu::Pipeline* made, pipelines_.compute(description));
-    kernels_[key] = made;
-    return made;
+    return pipelines_.compute(description);
 }
 
-void ManyLight::dispatch(gpu::PassContext& context, Stage stage, Phase phase, std::uint32_t command,
+namespace {
+
+// What compact.comp does, by its first specialisation constant.
+constexpr const char* compaction_steps[] = {"count", "offsets", "list"};
+
+} // namespace
+
+std::string ManyLight::pass_name(const char* low_resolution, const char* repair, Stage stage, Phase phase) {
+    const char* const suffix = phase == Phase::rough ? " (rough)" : phase == Phase::baked ? " (baked)" : "";
+    return std::string(stage == Stage::repair ? repair : low_resolution) + suffix;
+}
+
+// How many groups there are is counted on the GPU for all but the low-resolution picture as a whole.
+void ManyLight::dispatch(gpu::ComputePass& pass, Stage stage, Phase phase, std::uint32_t command,
                          std::uint32_t groups) const {
-    const gpu::Buffer& counted = phase == Phase::rough ? rough_commands_ : commands_;
     if (stage == Stage::repair || phase == Phase::rough)
-        context.device.vk.vkCmdDispatchIndirect(context.commands, counted.handle(), VkDeviceSize(command) * 4);
+        pass.dispatch_indirect(phase == Phase::rough ? rough_commands_ : commands_, VkDeviceSize(command) * 4);
     else
-        context.device.vk.vkCmdDispatch(context.commands, groups, 1, 1);
+        pass.dispatch(groups);
 }
 
 // What the pixels of a stage's groups get from all samples.
@@ -60,48 +63,25 @@ Status ManyLight::add_lighting(Frame& frame, Stage stage, std::span<const LightB
 
 Status ManyLight::add_gather(const Frame& frame, Stage stage) {
     const bool maps = frame.options.light_maps && frame.options.visibility;
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
-                    pipeline("gather.comp",
-                             {uniform_buffer, sampled_image, sampled_image, sampled_image, texel_buffer, texel_buffer,
-                              texel_buffer, texel_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, texel_buffer, texel_buffer},
-                             {stage == Stage::repair, maps, frame.baked}));
-    const gpu::Buffer& curved_rows = frame.baked ? baked_light_->curved_rows() : unused_texels_;
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution pixels");
-    if (stage == Stage::repair)
-        pass.read(frame.commands, gpu::Usage::indirect_read);
-    pass.read(frame.g_buffer.depth, gpu::Usage::sampled)
-        .read(frame.g_buffer.normals, gpu::Usage::sampled)
-        .read(frame.g_buffer.surface, gpu::Usage::sampled);
-    for (const gpu::Buffer* table : {&tables_.instances(), &tables_.charts(), &tables_.cells(), &tables_.nodes(),
-                                     &baked_light_->texels(), &curved_rows})
-        pass.read(frame.graph.import_buffer(*table), gpu::Usage::texel_read);
-    pass.read(frame.graph.import_buffer(light_maps_->texels()), gpu::Usage::storage_read)
-        .write(frame.pixels, gpu::Usage::storage_read_write)
-        .write(frame.nodes, gpu::Usage::storage_write)
-        .write(frame.sums, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, &curved_rows, camera = frame.camera, g_buffer = frame.g_buffer,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::slice(camera),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_),
-                gpu::Binding::texels(tables_.instances()),
-                gpu::Binding::texels(tables_.charts()),
-                gpu::Binding::texels(tables_.cells()),
-                gpu::Binding::texels(tables_.nodes()),
-                gpu::Binding::buffer(pixels_),
-                gpu::Binding::buffer(nodes_),
-                gpu::Binding::buffer(sums_),
-                gpu::Binding::buffer(light_maps_->texels()),
-                gpu::Binding::texels(baked_light_->texels()),
-                gpu::Binding::texels(curved_rows)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            dispatch(context, stage, Phase::plain, shared::command_groups, constants.group_count);
-            return {};
-        });
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("gather.comp", {stage == Stage::repair, maps, frame.baked}));
+    gpu::ComputePass pass(frame.graph, pass_name("low-resolution pixels", "repair pixels", stage, Phase::plain),
+                          *kernel);
+    pass.uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .sampled(frame.g_buffer.normals, sampler_)
+        .sampled(frame.g_buffer.surface, sampler_)
+        .texels(tables_.instances())
+        .texels(tables_.charts())
+        .texels(tables_.cells())
+        .texels(tables_.nodes())
+        .storage_read_write(pixels_)
+        .storage_write(nodes_)
+        .storage_write(sums_)
+        .storage_read(light_maps_->texels())
+        .texels(baked_light_->texels())
+        .texels(frame.baked ? baked_light_->curved_rows() : unused_texels_)
+        .push(frame.constants);
+    dispatch(pass, stage, Phase::plain, shared::command_groups, frame.constants.group_count);
     return {};
 }
 
@@ -111,27 +91,19 @@ Status ManyLight::add_rough_list(Frame& frame, Stage stage) {
     frame.constants.entry_blocks =
         divide_up(repair ? frame.constants.group_capacity : frame.constants.group_count, shared::groups_per_block);
     for (std::uint32_t action = 0; action < 3; ++action) {
-        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("compact.comp", std::vector(7, storage_buffer),
-                                                              {action, frame.options.scale, 1u, repair}));
-        frame.graph.add_pass(repair ? "repair" : "tiles")
-            .read(frame.commands, gpu::Usage::storage_read)
-            .read(frame.pixels, gpu::Usage::storage_read)
-            .read(frame.nodes, gpu::Usage::storage_read)
-            .write(frame.block_groups, gpu::Usage::storage_read_write)
-            .write(frame.rough_commands, gpu::Usage::storage_read_write)
-            .write(frame.rough_entries, gpu::Usage::storage_read_write)
-            .execute([this, kernel, action, constants = frame.constants](gpu::PassContext& context) -> Status {
-                const gpu::Binding bindings[] = {
-                    gpu::Binding::buffer(cell_masks_),     gpu::Binding::buffer(block_groups_),
-                    gpu::Binding::buffer(rough_commands_), gpu::Binding::buffer(rough_entries_),
-                    gpu::Binding::buffer(pixels_),         gpu::Binding::buffer(nodes_),
-                    gpu::Binding::buffer(commands_)};
-                SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-                context.resources.push(context.commands, *kernel, constants);
-                context.device.vk.vkCmdDispatch(context.commands,
-                                                action == 1 ? 1 : divide_up(constants.entry_blocks, 8), 1, 1);
-                return {};
-            });
+        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
+                        pipeline("compact.comp", {action, frame.options.scale, 1u, repair}));
+        const std::string name = repair ? "repair rough pixels " : "rough pixels ";
+        gpu::ComputePass(frame.graph, name + compaction_steps[action], *kernel)
+            .unused(cell_masks_)
+            .storage_read_write(block_groups_)
+            .storage_read_write(rough_commands_)
+            .storage_read_write(rough_entries_)
+            .storage_read(pixels_)
+            .storage_read(nodes_)
+            .storage_read(commands_)
+            .push(frame.constants)
+            .dispatch(action == 1 ? 1 : divide_up(frame.constants.entry_blocks, 8));
     }
     return {};
 }
@@ -139,87 +111,46 @@ Status ManyLight::add_rough_list(Frame& frame, Stage stage) {
 Status ManyLight::add_classify(const Frame& frame, Stage stage, Phase phase, const LightBatch& batch, bool first) {
     const bool rough = phase == Phase::rough;
     const bool counted = stage == Stage::repair || rough;
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
-                    pipeline("classify.comp",
-                             {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              uniform_buffer, sampled_image, sampled_image, uniform_buffer},
-                             {counted, frame.is_held(batch), frame.options.visibility,
-                              rough ? shared::phase_rough : shared::phase_plain, first, batch.light_class}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");
-    const gpu::ResourceId commands = rough ? frame.rough_commands : frame.commands;
-    if (counted)
-        pass.read(commands, gpu::Usage::indirect_read);
-    for (const gpu::ResourceId list : {commands, frame.pixels, frame.nodes, frame.rough_entries})
-        pass.read(list, gpu::Usage::storage_read);
-    pass.read(frame.g_buffer.depth, gpu::Usage::sampled)
-        .read(frame.g_buffer.normals, gpu::Usage::sampled)
-        .read(frame.graph.import_buffer(tables_.nodes()), gpu::Usage::storage_read)
-        .read(frame.graph.import_buffer(tables_.rows()), gpu::Usage::storage_read)
-        .write(frame.slots, gpu::Usage::storage_write)
-        .write(frame.entries, gpu::Usage::storage_write)
-        .write(frame.counts, gpu::Usage::storage_write)
-        .write(frame.sums, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, phase, batch, camera = frame.camera, g_buffer = frame.g_buffer,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::buffer(pixels_),
-                gpu::Binding::buffer(nodes_),
-                gpu::Binding::buffer(tables_.nodes()),
-                gpu::Binding::buffer(tables_.rows()),
-                gpu::Binding::buffer(slots_),
-                gpu::Binding::buffer(entries_),
-                gpu::Binding::buffer(counts_),
-                gpu::Binding::buffer(phase == Phase::rough ? rough_commands_ : commands_),
-                gpu::Binding::buffer(sums_),
-                gpu::Binding::buffer(rough_entries_),
-                gpu::Binding::slice(camera),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                gpu::Binding::slice(batch.rows)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            dispatch(context, stage, phase, shared::command_packed, divide_up(constants.group_count, 8));
-            return {};
-        });
+    SUNFLECK_ASSIGN(
+        const gpu::Pipeline* kernel,
+        pipeline("classify.comp", {counted, frame.is_held(batch), frame.options.visibility,
+                                   rough ? shared::phase_rough : shared::phase_plain, first, batch.light_class}));
+    gpu::ComputePass pass(frame.graph, pass_name("tile lists", "repair lists", stage, phase), *kernel);
+    pass.storage_read(pixels_)
+        .storage_read(nodes_)
+        .storage_read(tables_.nodes())
+        .storage_read(tables_.rows())
+        .storage_write(slots_)
+        .storage_write(entries_)
+        .storage_write(counts_)
+        .storage_read(rough ? rough_commands_ : commands_)
+        .storage_write(sums_)
+        .storage_read(rough_entries_)
+        .uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .sampled(frame.g_buffer.normals, sampler_)
+        .uniform(batch.rows)
+        .push(frame.constants);
+    dispatch(pass, stage, phase, shared::command_packed, divide_up(frame.constants.group_count, 8));
     return {};
 }
 
 Status ManyLight::add_classify_baked(const Frame& frame, Stage stage, const LightBatch& batch) {
-    SUNFLECK_ASSIGN(
-        const gpu::Pipeline* kernel,
-        pipeline("classify_baked.comp",
-                 {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                  storage_buffer, uniform_buffer, sampled_image, uniform_buffer, storage_buffer},
-                 {stage == Stage::repair}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "tiles");
-    if (stage == Stage::repair)
-        pass.read(frame.commands, gpu::Usage::indirect_read);
-    for (const gpu::ResourceId list : {frame.commands, frame.pixels, frame.nodes})
-        pass.read(list, gpu::Usage::storage_read);
-    pass.read(frame.graph.import_buffer(tables_.rows()), gpu::Usage::storage_read)
-        .read(frame.g_buffer.depth, gpu::Usage::sampled)
-        .write(frame.slots, gpu::Usage::storage_read_write)
-        .write(frame.entries, gpu::Usage::storage_write)
-        .write(frame.counts, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, batch, camera = frame.camera, g_buffer = frame.g_buffer,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::buffer(pixels_),
-                                             gpu::Binding::buffer(nodes_),
-                                             gpu::Binding::buffer(tables_.rows()),
-                                             gpu::Binding::buffer(slots_),
-                                             gpu::Binding::buffer(entries_),
-                                             gpu::Binding::buffer(counts_),
-                                             gpu::Binding::buffer(commands_),
-                                             gpu::Binding::slice(camera),
-                                             gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                                             gpu::Binding::slice(batch.rows),
-                                             gpu::Binding::slice(movers_)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            dispatch(context, stage, Phase::baked, shared::command_packed, divide_up(constants.group_count, 8));
-            return {};
-        });
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("classify_baked.comp", {stage == Stage::repair}));
+    gpu::ComputePass pass(frame.graph, pass_name("tile lists", "repair lists", stage, Phase::baked), *kernel);
+    pass.storage_read(pixels_)
+        .storage_read(nodes_)
+        .storage_read(tables_.rows())
+        .storage_read_write(slots_)
+        .storage_write(entries_)
+        .storage_write(counts_)
+        .storage_read(commands_)
+        .uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .uniform(batch.rows)
+        .storage_read(movers_)
+        .push(frame.constants);
+    dispatch(pass, stage, Phase::baked, shared::command_packed, divide_up(frame.constants.group_count, 8));
     return {};
 }
 
@@ -228,83 +159,46 @@ Status ManyLight::add_light(const Frame& frame, Stage stage, Phase phase, const 
     const std::uint32_t lanes = device_.traits().software ? 8 : 64;
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
                     pipeline("light.comp",
-                             {uniform_buffer, sampled_image, sampled_image, uniform_buffer, texel_buffer,
-                              storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_image, texel_buffer, storage_buffer},
                              {shared::group_pixels / lanes, batch.light_class,
                               frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
                               filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes,
                               frame.options.stale_maps, std::uint32_t(phase), frame.options.simplified_movers}));
-    auto pass = frame.graph.add_pass(stage == Stage::repair ? "repair" : "low-resolution light");
-    if (stage == Stage::repair || phase == Phase::rough)
-        pass.read(phase == Phase::rough ? frame.rough_commands : frame.commands, gpu::Usage::indirect_read);
-    if (phase == Phase::baked)
-        pass.read(frame.graph.import_buffer(frame.maps.static_texels()), gpu::Usage::texel_read);
-    if (frame.maps.texels())
-        pass.read(frame.graph.import_buffer(frame.maps.texels()), gpu::Usage::texel_read);
-    pass.read(frame.g_buffer.depth, gpu::Usage::sampled).read(frame.g_buffer.normals, gpu::Usage::sampled);
-    for (const gpu::ResourceId list : {frame.pixels, frame.slots, frame.entries, frame.counts, frame.rough_entries})
-        pass.read(list, gpu::Usage::storage_read);
-    pass.write(frame.sums, gpu::Usage::storage_read_write)
-        .write(frame.output, gpu::Usage::storage_write)
-        .execute([this, kernel, stage, phase, batch, camera = frame.camera, g_buffer = frame.g_buffer,
-                  output = frame.output, &maps = frame.maps,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::slice(camera),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                gpu::Binding::slice(batch.rows),
-                gpu::Binding::texels(maps.texels() ? maps.texels() : unused_texels_),
-                gpu::Binding::buffer(pixels_),
-                gpu::Binding::buffer(slots_),
-                gpu::Binding::buffer(entries_),
-                gpu::Binding::buffer(counts_),
-                gpu::Binding::buffer(sums_),
-                gpu::Binding::storage_image(context.graph.view(output)),
-                gpu::Binding::texels(phase == Phase::baked ? maps.static_texels() : unused_texels_),
-                gpu::Binding::buffer(rough_entries_)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            dispatch(context, stage, phase, shared::command_groups, constants.group_count);
-            return {};
-        });
+    gpu::ComputePass pass(frame.graph, pass_name("low-resolution light", "repair light", stage, phase), *kernel);
+    pass.uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .sampled(frame.g_buffer.normals, sampler_)
+        .uniform(batch.rows)
+        .texels(frame.maps.texels() ? frame.maps.texels() : unused_texels_)
+        .storage_read(pixels_)
+        .storage_read(slots_)
+        .storage_read(entries_)
+        .storage_read(counts_)
+        .storage_read_write(sums_)
+        .storage_write(frame.output)
+        .texels(phase == Phase::baked ? frame.maps.static_texels() : unused_texels_)
+        .storage_read(rough_entries_)
+        .push(frame.constants);
+    dispatch(pass, stage, phase, shared::command_groups, frame.constants.group_count);
     return {};
 }
 
 Status ManyLight::add_reconstruction(const Frame& frame) {
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("reconstruct.comp",
-                                                          {uniform_buffer, sampled_image, sampled_image, texel_buffer,
-                                                           storage_image, storage_buffer, storage_buffer},
-                                                          {frame.options.scale, frame.through_buffer}));
-    const gpu::ResourceId picture = frame.graph.import_buffer(picture_);
-    frame.graph.add_pass("reconstruction")
-        .read(frame.g_buffer.depth, gpu::Usage::sampled)
-        .read(frame.g_buffer.normals, gpu::Usage::sampled)
-        .read(frame.sums, gpu::Usage::texel_read)
-        .write(frame.output, gpu::Usage::storage_write)
-        .write(picture, gpu::Usage::storage_write)
-        .write(frame.cell_masks, gpu::Usage::storage_write)
-        .execute([this, kernel, camera = frame.camera, g_buffer = frame.g_buffer, output = frame.output,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {
-                gpu::Binding::slice(camera),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
-                gpu::Binding::sampled_image(context.graph.view(g_buffer.normals), sampler_),
-                gpu::Binding::texels(sums_),
-                gpu::Binding::storage_image(context.graph.view(output)),
-                gpu::Binding::buffer(cell_masks_),
-                gpu::Binding::buffer(picture_)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            context.device.vk.vkCmdDispatch(context.commands, divide_up(constants.cell_columns, 8),
-                                            divide_up(constants.cell_rows, 8), 1);
-            return {};
-        });
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
+                    pipeline("reconstruct.comp", {frame.options.scale, frame.through_buffer}));
+    gpu::ComputePass(frame.graph, "reconstruction", *kernel)
+        .uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .sampled(frame.g_buffer.normals, sampler_)
+        .texels(sums_)
+        .storage_write(frame.output)
+        .storage_write(cell_masks_)
+        .storage_write(picture_)
+        .push(frame.constants)
+        .dispatch(divide_up(frame.constants.cell_columns, 8), divide_up(frame.constants.cell_rows, 8));
     if (!frame.through_buffer)
         return {};
-    frame.graph.add_pass("reconstruction")
-        .read(picture, gpu::Usage::transfer_source)
+    frame.graph.add_pass("reconstruction copy")
+        .read(frame.graph.import_buffer(picture_), gpu::Usage::transfer_source)
         .write(frame.output, gpu::Usage::transfer_destination)
         .execute([this, output = frame.output, constants = frame.constants](gpu::PassContext& context) -> Status {
             VkBufferImageCopy region{};
@@ -319,57 +213,52 @@ Status ManyLight::add_reconstruction(const Frame& frame) {
 
 Status ManyLight::add_compaction(const Frame& frame) {
     for (std::uint32_t action = 0; action < 3; ++action) {
-        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("compact.comp", std::vector(7, storage_buffer),
-                                                              {action, frame.options.scale, 0u, 0u}));
-        frame.graph.add_pass("compaction")
-            .read(frame.cell_masks, gpu::Usage::storage_read)
-            .write(frame.block_groups, gpu::Usage::storage_read_write)
-            .write(frame.commands, gpu::Usage::storage_read_write)
-            .write(frame.pixels, gpu::Usage::storage_read_write)
-            .execute([this, kernel, action, constants = frame.constants](gpu::PassContext& context) -> Status {
-                const gpu::Binding bindings[] = {
-                    gpu::Binding::buffer(cell_masks_),    gpu::Binding::buffer(block_groups_),
-                    gpu::Binding::buffer(commands_),      gpu::Binding::buffer(pixels_),
-                    gpu::Binding::buffer(slots_),         gpu::Binding::buffer(nodes_),
-                    gpu::Binding::buffer(rough_commands_)};
-                SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-                context.resources.push(context.commands, *kernel, constants);
-                context.device.vk.vkCmdDispatch(context.commands, action == 1 ? 1 : divide_up(constants.block_count, 8),
-                                                1, 1);
-                return {};
-            });
+        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("compact.comp", {action, frame.options.scale, 0u, 0u}));
+        gpu::ComputePass(frame.graph, std::string("compaction ") + compaction_steps[action], *kernel)
+            .storage_read(cell_masks_)
+            .storage_read_write(block_groups_)
+            .storage_read_write(commands_)
+            .storage_read_write(pixels_)
+            .unused(slots_)
+            .unused(nodes_)
+            .unused(rough_commands_)
+            .push(frame.constants)
+            .dispatch(action == 1 ? 1 : divide_up(frame.constants.block_count, 8));
     }
     return {};
 }
 
 Status ManyLight::add_show(const Frame& frame, std::span<const std::uint32_t> map_ages,
                            gpu::FrameResources& resources) {
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
-                    pipeline("show.comp",
-                             {storage_buffer, storage_buffer, storage_buffer, storage_buffer, storage_buffer,
-                              storage_buffer, storage_image},
-                             {frame.options.show}));
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("show.comp", {frame.options.show}));
     SUNFLECK_ASSIGN(const gpu::UploadSlice ages, resources.upload(map_ages));
-    auto pass = frame.graph.add_pass("false colours");
-    for (const gpu::ResourceId id : {frame.nodes, frame.counts, frame.sums, frame.cell_masks})
-        pass.read(id, gpu::Usage::storage_read);
-    pass.read(frame.graph.import_buffer(tables_.rows()), gpu::Usage::storage_read)
-        .write(frame.output, gpu::Usage::storage_write)
-        .execute([this, kernel, ages, output = frame.output,
-                  constants = frame.constants](gpu::PassContext& context) -> Status {
-            const gpu::Binding bindings[] = {gpu::Binding::buffer(nodes_),
-                                             gpu::Binding::buffer(tables_.rows()),
-                                             gpu::Binding::buffer(counts_),
-                                             gpu::Binding::buffer(sums_),
-                                             gpu::Binding::buffer(cell_masks_),
-                                             gpu::Binding::slice(ages),
-                                             gpu::Binding::storage_image(context.graph.view(output))};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
-            context.resources.push(context.commands, *kernel, constants);
-            context.device.vk.vkCmdDispatch(context.commands, divide_up(constants.width, 8),
-                                            divide_up(constants.height, 8), 1);
+    gpu::ComputePass(frame.graph, "false colours", *kernel)
+        .storage_read(nodes_)
+        .storage_read(tables_.rows())
+        .storage_read(counts_)
+        .storage_read(sums_)
+        .storage_read(cell_masks_)
+        .storage_read(ages)
+        .storage_write(frame.output)
+        .push(frame.constants)
+        .dispatch(divide_up(frame.constants.width, 8), divide_up(frame.constants.height, 8));
+    return {};
+}
+
+// Copies what the compaction counted to where the CPU can read it, frames later.
+Status ManyLight::add_counters(const Frame& frame) {
+    SUNFLECK_ASSIGN(gpu::ReadbackRing::Slot* const slot,
+                    readback_.acquire(completed_serial_, shared::command_words * 4));
+    slot->tag = std::uint64_t(frame.constants.low_width) * frame.constants.low_height;
+    frame.graph.add_pass("repair counters")
+        .read(frame.graph.import_buffer(commands_), gpu::Usage::transfer_source)
+        .write(frame.graph.import_buffer(slot->buffer), gpu::Usage::transfer_destination)
+        .execute([this, slot](gpu::PassContext& context) -> Status {
+            const VkBufferCopy region{0, 0, slot->bytes};
+            context.device.vk.vkCmdCopyBuffer(context.commands, commands_.handle(), slot->buffer.handle(), 1, &region);
             return {};
         });
+    readback_.add_pass(frame.graph, *slot, serial_);
     return {};
 }
 

@@ -4,46 +4,6 @@
 
 namespace sunfleck::gi {
 
-Result<bool> UploadedBuffer::reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name,
-                                     std::uint64_t bytes, VkFormat texel_format) {
-    if (buffer_ && buffer_.size() >= bytes)
-        return false;
-    if (buffer_)
-        resources.retire(std::move(buffer_));
-    pieces_.clear();
-    const std::uint64_t roomy = buffer_ ? bytes + bytes / 2 : bytes;
-    SUNFLECK_ASSIGN(buffer_,
-                    gpu::Buffer::create(device, {name, roomy,
-                                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                                     VkBufferUsageFlags(texel_format != VK_FORMAT_UNDEFINED
-                                                                            ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
-                                                                            : 0),
-                                                 gpu::MemoryUse::device, texel_format}));
-    return true;
-}
-
-Status UploadedBuffer::write(gpu::FrameResources& resources, std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (bytes.empty())
-        return {};
-    SUNFLECK_ASSIGN(const gpu::UploadSlice source, resources.upload(bytes));
-    pieces_.push_back({source, {source.offset, offset, bytes.size()}});
-    return {};
-}
-
-void UploadedBuffer::add_pass(gpu::FrameGraph& graph) {
-    if (pieces_.empty())
-        return;
-    graph.add_pass("visibility upload")
-        .write(graph.import_buffer(buffer_), gpu::Usage::transfer_destination)
-        .execute([this, pieces = std::move(pieces_)](gpu::PassContext& context) -> Status {
-            for (const Piece& piece : pieces)
-                context.device.vk.vkCmdCopyBuffer(context.commands, piece.source.buffer, buffer_.handle(), 1,
-                                                  &piece.region);
-            return {};
-        });
-    pieces_.clear();
-}
-
 Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, const CurvedCharts& curved,
                              const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows,
                              bool node_rows_changed, gpu::FrameResources& resources) {
@@ -113,7 +73,7 @@ Status SurfaceTables::upload_rows(VisibilityDatabase& database, bool all, gpu::F
 }
 
 void SurfaceTables::add_passes(gpu::FrameGraph& graph) {
-    for (UploadedBuffer* table : {&instances_, &charts_, &cells_, &nodes_, &rows_})
+    for (gpu::UploadedBuffer* table : {&instances_, &charts_, &cells_, &nodes_, &rows_})
         table->add_pass(graph);
 }
 

@@ -2,35 +2,13 @@
 // on the GPU; only what changed is copied.
 #pragma once
 
-#include "engine/gpu/frame_graph.h"
+#include "engine/gpu/uploaded_buffer.h"
 #include "engine/scene/gpu_scene.h"
 #include "gi_module/many_light/curved_charts.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
-
-// A device buffer that is written from the CPU now and then, through upload memory.
-class UploadedBuffer {
-public:
-    // Makes room for `bytes`; content is lost when it grows (returns true then).
-    // `texel_format`: it is a texel buffer, too.
-    Result<bool> reserve(gpu::Device& device, gpu::FrameResources& resources, const char* name, std::uint64_t bytes,
-                         VkFormat texel_format = VK_FORMAT_UNDEFINED);
-    // Queues a piece to be copied by the next add_pass.
-    Status write(gpu::FrameResources& resources, std::uint64_t offset, std::span<const std::byte> bytes);
-    // Adds the copies, if there are any.
-    void add_pass(gpu::FrameGraph& graph);
-    const gpu::Buffer& buffer() const { return buffer_; }
-
-private:
-    struct Piece {
-        gpu::UploadSlice source;
-        VkBufferCopy region;
-    };
-    gpu::Buffer buffer_;
-    std::vector<Piece> pieces_;
-};
 
 class SurfaceTables {
 public:
@@ -55,7 +33,7 @@ private:
     Status upload_instances(gpu::Device& device, std::vector<shared::SurfaceInstance> rows,
                             gpu::FrameResources& resources);
 
-    UploadedBuffer instances_, charts_, cells_, nodes_, rows_;
+    gpu::UploadedBuffer instances_, charts_, cells_, nodes_, rows_;
     std::vector<shared::SurfaceInstance> instance_rows_; // uploaded
     std::uint64_t generation_ = 0;
 };

@@ -51,7 +51,6 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     std::unique_ptr<ShadowMaps> maps(new ShadowMaps(device));
     gpu::GraphicsDescription description;
     description.vertex_shader = "gi_module/shadows/shadow_map.vert";
-    description.push_constant_bytes = sizeof(shared::ShadowConstants);
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     for (const std::size_t offset : {offsetof(shared::ShadowJob, x), offsetof(shared::ShadowJob, y),
                                      offsetof(shared::ShadowJob, w), offsetof(shared::ShadowJob, z)})
@@ -70,8 +69,6 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     }
     description.vertex_shader = "gi_module/shadows/shadow_map_holes.vert";
     description.fragment_shader = "gi_module/shadows/shadow_map_holes.frag";
-    description.bindings = {gpu::BindingKind::storage_buffer, gpu::BindingKind::storage_buffer,
-                            gpu::BindingKind::sampled_image};
     description.attributes.push_back({jobs_buffer + 1, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({jobs_buffer + 2, VK_FORMAT_R8G8B8A8_UNORM, 4});
     description.cull = VK_CULL_MODE_NONE;
@@ -342,7 +339,9 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
                 continue;
             const gpu::Pipeline& pipeline = bits_ == 16 ? *pipelines16_[culled] : *pipelines32_[culled];
             status = context.resources.bind(context.commands, pipeline, {});
-            context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
+            if (status)
+                status = context.resources.push(context.commands, pipeline,
+                                                shared::ShadowConstants{0.5f / float(resolution_)});
             const VkDeviceSize first = culled ? plain * sizeof(VkDrawIndexedIndirectCommand) : 0;
             if (status)
                 vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset + first,
@@ -365,10 +364,11 @@ Status ShadowMaps::draw_holes(gpu::PassContext& context, const scene::GpuScene& 
     const VkDeviceSize offsets[2] = {};
     vk.vkCmdBindVertexBuffers(context.commands, jobs_buffer + 1, 2, buffers, offsets);
     for (std::uint32_t i = 0; i < chunk.hole_textures.size(); ++i) {
-        const gpu::Binding bindings[] = {gpu::Binding::slice(scene.rows()), gpu::Binding::slice(scene.materials()),
+        const gpu::Binding bindings[] = {gpu::Binding::storage(scene.rows()), gpu::Binding::storage(scene.materials()),
                                          scene.textures().binding(chunk.hole_textures[i])};
         SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings));
-        context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)});
+        SUNFLECK_TRY(
+            context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)}));
         vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer,
                                     chunk.commands.offset +
                                         (chunk.command_count + i) * sizeof(VkDrawIndexedIndirectCommand),

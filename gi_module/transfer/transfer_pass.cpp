@@ -42,12 +42,9 @@ Result<std::unique_ptr<TransferPass>> TransferPass::create(gpu::Device& device, 
     std::unique_ptr<TransferPass> pass(new TransferPass(device));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass->sampler_), "creating a sampler");
-    using enum gpu::BindingKind;
     gpu::GraphicsDescription drawing;
     drawing.vertex_shader = "gi_module/transfer/transfer.vert";
     drawing.fragment_shader = "gi_module/transfer/transfer.frag";
-    drawing.bindings = {uniform_buffer, storage_buffer, storage_buffer, sampled_image, sampled_image};
-    drawing.push_constant_bytes = sizeof(shared::TransferConstants);
     drawing.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     drawing.colour_formats = {drawn_format};
     SUNFLECK_ASSIGN(pass->draw_, pipelines.graphics(drawing));
@@ -91,15 +88,16 @@ Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scen
     vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
     Status status;
     for (const TransferDraw& draw : draws) {
-        const gpu::Binding bindings[] = {gpu::Binding::slice(camera), gpu::Binding::slice(scene.rows()),
-                                         gpu::Binding::slice(draw.irradiance),
+        const gpu::Binding bindings[] = {gpu::Binding::uniform(camera), gpu::Binding::storage(scene.rows()),
+                                         gpu::Binding::storage(draw.irradiance),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_)};
         status = context.resources.bind(context.commands, *draw_, bindings);
+        if (status)
+            status = context.resources.push(context.commands, *draw_,
+                                            shared::TransferConstants{draw.item.row, draw.item.vertex_offset});
         if (!status)
             break;
-        context.resources.push(context.commands, *draw_,
-                               shared::TransferConstants{draw.item.row, draw.item.vertex_offset});
         vk.vkCmdDrawIndexed(context.commands, draw.item.index_count, 1, draw.item.first_index, draw.item.vertex_offset,
                             0);
     }
