@@ -24,15 +24,6 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-constexpr std::uint32_t all_receivers = shared::receiver_fixed | shared::receiver_mover;
-
-// Kinds of receivers that a technique lights.
-std::uint32_t receivers_of(CellSet cells) {
-    const CellSet on_mover = cells_where([](LightCell cell) { return cell.on_mover; });
-    return ((cells & ~on_mover).any() ? shared::receiver_fixed : 0u) |
-           ((cells & on_mover).any() ? shared::receiver_mover : 0u);
-}
-
 } // namespace
 
 std::vector<gpu::EmbeddedShader> shaders() {
@@ -50,7 +41,7 @@ std::vector<gpu::EmbeddedShader> shaders() {
 Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<System> system(new System(device));
     SUNFLECK_ASSIGN(system->shadows_, ShadowService::create(device, pipelines));
-    SUNFLECK_ASSIGN(system->light_sum_, LightSum::create(device, pipelines));
+    SUNFLECK_ASSIGN(system->composer_, LightComposer::create(device, pipelines));
     for (const TechniqueEntry& entry : techniques()) {
         SUNFLECK_ASSIGN(std::unique_ptr<Technique> technique, entry.create(device, pipelines));
         system->techniques_.push_back(std::move(technique));
@@ -122,7 +113,6 @@ Status System::find_view() {
         for (const DebugView& view : techniques()[i].views)
             if (view.name == input_.view) {
                 view_ = &view;
-                view_owner_ = i;
                 if (plan_.uses(std::int32_t(i)))
                     return {};
                 return Error{"view '" + std::string(view.name) + "' belongs to " + std::string(techniques()[i].name) +
@@ -182,42 +172,13 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
     const StageTimer timer(cpu_times_, "light lists");
     if (!shadows_->slots_are_shared(samples_.size()))
         SUNFLECK_TRY(shadows_->add_passes(graph, gpu_scene, samples_, resources_));
-    SUNFLECK_TRY(add_light(graph, {gpu_scene, g_buffer, camera, output}));
+    Services shared = services();
+    LightTarget target{gpu_scene, g_buffer, camera, output};
+    target.view = view_;
+    SUNFLECK_TRY(composer_->add_passes(graph, techniques_, plan_, shared, target));
     graph.when_executed([this] { recorded_ = true; });
     make_report();
     return {};
-}
-
-// The first technique writes the picture; the light of the others is added.
-Status System::add_light(gpu::FrameGraph& graph, LightTarget target) {
-    const gpu::ResourceId picture = target.irradiance;
-    Services shared = services();
-    bool empty = true;
-    for (std::size_t i = 0; i < techniques_.size(); ++i) {
-        const CellSet cells = plan_.lit_by(std::int32_t(i));
-        if (cells.none() || (view_ != nullptr && i != view_owner_))
-            continue;
-        const TechniqueEntry& entry = techniques()[i];
-        const std::uint32_t receivers = receivers_of(cells);
-        target.view = view_;
-        target.area = {0, 0, target.g_buffer.width, target.g_buffer.height};
-        if (empty && entry.supports == nullptr && (view_ != nullptr || receivers == all_receivers)) {
-            target.irradiance = picture;
-            SUNFLECK_TRY(techniques_[i]->add_passes(graph, shared, target));
-            empty = false;
-            continue;
-        }
-        if (empty)
-            SUNFLECK_TRY(light_sum_->clear(graph, target.g_buffer, picture, resources_));
-        empty = false;
-        target.irradiance = graph.create_image("light of " + std::string(entry.name), VK_FORMAT_R16G16B16A16_SFLOAT,
-                                               target.g_buffer.width, target.g_buffer.height);
-        SUNFLECK_TRY(techniques_[i]->add_passes(graph, shared, target));
-        SUNFLECK_TRY(light_sum_->add(graph, target.gpu_scene, target.g_buffer,
-                                     {target.irradiance, target.area, entry.supports != nullptr, receivers}, picture,
-                                     resources_));
-    }
-    return empty ? light_sum_->clear(graph, target.g_buffer, picture, resources_) : Status();
 }
 
 void System::make_report() {
@@ -226,6 +187,7 @@ void System::make_report() {
     shadows_->report(report_);
     if (wants_visibility())
         visibility_.report(report_);
+    composer_->report(report_);
     for (std::size_t i = 0; i < techniques_.size(); ++i)
         if (plan_.uses(std::int32_t(i)))
             techniques_[i]->report(report_);

@@ -16,8 +16,7 @@
 // reused when `completed_serial` has reached it. Several systems may light one registry.
 #pragma once
 
-#include "gi_module/light_sum/light_sum.h"
-#include "gi_module/technique.h"
+#include "gi_module/light_composer.h"
 #include "gi_module/visibility/scene_visibility.h"
 
 namespace sunfleck::gi {
@@ -75,7 +74,6 @@ private:
     Status update_visibility(const SceneView& scene, bool static_changed);
     Status update_techniques(const SceneView& scene);
     Status find_view();
-    Status add_light(gpu::FrameGraph& graph, LightTarget target);
     void make_report();
 
     gpu::FrameResources resources_;
@@ -84,11 +82,10 @@ private:
     SampleSet samples_;
     std::unique_ptr<ShadowService> shadows_;
     SceneVisibility visibility_;
-    std::unique_ptr<LightSum> light_sum_;
+    std::unique_ptr<LightComposer> composer_;
     std::vector<std::unique_ptr<Technique>> techniques_; // as techniques() lists them
     FrameInput input_;
     const DebugView* view_ = nullptr;
-    std::size_t view_owner_ = 0;
     std::uint64_t geometry_generation_ = 0;
     bool recorded_ = true; // the passes of the last update
     bool restart_ = false;

@@ -13,6 +13,10 @@ std::vector<TechniqueEntry>& all_techniques() {
 
 } // namespace
 
+Status Technique::light_pixels(const PixelStage&, Services&) {
+    return Error{"this technique lights no pixels"};
+}
+
 std::span<const TechniqueEntry> techniques() {
     return all_techniques();
 }
@@ -30,6 +34,7 @@ std::vector<const Counter*> all_counters() {
     add(SampleSet::counters());
     add(ShadowService::counters());
     add(SceneVisibility::counters());
+    add(LowResolution::counters());
     for (const TechniqueEntry& technique : techniques())
         add(technique.counters);
     return result;

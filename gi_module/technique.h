@@ -9,6 +9,7 @@
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/shader_library.h"
 #include "gi_module/light_sum/light_sum.h"
+#include "gi_module/low_resolution/low_resolution.h"
 #include "gi_module/settings.h"
 #include "gi_module/shadows/shadow_service.h"
 #include "gi_module/transport/g_buffer.h"
@@ -78,6 +79,8 @@ struct LightTarget {
     // light in a part only), with the light that it owns.
     gpu::ResourceId irradiance;
     PixelArea area{};
+    // Of a technique that lights pixels: its memory for a group of them (LowResolutionFrame).
+    std::uint64_t bytes_per_group = 4;
     // False colours instead, if they are one of the technique's views; else null.
     const DebugView* view = nullptr;
 };
@@ -87,8 +90,11 @@ public:
     virtual ~Technique() = default;
     // Follows the scene on the CPU. `cells`: the light that is the technique's in this frame; at least one.
     virtual Status update(const SceneView& scene, Services& services, CellSet cells) = 0;
-    // Declares the frame's GPU work. Once after each update.
+    // Declares the frame's GPU work. Once after each update. A technique that lights pixels does here what comes before
+    // that, and leaves the target alone.
     virtual Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) = 0;
+    // TechniqueEntry::lights_pixels: adds its light to the sums of a stage's pixels; for each stage, after add_passes.
+    virtual Status light_pixels(const PixelStage& stage, Services& services);
     // Counters and memory of the last frame; for what the GPU counts, of the newest one that is complete.
     virtual void report(Report& report) const = 0;
 };
@@ -102,6 +108,8 @@ struct TechniqueEntry {
     bool (*supports)(const scene::DrawItem& mover, const ecs::Registry& registry,
                      const scene::MeshStore& meshes) = nullptr;
     bool wants_visibility = false;
+    // It evaluates light pixel by pixel, at low resolution (low_resolution/): light_pixels is called.
+    bool lights_pixels = false;
     TechniqueSettings settings;
     std::span<const Counter> counters{};
     std::span<const DebugView> views{};

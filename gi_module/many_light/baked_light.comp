@@ -5,7 +5,7 @@
 // group for each job, several texels an invocation, so that they share each sample's loads. Contributions are rounded one
 // by one, as in light_maps.comp.
 #include "engine/core/octahedral.h"
-#include "gi_module/many_light/curved_charts_shared.h"
+#include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/transport/light_row_shared.h"

@@ -46,6 +46,8 @@ Result<std::unique_ptr<BakedLight>> BakedLight::create(gpu::Device& device, gpu:
 void BakedLight::forget() {
     in_use_ = false;
     generation_ = 0;
+    points_.forget_pieces();
+    curved_rows_.forget_pieces();
     jobs_.clear();
     finish_.clear();
     waiting_.clear();

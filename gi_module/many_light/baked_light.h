@@ -13,7 +13,7 @@
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
-#include "gi_module/many_light/curved_charts.h"
+#include "gi_module/charts/curved_charts.h"
 #include "gi_module/many_light/light_map_jobs.h"
 #include "gi_module/many_light/light_maps.h"
 #include "gi_module/many_light/surface_tables.h"

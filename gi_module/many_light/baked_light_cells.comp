@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Baked light as pixels read it, and which cells between four texels are rough.
-#include "gi_module/many_light/curved_charts_shared.h"
+#include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 
 layout(local_size_x = 64) in;

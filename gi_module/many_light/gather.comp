@@ -5,7 +5,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
-#include "gi_module/many_light/curved_charts_shared.h"
+#include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 

@@ -32,6 +32,8 @@ public:
     // old light is subtracted and the new one added.
     Status update(const VisibilityDatabase& database, std::span<const LightSample> samples,
                   std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
+    // All is summed again by the next update.
+    void restart() { generation_ = 0; }
     // Adds the passes that bring the maps up to date; nothing if they are.
     Status add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources);
 

@@ -1,4 +1,4 @@
-// What the passes of one frame of the many-light system share.
+// What the passes of one stage of the many-light system share.
 #pragma once
 
 #include "gi_module/many_light/many_light.h"
@@ -6,20 +6,21 @@
 namespace sunfleck::gi {
 
 struct ManyLight::Frame {
-    gpu::FrameGraph& graph;
-    const GBufferInput& g_buffer;
-    const gpu::UploadSlice& camera;
-    const ShadowMaps& maps;
+    const PixelStage& stage;
     const ManyLightOptions& options;
-    gpu::ResourceId output;
+    const ShadowMaps& maps;
     shared::ManyLightConstants constants;
-    bool baked = false;          // baked light is used
-    bool through_buffer = false; // the reconstructed picture is written to a buffer, and copied
+    bool baked = false; // baked light is used
 
     // Light maps, and baked light, hold surface samples that stay.
     bool is_held(const LightBatch& batch) const {
         return options.light_maps && options.visibility && batch.light_class == shared::light_class_surface &&
                !batch.dynamic;
+    }
+    // What a pass is called in timings and captures.
+    std::string pass_name(const char* low_resolution, const char* repair, Phase phase = Phase::plain) const {
+        const char* const suffix = phase == Phase::rough ? " (rough)" : phase == Phase::baked ? " (baked)" : "";
+        return std::string(stage.repair ? repair : low_resolution) + suffix;
     }
 };
 

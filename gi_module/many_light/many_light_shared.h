@@ -6,14 +6,10 @@
 #ifndef SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #define SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #include "engine/core/shader_language.h"
+#include "gi_module/low_resolution/low_resolution_shared.h"
+#include "gi_module/transport/flat_shading_shared.h"
 #include "gi_module/transport/light_row_shared.h"
 SHARED_BEGIN
-
-SHARED_CONSTANT uint group_pixels = 64u;
-SHARED_CONSTANT uint group_side = 8u; // of a tile, in pixels of the low-resolution picture
-// An entry's pixel: x in the low 16 bits, y from bit 16. The top bit: nothing to light there (background, or no pixel).
-SHARED_CONSTANT uint no_pixel = 0xffffffffu;
-SHARED_CONSTANT uint unlit_pixel = 0x80000000u;
 
 // Nodes of a group have slots 0 to 9. Slot 10 is for pixels of any further node, or of none: every sample is tested.
 SHARED_CONSTANT uint group_slots = 11u;
@@ -23,10 +19,6 @@ SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for 
 SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
 SHARED_CONSTANT uint node_bent = 0x40000000u;  // shaded by another normal than its light map knows, which is not used
 SHARED_CONSTANT uint node_mask = 0x3fffffffu;
-
-// Squared distance of the unit normals of a surface and its shading, up to which they count as one: 0.06 degrees, some
-// steps of 16 bits.
-SHARED_CONSTANT float flat_shaded_limit = 1e-6f;
 
 // A list entry: sample (of the batch) in bits 0 to 8; then two bits for each slot, so that what lights a pixel does not
 // depend on its company. From bit 20: whether the slot's pixels ask the shadow map. From bit 9: for those that ask,
@@ -59,30 +51,25 @@ SHARED_CONSTANT uint phase_rough = 1u; // a list of entries without baked light
 SHARED_CONSTANT uint phase_baked = 2u; // pixels with baked light, in the stage's groups
 
 struct ManyLightConstants {
-    uint width; // of the full picture
+    uint width; // to cell_columns: as in LowResolutionConstants
     uint height;
     uint low_width;
     uint low_height;
-    uint scale;          // full pixels a low-resolution pixel, in each direction
-    uint group_columns;  // of the low-resolution picture
-    uint group_capacity; // groups that the buffers hold
-    uint list_stride;    // entries that a group may have
-    uint batch_first;    // sample
+    uint scale;
+    uint group_columns;
+    uint group_count;
+    uint group_capacity;
+    uint cell_columns;
+    uint list_stride; // entries that a group may have
+    uint batch_first; // sample
     uint batch_count;
-    uint words_per_row;
-    uint map_resolution;
-    uint cell_columns; // cells between low-resolution pixels
-    uint cell_rows;
-    uint block_columns; // blocks of 8x8 cells
-    uint block_count;
-    float contrast;     // neighbours that differ by more, relative to the brighter, are not blended
-    float normal_limit; // squared distance of octahedral normals within which neighbours are blended
-    float fixed_point;  // steps of a light map a W/m2
-    uint node_count;
-    uint group_count; // of the low-resolution picture
-    uint first_mover; // nodes from here on are movers
-    uint state_words; // of a row of the visibility database, see VisibilityDatabase::rows
+    uint words_per_row; // of the visibility database, see VisibilityDatabase::rows
+    uint state_words;
     uint flag_words;
+    uint map_resolution;
+    float fixed_point; // steps of a light map a W/m2
+    uint node_count;
+    uint first_mover;  // nodes from here on are movers
     uint entry_blocks; // blocks of groups, for the list of rough entries
     uint mover_count;
 };
@@ -99,16 +86,10 @@ SHARED_CONSTANT uint show_light_maps = 5u; // W/m2
 // Green: from baked light, with blue where movers change that; red: lit by all samples; with brightness by the light.
 SHARED_CONSTANT uint show_baked = 6u;
 
-// Places of the indirect commands that the compaction writes, in uints.
-SHARED_CONSTANT uint command_groups = 0u; // a work group for each group
-SHARED_CONSTANT uint command_packed = 4u; // a work group for eight groups
-SHARED_CONSTANT uint command_totals = 8u; // pixels wanted, pixels lit again, groups
-SHARED_CONSTANT uint command_words = 12u;
-
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
-static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 104);
+static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 84);
 static_assert(sunfleck::shared::lights_per_batch <= sunfleck::shared::entry_sample_mask + 1);
 static_assert(sunfleck::shared::entry_slots_shift + sunfleck::shared::group_slots <=
               sunfleck::shared::entry_asks_shift);

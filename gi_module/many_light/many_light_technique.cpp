@@ -20,11 +20,6 @@ constexpr Counter baked_updates{"baked_light_updates", "contributions", "light m
                                 "Contributions of single samples to baked light in this frame"};
 constexpr Counter baked_waiting{"baked_light_waiting", "patches", "light maps",
                                 "Patches and charts whose light is not baked yet"};
-constexpr Counter low_pixels{"pixels_low_resolution", "pixels", "pixels", "Pixels lit at low resolution", true};
-constexpr Counter repaired{"pixels_repaired", "pixels", "pixels", "Pixels lit again at full resolution", true};
-constexpr Counter not_repaired{"pixels_not_repaired", "pixels", "pixels",
-                               "Pixels that wanted it, but took their nearest neighbour's light: the lists were full",
-                               true};
 constexpr Counter render_passes{"render_passes", "passes", "render passes",
                                 "Render passes that a renderer with a few lights a pass would need, merged"};
 constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "render passes",
@@ -32,9 +27,8 @@ constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "re
 constexpr Counter pass_fill{"pass_fill", "", "render passes",
                             "Pairs of object and light drawn in those passes, over those needed"};
 constexpr Counter memory{"many_light", "B", memory_group, "Lists, sums, light maps, baked light and tables on the GPU"};
-constexpr Counter technique_counters[] = {map_updates,         map_texels, baked_updates, baked_waiting,
-                                          low_pixels,          repaired,   not_repaired,  render_passes,
-                                          render_passes_alone, pass_fill,  memory};
+constexpr Counter technique_counters[] = {map_updates,   map_texels,          baked_updates, baked_waiting,
+                                          render_passes, render_passes_alone, pass_fill,     memory};
 
 constexpr DebugView technique_views[] = {
     {"tiles", "Length of each tile's lists of light samples",
@@ -43,12 +37,12 @@ constexpr DebugView technique_views[] = {
      shared::show_repaired},
     {"visibility", "What the visibility database knows of each surface patch",
      "red: samples that are partly blocked, green: free, blue: fully blocked", "", "many-light",
-     shared::show_visibility},
+     shared::show_visibility, true},
     {"staleness", "Age of the shadow maps that a surface needs", "blue: up to date, red: eight frames old", "frames",
-     "many-light", shared::show_staleness},
-    {"light_maps", "Unshadowed light in light maps", "irradiance", "W/m2", "many-light", shared::show_light_maps},
+     "many-light", shared::show_staleness, true},
+    {"light_maps", "Unshadowed light in light maps", "irradiance", "W/m2", "many-light", shared::show_light_maps, true},
     {"baked", "Where light is baked", "green: baked, with blue where movers change it; red: lit by all samples", "",
-     "many-light", shared::show_baked}};
+     "many-light", shared::show_baked, true}};
 
 } // namespace
 
@@ -60,6 +54,7 @@ const TechniqueEntry& many_light_technique() {
             "The many-light system: light samples with shadow maps, tested only where something may be in the way",
         .can_light = all_diffuse_cells(),
         .wants_visibility = true,
+        .lights_pixels = true,
         .settings = settings_of<ManyLightSettings>(),
         .counters = technique_counters,
         .views = technique_views,
@@ -97,6 +92,8 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
     const Settings& settings = services.settings;
     const ManyLightSettings& own = settings.of<ManyLightSettings>();
     const SampleSet& samples = services.samples;
+    if (services.restart)
+        lighting_->restart();
     cells_ = cells;
     options_ = {};
     options_.shadows = settings.shadows;
@@ -104,9 +101,6 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
     options_.visibility = own.visibility;
     options_.light_maps = own.light_maps && own.visibility;
     options_.baked_light = own.baked_light;
-    options_.scale = settings.low_resolution;
-    options_.contrast = settings.repair_contrast;
-    options_.normal_degrees = settings.repair_angle;
     find_static_maps(services, options_);
     VisibilityDatabase& database = *services.visibility;
     if (own.baked_light && curved_generation_ != database.generation()) {
@@ -114,9 +108,9 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
                              light_map_texel(samples.geometry_bound()), max_curved_points);
         curved_generation_ = database.generation();
     }
-    SUNFLECK_TRY(lighting_->update(database, curved_charts_, scene.gpu_scene, samples.samples(),
-                                   owned_rows(samples, cells, owned_rows_), options_, services.input.serial,
-                                   services.input.completed_serial, services.resources));
+    SUNFLECK_TRY(lighting_->update(
+        {database, curved_charts_, scene.gpu_scene, samples.samples(), owned_rows(samples, cells, owned_rows_)},
+        options_, services.resources));
     if (own.count_passes && services.input.view_projection)
         passes_.count(database, *services.input.view_projection, own);
     else
@@ -134,8 +128,14 @@ Status ManyLightTechnique::add_passes(gpu::FrameGraph& graph, Services& services
     options_.show = target.view != nullptr ? target.view->code : shared::show_nothing;
     options_.simplified_movers = services.settings.map_detail;
     options_.stale_maps = services.settings.shadows && services.shadows.stale() > 0;
-    return lighting_->add_passes(graph, target.g_buffer, target.camera, services.shadows.maps(), batches,
-                                 services.shadows.ages(), options_, services.resources, target.irradiance);
+    SUNFLECK_TRY(lighting_->add_passes(graph, {services.shadows.maps(), batches, services.shadows.ages()}, options_,
+                                       services.resources));
+    target.bytes_per_group = lighting_->bytes_per_group();
+    return {};
+}
+
+Status ManyLightTechnique::light_pixels(const PixelStage& stage, Services& services) {
+    return lighting_->light(stage, services.resources);
 }
 
 void ManyLightTechnique::report(Report& report) const {
@@ -144,9 +144,6 @@ void ManyLightTechnique::report(Report& report) const {
     report.set(map_texels, double(lighting_->light_maps().counters().texels));
     report.set(baked_updates, double(lighting_->baked_light().counters().updates));
     report.set(baked_waiting, double(lighting_->baked_light().counters().waiting));
-    report.set(low_pixels, double(lighting_->counters().pixels_low_resolution));
-    report.set(repaired, double(lighting_->counters().pixels_repaired));
-    report.set(not_repaired, double(lighting_->counters().pixels_not_repaired));
     report.set(memory, double(lighting_->memory_bytes()));
     const PassGrouping* passes = passes_.passes();
     report.set(pass_fill, passes != nullptr ? passes->fill() : 1.0);

@@ -1,7 +1,7 @@
 // The many-light system as a technique of gi::System: `light_samples`.
 #pragma once
 
-#include "gi_module/many_light/curved_charts.h"
+#include "gi_module/charts/curved_charts.h"
 #include "gi_module/many_light/many_light.h"
 #include "gi_module/many_light/many_light_settings.h"
 #include "gi_module/many_light/pass_counter.h"
@@ -15,6 +15,7 @@ public:
 
     Status update(const SceneView& scene, Services& services, CellSet cells) override;
     Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) override;
+    Status light_pixels(const PixelStage& stage, Services& services) override;
     void report(Report& report) const override;
 
     const ManyLight& lighting() const { return *lighting_; }

@@ -72,6 +72,13 @@ Status SurfaceTables::upload_rows(VisibilityDatabase& database, bool all, gpu::F
     return {};
 }
 
+void SurfaceTables::restart() {
+    for (gpu::UploadedBuffer* table : {&instances_, &charts_, &cells_, &nodes_, &rows_})
+        table->forget_pieces();
+    generation_ = 0;
+    instance_rows_.clear();
+}
+
 void SurfaceTables::add_passes(gpu::FrameGraph& graph) {
     for (gpu::UploadedBuffer* table : {&instances_, &charts_, &cells_, &nodes_, &rows_})
         table->add_pass(graph);

@@ -4,7 +4,7 @@
 
 #include "engine/gpu/uploaded_buffer.h"
 #include "engine/scene/gpu_scene.h"
-#include "gi_module/many_light/curved_charts.h"
+#include "gi_module/charts/curved_charts.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -18,6 +18,8 @@ public:
                   const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
                   gpu::FrameResources& resources);
     void add_passes(gpu::FrameGraph& graph);
+    // The next update uploads everything.
+    void restart();
 
     // Storage buffers, and texel buffers of uints.
     const gpu::Buffer& instances() const { return instances_.buffer(); } // SurfaceInstance by instance row

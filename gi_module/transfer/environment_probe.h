@@ -4,7 +4,7 @@
 
 #include "engine/raytrace/ray_scene.h"
 #include "engine/scene/gpu_scene.h"
-#include "gi_module/transfer/spherical_harmonics.h"
+#include "gi_module/harmonics/spherical_harmonics.h"
 #include "gi_module/transport/light_row.h"
 #include "gi_module/visibility/visibility_database.h"
 

@@ -4,7 +4,7 @@
 
 #include "engine/core/result.h"
 #include "engine/scene/mesh_store.h"
-#include "gi_module/transfer/spherical_harmonics.h"
+#include "gi_module/harmonics/spherical_harmonics.h"
 
 #include <filesystem>
 #include <functional>

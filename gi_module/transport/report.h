@@ -27,7 +27,8 @@ struct DebugView {
     std::string_view legend; // what the colours mean
     std::string_view unit;   // of what is shown; "" where colours stand for kinds
     std::string_view group;
-    std::uint32_t code = 0; // the owner's own
+    std::uint32_t code = 0;   // the owner's own
+    bool every_pixel = false; // shown at full resolution, whatever light is evaluated at
 };
 
 // The numbers of one frame. Counters that nobody set read 0.

@@ -2,7 +2,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/scene/components.h"
 #include "engine/scene/procedural.h"
-#include "gi_module/many_light/curved_charts.h"
+#include "gi_module/charts/curved_charts.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
-#include "gi_module/many_light/curved_charts.h"
+#include "gi_module/charts/curved_charts.h"
 
 #include "engine/core/octahedral.h"
-#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/transport/flat_shading_shared.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,7 @@
 
 #include "engine/ecs/registry.h"
 #include "engine/scene/mesh_store.h"
-#include "gi_module/many_light/curved_charts_shared.h"
+#include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/visibility/surface_patches.h"
 
 #include <span>

@@ -1,4 +1,4 @@
-#include "gi_module/transfer/spherical_harmonics.h"
+#include "gi_module/harmonics/spherical_harmonics.h"
 
 #include <cmath>
 

@@ -6,7 +6,8 @@
 // or those that do differ too much, it is marked to be lit again.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
-#include "gi_module/many_light/many_light_shared.h"
+#include "gi_module/low_resolution/low_resolution_shared.h"
+#include "gi_module/transport/flat_shading_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int scale = 4;
@@ -23,7 +24,7 @@ layout(set = 0, binding = 3) uniform samplerBuffer sums; // as texels: a CPU dev
 layout(set = 0, binding = 4) writeonly uniform image2D output_image;
 layout(set = 0, binding = 5) writeonly buffer CellMasks { uvec2 cell_masks[]; };
 layout(set = 0, binding = 6) writeonly buffer Picture { uint picture_halves[]; };
-layout(push_constant) uniform Constants { ManyLightConstants constants; };
+layout(push_constant) uniform Constants { LowResolutionConstants constants; };
 
 // On a plane, depth (near / distance along the view) is linear in the picture: a neighbour's plane is three numbers.
 struct Neighbour {
