@@ -231,7 +231,9 @@ Result<BenchTable> bench_reference(const BenchOptions& options) {
     return table;
 }
 
-Status run(const BenchOptions& options) {
+} // namespace
+
+Status bench(const BenchOptions& options) {
     std::vector<PlotSeries> plot;
     const auto start = [&]() -> Result<BenchTable> {
         if (options.suite == "kernel")
@@ -266,38 +268,6 @@ Status run(const BenchOptions& options) {
                      "light samples", thesis ? "ms a frame" : "RMSE of irradiance, W/m2", plot)));
     }
     return {};
-}
-
-} // namespace
-
-Command make_bench_command(CLI::App& program) {
-    auto options = std::make_shared<BenchOptions>();
-    CLI::App* app = program.add_subcommand("bench", "Runs a named experiment and prints its table");
-    app->footer("Example: sunfleck bench kernel --repeat 9 --csv kernel.csv\n"
-                "kernel       ns per light and pixel of every kernel shape, shadowed and not\n"
-                "brute_force  frame and pass times for 64, 300 and 1,024 samples at 640x360 and 1024x768\n"
-                "shadow_maps  microseconds per map and per thousand vertices\n"
-                "convergence  error against the path tracer over the number of samples (--plot)\n"
-                "reference    rays per second of the path tracer\n"
-                "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
-                "             (--part movers runs one of its experiments)");
-    app->add_option("SUITE", options->suite, "Name of the experiment")
-        ->required()
-        ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"}));
-    app->add_flag("--json", options->as_json, "Print one JSON object");
-    app->add_option("--csv", options->csv, "Write the rows as CSV");
-    app->add_option("--plot", options->plot, "Write a plot as SVG");
-    app->add_option("--repeat", options->repeat, "Measurements of each row")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    app->add_option("--scene", options->scene, "Scene, where the suite takes one");
-    app->add_option("--part", options->part, "One experiment of the thesis")->check(CLI::IsMember(thesis_parts()));
-    app->add_option("--device", options->device, "Vulkan device by number or part of its name");
-    return {app, [options] {
-                watch_interrupts();
-                const Status status = run(*options);
-                return status ? 0 : fail(status.error());
-            }};
 }
 
 } // namespace sunfleck::command_line

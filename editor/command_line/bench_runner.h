@@ -1,16 +1,10 @@
-// What experiments share: options, and a scene that renders frame after frame under given settings.
+// What experiments share: a scene that renders frame after frame under given settings.
 #pragma once
 
 #include "editor/command_line/bench_table.h"
+#include "editor/command_line/commands.h"
 
 namespace sunfleck::command_line {
-
-struct BenchOptions {
-    std::string suite, csv, plot, device, scene;
-    std::string part; // of the thesis; empty: all
-    bool as_json = false;
-    std::uint32_t repeat = 5;
-};
 
 // A scene loaded and ready to render frame after frame.
 struct Bench {
@@ -64,8 +58,6 @@ struct Bench {
 };
 
 // The experiments of the thesis's chapter 5 (and fig. 4-11, 4-12), see bench_thesis.cpp.
-// Names of the thesis's experiments, for BenchOptions::part.
-std::vector<std::string> thesis_parts();
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot);
 
 } // namespace sunfleck::command_line

@@ -3,6 +3,8 @@
 
 #include "editor/command_line/common.h"
 
+#include <nlohmann/json.hpp>
+
 namespace sunfleck::command_line {
 
 struct BenchTable {

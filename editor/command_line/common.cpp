@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace sunfleck::command_line {
@@ -28,45 +29,6 @@ std::filesystem::path scene_folder() {
 }
 
 } // namespace
-
-void add_scene_options(CLI::App& app, SceneOptions& options) {
-    app.add_option("SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")
-        ->required();
-    app.add_option("--size", options.size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (degrees)");
-    app.add_option("--movers", options.movers,
-                   "per_pixel: movers receive light; static: they also reflect it; prt: complex ones are lit at their "
-                   "vertices, "
-                   "by precomputed radiance transfer")
-        ->check(CLI::IsMember({"per_pixel", "static", "prt"}))
-        ->capture_default_str();
-    app.add_option_function<std::string>(
-           "--motion", [&options](const std::string& text) { options.motion = text == "on"; },
-           "on: frame k shows step k; off: movers stay at step 0 (default on)")
-        ->check(CLI::IsMember({"on", "off"}));
-    app.add_option("--orbit", options.orbit_degrees, "Degrees that the camera turns about its target each frame")
-        ->check(CLI::Range(-360.0, 360.0))
-        ->capture_default_str();
-    app.add_option("--frames", options.frames, "Frames to render after the warm-up; the last is written")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
-    app.add_option("--warmup", options.warmup, "Frames before those")
-        ->check(CLI::Range(0, 1000000))
-        ->capture_default_str();
-    app.add_option("--seed", options.seed, "Another seed gives another set of samples")->capture_default_str();
-    app.add_option("--bounces", options.bounces, "Reflections before the surface that is shown")
-        ->check(CLI::Range(0, 64))
-        ->capture_default_str();
-    app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
-    app.add_option("--environment", options.environment,
-                   "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)");
-    app.add_option("--scene", options.import.scene, "Which scene of a glTF file, by number (default: the file's own)");
-    app.add_option("--variant", options.import.variant, "Material variant of a glTF file, by name");
-    app.add_option("--animation", options.import.animation, "Which animation of a glTF file plays; -1: none")
-        ->capture_default_str();
-    app.add_option("--device", options.device, "Vulkan device by number or part of its name");
-    app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
-}
 
 Status apply_environment(const SceneOptions& options, ecs::Registry& registry) {
     if (options.environment.empty())

@@ -1,21 +1,17 @@
 // What the commands share: where built-in scenes are, options of scene and camera, the statistics' JSON, progress.
+// CLI11 stays in main.cpp and the full JSON header in the files that use it: each costs seconds in every file.
 #pragma once
 
 #include "gi_module/settings.h"
 #include "viewer/scene_renderer.h"
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <functional>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
 
 namespace sunfleck::command_line {
 
 using Json = nlohmann::ordered_json;
-
-// A command is added to the program and, when chosen, run; it returns the exit status.
-struct Command {
-    CLI::App* app;
-    std::function<int()> run;
-};
 
 // Options that name a scene, a camera and a time, on `render` and `reference` alike.
 struct SceneOptions {
@@ -35,10 +31,9 @@ struct SceneOptions {
     std::string device;
     bool validation = false;
 };
-void add_scene_options(CLI::App& app, SceneOptions& options);
-// With a progress bar for what takes long, and Ctrl-C to stop.
 // --environment: the picture lights the scene in place of any environment that it has.
 Status apply_environment(const SceneOptions& options, ecs::Registry& registry);
+// With a progress bar for what takes long, and Ctrl-C to stop.
 io::ImportOptions import_options(const SceneOptions& options);
 
 struct Size {
@@ -96,11 +91,5 @@ private:
 // True once the user pressed Ctrl-C.
 bool interrupted();
 void watch_interrupts();
-
-Command make_render_command(CLI::App& program);
-Command make_reference_command(CLI::App& program);
-Command make_compare_command(CLI::App& program);
-Command make_bench_command(CLI::App& program);
-Command make_info_command(CLI::App& program);
 
 } // namespace sunfleck::command_line

@@ -1,18 +1,15 @@
 // sunfleck compare: how much picture A differs from the reference B.
-#include "editor/command_line/common.h"
+#include "editor/command_line/commands.h"
 #include "editor/command_line/metrics.h"
 
 #include "engine/core/file.h"
 
+#include <nlohmann/json.hpp>
+
 namespace sunfleck::command_line {
-namespace {
+namespace {} // namespace
 
-struct CompareOptions {
-    std::string a, b, difference;
-    bool as_json = false;
-};
-
-Status run(const CompareOptions& options) {
+Status compare(const CompareOptions& options) {
     SUNFLECK_ASSIGN(const io::Picture a, io::read_picture(options.a));
     SUNFLECK_ASSIGN(const io::Picture b, io::read_picture(options.b));
     if (a.width != b.width || a.height != b.height)
@@ -40,25 +37,6 @@ Status run(const CompareOptions& options) {
     for (const auto& [name, value] : json.items())
         std::printf("%-14s %s\n", name.c_str(), value.dump().c_str());
     return {};
-}
-
-} // namespace
-
-Command make_compare_command(CLI::App& program) {
-    auto options = std::make_shared<CompareOptions>();
-    CLI::App* app = program.add_subcommand("compare", "Compares picture A with the reference B of the same size");
-    app->footer("Example: sunfleck compare render.exr reference.exr --json --diff difference.png\n"
-                "EXR is compared scene-linear, PNG as display values. Pixels with alpha 0 in either are left out.\n"
-                "relative_mse: mean of |A-B|^2 / (|B|^2 + 0.01 m^2), m the mean of |B|. ssim and flip of EXR pictures\n"
-                "are taken after x / (x + m). psnr is 999 for equal pictures.");
-    app->add_option("A", options->a, "Picture to judge")->required();
-    app->add_option("B", options->b, "Reference")->required();
-    app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png");
-    app->add_flag("--json", options->as_json, "Print one JSON object");
-    return {app, [options] {
-                const Status status = run(*options);
-                return status ? 0 : fail(status.error());
-            }};
 }
 
 } // namespace sunfleck::command_line

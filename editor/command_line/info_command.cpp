@@ -1,5 +1,7 @@
 // sunfleck info: device, driver, features, limits, settings.
-#include "editor/command_line/common.h"
+#include "editor/command_line/commands.h"
+
+#include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 namespace {
@@ -25,7 +27,9 @@ Json device_json(gpu::Device& device, const std::vector<std::string>& devices) {
             {"scenes", built_in_scene_names()}};
 }
 
-Status run(const std::string& wanted, bool as_json) {
+} // namespace
+
+Status describe_device(const std::string& wanted, bool as_json) {
     SUNFLECK_ASSIGN(const std::vector<std::string> devices, gpu::list_devices());
     SUNFLECK_ASSIGN(auto device, gpu::Device::create({wanted, false, {}}));
     const Json json = device_json(*device, devices);
@@ -45,7 +49,6 @@ Status run(const std::string& wanted, bool as_json) {
     return {};
 }
 
-// What a scene file holds, and what its import leaves out.
 Status describe_scene(const std::string& scene, bool as_json) {
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(scene));
     ecs::Registry registry;
@@ -72,28 +75,6 @@ Status describe_scene(const std::string& scene, bool as_json) {
     for (const std::string& note : report.notes)
         std::printf("note        %s\n", note.c_str());
     return {};
-}
-
-} // namespace
-
-Command make_info_command(CLI::App& program) {
-    auto device = std::make_shared<std::string>();
-    auto scene = std::make_shared<std::string>();
-    auto as_json = std::make_shared<bool>(false), schema = std::make_shared<bool>(false);
-    CLI::App* app = program.add_subcommand("info", "Shows device, driver, limits, scenes and settings");
-    app->footer("Example: sunfleck info --json\nExample: sunfleck info helmet.gltf");
-    app->add_option("SCENE", *scene, "Show what is in this scene or glTF file instead");
-    app->add_option("--device", *device, "Vulkan device by number or part of its name");
-    app->add_flag("--json", *as_json, "Print one JSON object");
-    app->add_flag("--schema", *schema, "Print the JSON schema of scene files");
-    return {app, [device, scene, as_json, schema] {
-                if (*schema) {
-                    std::fputs(io::scene_file_schema().c_str(), stdout);
-                    return 0;
-                }
-                const Status status = scene->empty() ? run(*device, *as_json) : describe_scene(*scene, *as_json);
-                return status ? 0 : fail(status.error());
-            }};
 }
 
 } // namespace sunfleck::command_line

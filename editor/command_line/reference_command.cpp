@@ -1,5 +1,5 @@
 // sunfleck reference: the path tracer, progressive; can be interrupted and goes on where it was.
-#include "editor/command_line/common.h"
+#include "editor/command_line/commands.h"
 
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
@@ -9,22 +9,12 @@
 #include "gi_module/reference/path_tracer.h"
 
 #include <chrono>
+#include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 namespace {
 
 using namespace gi::reference;
-
-struct ReferenceOptions {
-    SceneOptions scene;
-    std::string output;
-    std::uint32_t samples = 256;
-    std::string view = "final";
-    bool antialiasing = false;
-    bool unlimited = false;
-    std::string statistics;
-    std::uint32_t threads = 0;
-};
 
 std::uint64_t hash_text(const std::string& text) {
     return hash_bytes(hash_start, text.data(), text.size());
@@ -57,7 +47,9 @@ Result<Accumulation> start_or_resume(const std::string& state_file, std::uint64_
     return accumulation;
 }
 
-Status run(const ReferenceOptions& options) {
+} // namespace
+
+Status reference(const ReferenceOptions& options) {
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
     SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
@@ -129,32 +121,6 @@ Status run(const ReferenceOptions& options) {
         SUNFLECK_TRY(write_file(options.statistics, json.dump(2) + "\n"));
     }
     return {};
-}
-
-} // namespace
-
-Command make_reference_command(CLI::App& program) {
-    auto options = std::make_shared<ReferenceOptions>();
-    CLI::App* app = program.add_subcommand("reference", "Renders a scene with the path tracer: the truth, slowly");
-    app->footer("Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
-                "Ctrl-C saves what is there; the same command goes on from it.");
-    add_scene_options(*app, options->scene);
-    app->add_option("-o,--output", options->output, "Picture to write: .exr (scene-linear) or .png (tone-mapped)")
-        ->required();
-    app->add_option("--spp", options->samples, "Samples per pixel")
-        ->check(CLI::Range(1, 1 << 24))
-        ->capture_default_str();
-    app->add_option("--view", options->view, "What to show")
-        ->check(CLI::IsMember({"final", "irradiance", "direct", "indirect"}))
-        ->capture_default_str();
-    app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
-    app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
-    app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");
-    return {app, [options] {
-                watch_interrupts();
-                const Status status = run(*options);
-                return status ? 0 : fail(status.error());
-            }};
 }
 
 } // namespace sunfleck::command_line

@@ -1,27 +1,13 @@
 // sunfleck render: a picture of a scene by the real-time path.
-#include "editor/command_line/common.h"
+#include "editor/command_line/commands.h"
 
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 
-#include <algorithm>
-#include <set>
+#include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 namespace {
-
-struct RenderOptions {
-    SceneOptions scene;
-    std::string output;
-    std::string direct = "light_samples", indirect = "light_samples", specular = "none", source = "random_walk";
-    std::uint32_t lights = 300;
-    float direct_share = 0.25f;
-    std::string view = "final";
-    std::vector<std::string> settings;
-    std::string statistics;
-    bool print_graph = false;
-    std::set<std::string> given; // settings that the command line names
-};
 
 // Views that the lighting itself draws, in false colours.
 const std::map<std::string, std::uint32_t> lighting_views = {
@@ -69,7 +55,16 @@ Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<
     return settings;
 }
 
-Status run(const RenderOptions& options) {
+} // namespace
+
+std::vector<std::string> view_names() {
+    std::vector<std::string> names;
+    for (const auto& [name, view] : views)
+        names.push_back(name);
+    return names;
+}
+
+Status render(const RenderOptions& options) {
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
     SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
@@ -141,54 +136,6 @@ Status run(const RenderOptions& options) {
     if (device->validation_messages() > 0)
         return Error{std::to_string(device->validation_messages()) + " validation messages (see above)"};
     return {};
-}
-
-} // namespace
-
-Command make_render_command(CLI::App& program) {
-    auto options = std::make_shared<RenderOptions>();
-    CLI::App* app = program.add_subcommand("render", "Renders a scene and writes the last frame as PNG or EXR");
-    app->footer("Example: sunfleck render four_pillars -o out.png --lights 300 --camera bench_1 --stats out.json\n"
-                "A scene that names no light is lit by a sky of 0.3 W/(sr m2) and a sun of 2 W/m2.");
-    add_scene_options(*app, options->scene);
-    app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
-        ->required();
-    app->add_option("--direct", options->direct, "Technique for direct light")
-        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
-        ->capture_default_str();
-    app->add_option("--indirect", options->indirect, "Technique for reflected light")
-        ->check(CLI::IsMember({"light_samples", "brute_force", "none"}))
-        ->capture_default_str();
-    app->add_option("--specular", options->specular, "Technique for mirrors and glass")
-        ->check(CLI::IsMember({"none"}))
-        ->capture_default_str();
-    app->add_option("--source", options->source, "Where light samples come from")
-        ->check(CLI::IsMember({"random_walk"}))
-        ->capture_default_str();
-    app->add_option("--lights", options->lights, "Number of light samples, exactly")
-        ->check(CLI::Range(0, 65536))
-        ->capture_default_str();
-    app->add_option("--direct-share", options->direct_share, "Share of the samples on emitters")
-        ->check(CLI::Range(0.0, 1.0))
-        ->capture_default_str();
-    std::vector<std::string> names;
-    for (const auto& [name, view] : views)
-        names.push_back(name);
-    app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(names))->capture_default_str();
-    app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
-    app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
-    app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
-    return {app, [app, options] {
-                watch_interrupts();
-                for (const char* name : {"direct", "indirect", "movers", "lights", "direct-share", "bounces", "seed"})
-                    if (app->count(std::string("--") + name) > 0) {
-                        std::string setting = name;
-                        std::replace(setting.begin(), setting.end(), '-', '_');
-                        options->given.insert(setting);
-                    }
-                const Status status = run(*options);
-                return status ? 0 : fail(status.error());
-            }};
 }
 
 } // namespace sunfleck::command_line

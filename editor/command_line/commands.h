@@ -1,0 +1,57 @@
+// The commands of the tool: what each takes from the command line (main.cpp) and what it does.
+#pragma once
+
+#include "editor/command_line/common.h"
+
+#include <set>
+
+namespace sunfleck::command_line {
+
+struct RenderOptions {
+    SceneOptions scene;
+    std::string output;
+    std::string direct = "light_samples", indirect = "light_samples", specular = "none", source = "random_walk";
+    std::uint32_t lights = 300;
+    float direct_share = 0.25f;
+    std::string view = "final";
+    std::vector<std::string> settings;
+    std::string statistics;
+    bool print_graph = false;
+    std::set<std::string> given; // settings that the command line names
+};
+std::vector<std::string> view_names();
+Status render(const RenderOptions& options);
+
+struct ReferenceOptions {
+    SceneOptions scene;
+    std::string output;
+    std::uint32_t samples = 256;
+    std::string view = "final";
+    bool antialiasing = false;
+    bool unlimited = false;
+    std::string statistics;
+    std::uint32_t threads = 0;
+};
+Status reference(const ReferenceOptions& options);
+
+struct CompareOptions {
+    std::string a, b, difference;
+    bool as_json = false;
+};
+Status compare(const CompareOptions& options);
+
+struct BenchOptions {
+    std::string suite, csv, plot, device, scene;
+    std::string part; // of the thesis; empty: all
+    bool as_json = false;
+    std::uint32_t repeat = 5;
+};
+// Names of the thesis's experiments, for BenchOptions::part.
+std::vector<std::string> thesis_parts();
+Status bench(const BenchOptions& options);
+
+Status describe_device(const std::string& wanted, bool as_json);
+// What a scene file holds, and what its import leaves out.
+Status describe_scene(const std::string& scene, bool as_json);
+
+} // namespace sunfleck::command_line
