@@ -1,21 +1,8 @@
-// What runs under the address and undefined-behaviour sanitizers besides the CPU tests: loading, saving, one frame.
+// One frame of every scene and view: what the address and undefined-behaviour sanitizers see of GPU code.
 #include "tests/support/gpu_world.h"
-
-#include "engine/core/file.h"
-#include "engine/core/random.h"
-
-#include <filesystem>
 
 namespace sunfleck::tests {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Folder {
-    Folder() : path(fs::path(testing::TempDir()) / "sunfleck_smoke") { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-    fs::path path;
-};
 
 class Smoke : public GpuTest {};
 
