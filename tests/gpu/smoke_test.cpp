@@ -1,23 +1,10 @@
-// What runs under the address and undefined-behaviour sanitizers besides the CPU tests: loading, saving, one frame.
-#include "tests/support/gpu_world.h"
-#include "gi_module/many_light/many_light_settings.h"
+// One frame of every scene and view: what the address and undefined-behaviour sanitizers see of GPU code.
 #include "gi_module/brute_force/brute_force_settings.h"
-
-#include "engine/core/file.h"
-#include "engine/core/random.h"
-
-#include <filesystem>
+#include "gi_module/many_light/many_light_settings.h"
+#include "tests/support/gpu_world.h"
 
 namespace sunfleck::tests {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Folder {
-    Folder() : path(fs::path(testing::TempDir()) / "sunfleck_smoke") { fs::create_directories(path); }
-    ~Folder() { fs::remove_all(path); }
-    fs::path path;
-};
 
 class Smoke : public GpuTest {};
 
@@ -32,7 +19,8 @@ TEST_F(Smoke, OneFrameOfEveryScene) {
             settings.lights = 40;
             settings.shadow_map_resolution = 32;
             settings.of<gi::BruteForceSettings>().count_clamped = true;
-            settings.of<gi::ManyLightSettings>().count_passes = std::string(scene.name) == "cornell"; // slow where patches are many
+            settings.of<gi::ManyLightSettings>().count_passes =
+                std::string(scene.name) == "cornell"; // slow where patches are many
             settings.shadow_filter = true;
             world.set(settings);
             world.request.tone_map = true;

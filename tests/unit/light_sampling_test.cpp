@@ -1,44 +1,14 @@
-#include "assets/test_rooms.h"
-#include "gi_module/light_sampling/light_sampler.h"
+#include "tests/support/sampled_scene.h"
+
 #include "gi_module/light_sampling/sample_clusters.h"
-#include "gi_module/reference/path_tracer.h"
 
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
 
-#include <gtest/gtest.h>
 #include <random>
 
 namespace sunfleck::gi {
 namespace {
-
-// A built-in scene ready for rays.
-struct World {
-    explicit World(void (*make)(assets::SceneBuilder&)) {
-        assets::SceneBuilder builder(registry, meshes);
-        make(builder);
-        finish();
-    }
-    World() { scene::register_components(registry); }
-    void finish() {
-        scene::update_world_transforms(registry);
-        rays = raytrace::RayScene::create().value();
-        ASSERT_TRUE(rays->update(registry, meshes));
-        for (std::uint32_t i = 0; i < meshes.size(); ++i)
-            bounds.add(meshes.bounds(i));
-        bounds = {};
-        registry.view<scene::MeshInstance, scene::WorldTransform>().each(
-            [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
-                bounds.add(transform_bounds(world.matrix, meshes.bounds(instance.mesh)));
-            });
-        emitters = collect_emitters(registry, meshes, bounds);
-    }
-    ecs::Registry registry;
-    scene::MeshStore meshes;
-    std::unique_ptr<raytrace::RayScene> rays;
-    Bounds bounds;
-    std::vector<Emitter> emitters;
-};
 
 double total_luminance(const std::vector<LightSample>& samples) {
     double sum = 0;
@@ -49,7 +19,7 @@ double total_luminance(const std::vector<LightSample>& samples) {
 
 TEST(LightSampling, DirectFluxIsTheEmittersFlux) {
     for (auto make : {assets::make_cornell, assets::make_area_room, assets::make_four_pillars}) {
-        const World world(make);
+        const SampledScene world(make);
         double expected = 0;
         for (const Emitter& emitter : world.emitters)
             expected += double(luminance(emitter.flux));
@@ -62,7 +32,7 @@ TEST(LightSampling, DirectFluxIsTheEmittersFlux) {
 }
 
 TEST(LightSampling, EmitterFluxHasItsClosedForm) {
-    World world;
+    SampledScene world;
     assets::SceneBuilder builder(world.registry, world.meshes);
     builder.area_light("rectangle", {scene::AreaShape::rectangle, 2.0f, 3.0f, 0.0f, vec3(1.0f)}, {});
     builder.area_light("disc", {scene::AreaShape::disc, 0.0f, 0.0f, 0.5f, vec3(2.0f)}, {});
@@ -92,7 +62,7 @@ TEST(LightSampling, EmitterFluxHasItsClosedForm) {
 }
 
 TEST(LightSampling, BadLightsAreLeftOut) {
-    World world;
+    SampledScene world;
     const auto add = [&](vec3 intensity) {
         const ecs::Entity entity = world.registry.create();
         world.registry.emplace<scene::Transform>(entity);
@@ -111,7 +81,7 @@ TEST(LightSampling, BadLightsAreLeftOut) {
 }
 
 TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
-    const World world(assets::make_four_pillars);
+    const SampledScene world(assets::make_four_pillars);
     for (const Sequence sequence : {Sequence::sobol, Sequence::pseudo_random})
         for (const Termination termination : {Termination::bounce_limit, Termination::russian_roulette})
             for (const std::uint32_t count : {1u, 7u, 300u, 2049u}) {
@@ -135,91 +105,8 @@ TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
             }
 }
 
-// Reflected flux of bounce k, from samples, against the adjoint computation: radiosity (albedo times irradiance that
-// was reflected k - 1 times before) integrated over the static surfaces by the path tracer from random surface points.
-TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
-    for (auto make : {assets::make_cornell, assets::make_four_pillars}) {
-        World world(make);
-        // Movers are left out of walks; take them out of the reference too.
-        std::vector<ecs::Entity> movers;
-        world.registry.view<scene::Mover>().each([&](ecs::Entity e, const scene::Mover&) { movers.push_back(e); });
-        for (const ecs::Entity mover : movers)
-            world.registry.destroy(mover);
-        ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
-        constexpr std::uint32_t bounces = 3, points = 4096, rays_per_point = 16;
-        SampleRequest settings;
-        settings.bounces = bounces;
-        double walked[bounces] = {};
-        double walked_square[bounces] = {};
-        constexpr int seeds = 8;
-        for (int seed = 1; seed <= seeds; ++seed) {
-            settings.seed = std::uint32_t(seed);
-            double flux[bounces] = {};
-            for (const LightSample& sample : sample_indirect(world.emitters, 4096, settings, *world.rays))
-                flux[sample.bounce - 1] += double(luminance(sample.flux));
-            for (std::uint32_t k = 0; k < bounces; ++k) {
-                walked[k] += flux[k] / seeds;
-                walked_square[k] += flux[k] * flux[k] / seeds;
-            }
-        }
-        const reference::PathTracer tracer(*world.rays, world.emitters);
-        double sum[bounces] = {}, square[bounces] = {};
-        double area = 0;
-        std::vector<double> cumulative;
-        struct Triangle {
-            vec3 p[3];
-            vec3 albedo;
-        };
-        std::vector<Triangle> triangles;
-        world.registry.view<scene::MeshInstance, scene::WorldTransform, scene::Material>().each(
-            [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& transform,
-                const scene::Material& material) {
-                const scene::Mesh& mesh = world.meshes[instance.mesh];
-                for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
-                    Triangle t;
-                    for (int k = 0; k < 3; ++k)
-                        t.p[k] = vec3(transform.matrix * vec4(mesh.positions[mesh.indices[i + std::size_t(k)]], 1.0f));
-                    t.albedo = material.base_colour;
-                    area += 0.5 * double(glm::length(glm::cross(t.p[1] - t.p[0], t.p[2] - t.p[0])));
-                    cumulative.push_back(area);
-                    triangles.push_back(t);
-                }
-            });
-        for (std::uint32_t i = 0; i < points; ++i) {
-            const RandomSequence random(SequenceKind::sobol, 99, i);
-            const std::size_t chosen = std::min<std::size_t>(
-                std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), double(random.at(0)) * area) -
-                            cumulative.begin()),
-                triangles.size() - 1);
-            const Triangle& t = triangles[chosen];
-            const float root = std::sqrt(random.at(1)), v = random.at(2);
-            const vec3 position = t.p[0] + root * (1.0f - v) * (t.p[1] - t.p[0]) + root * v * (t.p[2] - t.p[0]);
-            const vec3 normal = glm::normalize(glm::cross(t.p[1] - t.p[0], t.p[2] - t.p[0]));
-            double value[bounces] = {};
-            // Surfaces are two-sided.
-            for (const float side : {1.0f, -1.0f}) {
-                const auto irradiance = tracer.irradiance_by_bounce(position, side * normal, bounces - 1,
-                                                                    rays_per_point, i * 2 + (side > 0 ? 0 : 1));
-                for (std::uint32_t k = 0; k < bounces; ++k)
-                    value[k] += double(luminance(irradiance[k] * t.albedo)) * area;
-            }
-            for (std::uint32_t k = 0; k < bounces; ++k) {
-                sum[k] += value[k];
-                square[k] += value[k] * value[k];
-            }
-        }
-        for (std::uint32_t k = 0; k < bounces; ++k) {
-            const double mean = sum[k] / points;
-            const double reference_error = std::sqrt((square[k] / points - mean * mean) / points);
-            const double walk_error = std::sqrt(std::max(0.0, walked_square[k] - walked[k] * walked[k]) / (seeds - 1));
-            EXPECT_NEAR(walked[k], mean, 3.0 * std::hypot(reference_error, walk_error)) << "bounce " << k + 1;
-            EXPECT_LT(reference_error / mean, 0.05) << "the test must be able to fail";
-        }
-    }
-}
-
 TEST(RayScene, StaticGeometryIsBuiltOnceAndMoversFollow) {
-    World world(assets::make_four_pillars);
+    SampledScene world(assets::make_four_pillars);
     const std::uint32_t builds = world.rays->static_builds();
     const std::uint64_t generation = world.rays->static_generation();
     const ecs::Entity torus = scene::find_by_name(world.registry, "torus");
@@ -247,7 +134,7 @@ TEST(RayScene, StaticGeometryIsBuiltOnceAndMoversFollow) {
 }
 
 TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
-    const World world(assets::make_table_room);
+    const SampledScene world(assets::make_table_room);
     RandomSequence random(SequenceKind::pseudo_random, 3, 1);
     const auto point = [&] {
         return world.bounds.minimum + world.bounds.extent() * vec3(random.next(), random.next(), random.next());
@@ -272,7 +159,7 @@ TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
 
 // Clusters keep the flux of all candidates, and every sample is one that a walk has left.
 TEST(LightSampling, ClustersKeepTheFlux) {
-    const World world(assets::make_gap_room);
+    const SampledScene world(assets::make_gap_room);
     SampleRequest plain;
     plain.candidates = 1;
     const auto many = sample_indirect(world.emitters, 20000, plain, *world.rays);
@@ -325,7 +212,7 @@ TEST(LightSampling, AClusterIsItsMiddleAndHasItsRadius) {
 // At points farther than a metre from every wall's samples, without shadows, 225 clusters say what 20,000 samples say
 // several times as well as 225 walks do: relative errors over four seeds, squared.
 TEST(LightSampling, ClustersSayWhatAllSay) {
-    const World world(assets::make_cornell);
+    const SampledScene world(assets::make_cornell);
     std::mt19937 random(12);
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     const auto irradiance = [](const std::vector<LightSample>& samples, vec3 point, vec3 normal) {
@@ -366,7 +253,7 @@ TEST(LightSampling, ClustersSayWhatAllSay) {
 // Thesis sec. 6.1, fig. 6-1: few walks pass the gap, so what plain walks say of the light behind it is mostly noise.
 // With clusters of 32 times as many walks, its variance over seeds falls by that order.
 TEST(LightSampling, ClustersKnowTheDarkSideOfTheGap) {
-    const World world(assets::make_gap_room);
+    const SampledScene world(assets::make_gap_room);
     const auto variance = [&](std::uint32_t candidates) {
         double sum = 0, squares = 0;
         constexpr int seeds = 24;

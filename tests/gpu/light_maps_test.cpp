@@ -1,0 +1,171 @@
+// Light maps of surface patches: no light where none is, none lost, and no drift.
+#include "gi_module/many_light/many_light_settings.h"
+#include "tests/support/brute_force_pair.h"
+#include "tests/support/techniques.h"
+#include "tests/support/test_size.h"
+
+#include <random>
+
+namespace sunfleck::tests {
+namespace {
+
+// A patch in full shadow under a table is as dark as brute force says, though its light map is bright.
+TEST_F(ManyLightTest, UmbraStaysDark) {
+    const auto make = [](assets::SceneBuilder& s) {
+        s.quad("floor", vec3(-4, 0, -4), vec3(0, 0, 8), vec3(8, 0, 0), assets::diffuse(vec3(0.5f)));
+        s.ceiling_light("lamp", vec3(0, 3, 0), 0.3f, 0.3f, vec3(50.0f));
+        s.quad("table", vec3(-1, 1, -1), vec3(0, 0, 2), vec3(2, 0, 0), assets::diffuse(vec3(0.5f)));
+        s.camera("view", vec3(0.0f, 0.6f, 2.0f), vec3(0.0f, 0.0f, 0.2f), 30.0f);
+    };
+    Pair pair(make, "view");
+    pair.size(128, 96);
+    gi::Settings settings;
+    settings.lights = 64;
+    settings.bounces = 0;
+    pair.set(settings);
+    pair.run_to(2, 0.0f);
+    const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
+    int dark = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        if (b.pixels[i].a > 0 && b.pixels[i].r == 0.0f) {
+            ++dark;
+            EXPECT_LT(a.pixels[i].r, 0.01f); // of about 2 W/m2 beside the table
+        }
+    EXPECT_GT(dark, 2000);
+}
+
+// A flat floor that is shaded as if it were wavy: what light maps know of it is of no use.
+TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
+    const auto make = [](assets::SceneBuilder& s) {
+        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+        s.room(vec3(-3, -0.01f, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
+               {{"lamp", vec2(-2.0f), 0.5f, 0.5f, vec3(40.0f)}});
+        scene::Mesh floor = scene::make_rectangle(6.0f, 6.0f, 24, 24);
+        for (std::size_t i = 0; i < floor.normals.size(); ++i) {
+            floor.positions[i] = vec3(floor.positions[i].x, 0.0f, -floor.positions[i].y);
+            floor.normals[i] = glm::normalize(vec3(0.6f * std::sin(3.0f * floor.positions[i].x), 1.0f, 0.0f));
+        }
+        s.add("floor", std::move(floor), assets::diffuse(vec3(0.6f)));
+        s.camera("view", vec3(0.5f, 2.9f, 0.5f), vec3(0.0f), 60.0f); // of the floor alone
+    };
+    Pair pair(make, "view");
+    pair.size(192, 144);
+    gi::Settings settings;
+    settings.lights = 100;
+    settings.low_resolution = 1;
+    settings.bounces = 0; // samples low on the walls would graze the floor, where maps shadow what nothing is above
+    pair.set(settings);
+    pair.run_to(1, 0.0f);
+    const Difference direct = compare(pair);
+    settings.bounces = gi::Settings{}.bounces;
+    pair.set(settings);
+    settings.of<gi::ManyLightSettings>().light_maps = false;
+    pair.brute.set(settings);
+    pair.run_to(1, 0.0f);
+    const Difference all = compare(pair);
+    std::printf("%.5f off, of %.4f W/m2 direct; %.5f off, of %.4f W/m2 without light maps\n", direct.mean,
+                direct.mean_brightness, all.mean, all.mean_brightness);
+    // Normals that do not count would be off by a tenth and more.
+    EXPECT_LT(direct.mean, 0.005 * direct.mean_brightness);
+    EXPECT_LT(all.mean, 0.005 * all.mean_brightness);
+    EXPECT_GT(direct.mean_brightness, 0.1);
+}
+
+std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps) {
+    const std::uint64_t bytes = maps.counters().texels * 16;
+    const gpu::Buffer target = read_back(world, maps.texels(), bytes);
+    std::vector<std::int32_t> values(std::size_t(bytes) / 4);
+    std::memcpy(values.data(), target.mapped(), bytes);
+    return values;
+}
+
+// Boxes wander through a room for 5,000 changes of place, two million of light maps (a tenth in the short size); large
+// ones hide whole patches from samples, so light maps change all the time. At the end they equal maps that know nothing
+// of the past, to the last bit.
+TEST_F(ManyLightTest, LightMapsNeverDrift) {
+    const auto make = [](assets::SceneBuilder& s) {
+        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+        s.room(vec3(-3, 0, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
+               {{"lamp", vec2(0), 1.0f, 1.0f, vec3(20.0f)}});
+        for (int i = 0; i < 10; ++i) {
+            scene::Transform transform;
+            transform.position = vec3(0.0f, 1.0f, 0.0f);
+            const ecs::Entity box =
+                s.add("box", scene::make_box(vec3(1.6f, 1.6f, 0.2f)), assets::diffuse(vec3(0.5f)), transform);
+            s.mover(box, {});
+        }
+        s.camera("view", vec3(2.5f, 1.5f, 2.5f), vec3(0.0f, 1.0f, 0.0f), 60.0f);
+    };
+    GpuWorld world(make, "view");
+    gi::Settings settings;
+    settings.lights = 100;
+    settings.shadow_map_resolution = 16;
+    world.set(settings);
+    world.request.width = 16;
+    world.request.height = 16;
+    std::vector<ecs::Entity> boxes;
+    world.renderer->registry().view<scene::Mover>().each(
+        [&](ecs::Entity entity, const scene::Mover&) { boxes.push_back(entity); });
+    ASSERT_EQ(boxes.size(), 10u);
+    std::mt19937 random(21);
+    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
+    std::uint64_t updates = 0;
+    world.render();
+    const int frames = by_size(50, 500);
+    for (int frame = 0; frame < frames; ++frame) {
+        for (const ecs::Entity box : boxes)
+            world.renderer->registry().patch<scene::Transform>(box, [&](scene::Transform& transform) {
+                transform.position = vec3(uniform(-3, 3), uniform(0, 3), uniform(-3, 3));
+                transform.rotation = glm::angleAxis(uniform(0, 6), vec3(0, 1, 0));
+            });
+        world.render();
+        updates += world.renderer->lighting().counters()["light_map_updates"];
+    }
+    std::printf("%llu light map updates\n", static_cast<unsigned long long>(updates));
+    EXPECT_GT(updates, std::uint64_t(frames) * 20);
+    const auto kept = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
+    // Another seed and back: samples, database and light maps are made anew.
+    settings.seed = 2;
+    world.set(settings);
+    world.render();
+    settings.seed = 1;
+    world.set(settings);
+    world.render();
+    const auto fresh = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
+    ASSERT_EQ(kept.size(), fresh.size());
+    EXPECT_EQ(kept, fresh);
+    EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
+}
+
+// Large patches with fine maps and many samples are many turns of a kernel's loops. Maps interpolate between texels, so
+// that pixels differ a little; none may stay dark.
+TEST_F(ManyLightTest, LargeLightMapsAreFilledToTheEnd) {
+    GpuWorld world(assets::make_near_occluder, "view");
+    world.request.width = 96;
+    world.request.height = 72;
+    gi::Settings settings;
+    settings.lights = 600;
+    settings.clamp_scale = 8.0f; // small radius, fine texels
+    settings.patch_levels = 0;
+    settings.shadow_map_resolution = 32;
+    settings.low_resolution = 1;
+    world.set(settings);
+    const io::Picture with = world.picture();
+    EXPECT_GT(world.renderer->lighting().counters()["light_map_texels"], 100000u);
+    settings.of<gi::ManyLightSettings>().light_maps = false;
+    world.set(settings);
+    const io::Picture without = world.picture();
+    std::size_t dark = 0;
+    double difference = 0, brightness = 0;
+    for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+        const double a = double(luminance(vec3(with.pixels[i]))), b = double(luminance(vec3(without.pixels[i])));
+        dark += b > 0.05 && a < 0.5 * b;
+        difference += std::abs(a - b);
+        brightness += b;
+    }
+    EXPECT_LT(dark, with.pixels.size() / 500);
+    EXPECT_LT(difference, 0.03 * brightness);
+}
+
+} // namespace
+} // namespace sunfleck::tests

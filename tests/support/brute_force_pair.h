@@ -1,0 +1,74 @@
+// One scene rendered by the many-light system and by brute force, and how much the two pictures differ.
+#pragma once
+
+#include "tests/support/gpu_world.h"
+
+namespace sunfleck::tests {
+
+class ManyLightTest : public GpuTest {};
+
+// Two renderers of one scene, frame for frame.
+struct Pair {
+    explicit Pair(void (*make)(assets::SceneBuilder&), const std::string& camera)
+        : brute(make, camera), many(make, camera) {}
+    void set(const gi::Settings& settings) {
+        many.set(settings);
+        gi::Settings baseline = gi::Settings().all_light_by("brute_force");
+        baseline.lights = settings.lights;
+        baseline.seed = settings.seed;
+        baseline.shadow_filter = settings.shadow_filter;
+        baseline.shadow_map_resolution = settings.shadow_map_resolution;
+        baseline.bounces = settings.bounces;
+        baseline.candidates = settings.candidates;
+        brute.set(baseline);
+    }
+    void size(std::uint32_t width, std::uint32_t height) {
+        for (GpuWorld* world : {&brute, &many}) {
+            world->request.width = width;
+            world->request.height = height;
+        }
+    }
+    // The many-light system has a past: its maps and lists are from earlier frames. Brute force has none.
+    void run_to(std::uint64_t step, float degrees) {
+        const scene::CameraView start = many.request.camera;
+        for (std::uint64_t k = 0; k <= step; ++k) {
+            many.request.step = k;
+            many.request.camera = start.orbited(glm::radians(degrees) * float(k));
+            many.render();
+        }
+        brute.request.step = step;
+        brute.request.camera = many.request.camera;
+        brute.render();
+    }
+    GpuWorld brute, many;
+};
+
+struct Difference {
+    double mean = 0, beyond_8 = 0, largest = 0, mean_brightness = 0;
+};
+
+inline Difference compare(Pair& pair) {
+    const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
+    Difference result;
+    double pixels = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        if (a.pixels[i].a != b.pixels[i].a)
+            result.largest = 1e9;
+        double largest = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double d = std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c]));
+            largest = std::max(largest, d);
+            result.mean += d / 3.0;
+            result.mean_brightness += double(b.pixels[i][c]) / 3.0;
+        }
+        result.largest = std::max(result.largest, largest);
+        result.beyond_8 += largest > 8.0 / 255.0;
+        pixels += 1;
+    }
+    result.mean /= pixels;
+    result.beyond_8 /= pixels;
+    result.mean_brightness /= pixels;
+    return result;
+}
+
+} // namespace sunfleck::tests

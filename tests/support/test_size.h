@@ -1,0 +1,21 @@
+// Tests have two sizes: short ones take 20 seconds at most and run on every change; what is exhaustive, statistical or
+// a soak has a short relative among them and its full size with SUNFLECK_TEST_SIZE=long (./run test --long).
+#pragma once
+
+#include <cstdlib>
+#include <string_view>
+
+namespace sunfleck::tests {
+
+inline bool long_size() {
+    const char* size = std::getenv("SUNFLECK_TEST_SIZE");
+    return size != nullptr && std::string_view(size) == "long";
+}
+
+// A parameter of a test: seeds, steps, rays, pixels.
+template <typename T>
+T by_size(T in_short, T in_long) {
+    return long_size() ? in_long : in_short;
+}
+
+} // namespace sunfleck::tests
