@@ -1,6 +1,7 @@
 // What the commands share: where built-in scenes are, options of scene and camera, the statistics' JSON, progress.
 #pragma once
 
+#include "engine/statistics/summary.h"
 #include "gi_module/settings.h"
 #include "viewer/scene_renderer.h"
 
@@ -73,8 +74,8 @@ struct Measurement {
     std::uint32_t render_passes = 0;
 };
 Json measurement_json(const gpu::Device& device, const Measurement& measurement);
-double median(std::vector<double> values);
-double percentile(std::vector<double> values, double share);
+using statistics::median;
+using statistics::percentile;
 
 // Prints "error: ..." once and returns 1.
 int fail(const Error& error);
