@@ -11,7 +11,7 @@ install(FILES "${PROJECT_BINARY_DIR}/sunfleckConfig.cmake" "${PROJECT_BINARY_DIR
 # sunfleck/host.h is what a foreign host needs. The headers of the module and of the engine's lower half are there for
 # hosts that use gi::System itself, and for shaders that pack normals.
 install(DIRECTORY gi_module/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-foreach(folder engine/core engine/ecs engine/gpu engine/scene engine/raytrace gi_module)
+foreach(folder engine/core engine/statistics engine/ecs engine/gpu engine/scene engine/raytrace gi_module)
   install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck/${folder}"
           FILES_MATCHING PATTERN "*.h" PATTERN "include" EXCLUDE PATTERN "reference" EXCLUDE)
 endforeach()

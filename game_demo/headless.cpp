@@ -1,6 +1,7 @@
 // Playback without a window: recorded (or the usual) input, one picture after the other, statistics as JSON.
 #include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/statistics/summary.h"
 #include "game_demo/level.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
@@ -26,17 +27,10 @@ struct Times {
     }
 };
 
-double percentile(std::vector<double> values, double share) {
-    if (values.empty())
-        return 0.0;
-    std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
-}
-
 nlohmann::ordered_json medians(const std::map<std::string, std::vector<double>>& times) {
     nlohmann::ordered_json result = nlohmann::ordered_json::object();
     for (const auto& [name, values] : times)
-        result[name] = percentile(values, 0.5);
+        result[name] = statistics::median(values);
     return result;
 }
 
@@ -46,8 +40,6 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
     char hash[32];
     std::snprintf(hash, sizeof hash, "%016llx",
                   static_cast<unsigned long long>(level.simulation().world_hash(level.renderer().registry())));
-    const double longest = times.frames.empty() ? 0.0 : *std::max_element(times.frames.begin(), times.frames.end());
-    const double shortest = times.frames.empty() ? 0.0 : *std::min_element(times.frames.begin(), times.frames.end());
     return {{"device", device},
             {"scene", options.scene},
             {"preset", field_to_text(*DemoSettings::description().find("preset"), &settings)},
@@ -55,10 +47,10 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
             {"steps", level.simulation().steps()},
             {"world_hash", hash},
             {"frame_ms",
-             {{"median", percentile(times.frames, 0.5)},
-              {"p95", percentile(times.frames, 0.95)},
-              {"min", shortest},
-              {"max", longest}}},
+             {{"median", statistics::median(times.frames)},
+              {"p95", statistics::percentile(times.frames, 0.95)},
+              {"min", statistics::percentile(times.frames, 0.0)},
+              {"max", statistics::percentile(times.frames, 1.0)}}},
             {"cpu_ms", medians(times.cpu)},
             {"gpu_ms", medians(times.gpu)},
             {"counters",

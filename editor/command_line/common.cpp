@@ -124,20 +124,6 @@ Json settings_json(const gi::Settings& settings) {
     return json;
 }
 
-double percentile(std::vector<double> values, double share) {
-    if (values.empty())
-        return 0.0;
-    std::sort(values.begin(), values.end());
-    const double place = share * double(values.size() - 1);
-    const std::size_t below = std::size_t(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - double(below)) * (values[above] - values[below]);
-}
-
-double median(std::vector<double> values) {
-    return percentile(std::move(values), 0.5);
-}
-
 namespace {
 
 Json medians(const std::vector<std::map<std::string, double>>& frames) {

@@ -2,6 +2,7 @@
 // CLI11 stays in main.cpp and the full JSON header in the files that use it: each costs seconds in every file.
 #pragma once
 
+#include "engine/statistics/summary.h"
 #include "gi_module/settings.h"
 #include "viewer/scene_renderer.h"
 
@@ -66,8 +67,8 @@ struct Measurement {
     std::uint32_t render_passes = 0;
 };
 Json measurement_json(const gpu::Device& device, const Measurement& measurement);
-double median(std::vector<double> values);
-double percentile(std::vector<double> values, double share);
+using statistics::median;
+using statistics::percentile;
 
 // Prints "error: ..." once and returns 1.
 int fail(const Error& error);
