@@ -68,7 +68,7 @@ Status BruteForceTechnique::add_passes(gpu::FrameGraph& graph, Services& service
     for (std::uint32_t first = 0; first == 0 || first < total; first += at_once) {
         const std::uint32_t count = std::min(at_once, total - first);
         if (shared_slots)
-            SUNFLECK_TRY(shadows.add_group(graph, target.gpu_scene, samples, first, count, services.resources));
+            SUNFLECK_TRY(shadows.add_map_range(graph, target.gpu_scene, samples, first, count, services.resources));
         SUNFLECK_ASSIGN(const std::vector<LightBatch> batches,
                         make_light_batches(samples, shadows, cells_, first, count, services.resources));
         batches_ += batches.size();

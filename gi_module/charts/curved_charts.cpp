@@ -13,11 +13,11 @@ namespace {
 // Small things change their light within their size, thin ones within their thickness: so many texels along and across
 // them, but no finer than a share of the side that large surfaces have.
 constexpr float texels_along = 32.0f, texels_across = 16.0f, finest_share = 0.125f;
-constexpr std::uint32_t most_columns = 256;
+constexpr std::uint32_t max_columns = 256;
 constexpr float outside = 1.5f;     // texels: so far beyond its rim a surface still gives its nearest point
 constexpr float same_layer = 0.1f;  // texels: triangles that meet give the same height within this
 constexpr int margin = 1;           // texels around a chart
-constexpr float least_range = 8.0f; // of heights, in texels: nearly flat charts still tell steps from slopes
+constexpr float min_height_range = 8.0f; // of heights, in texels: nearly flat charts still tell steps from slopes
 
 struct Triangle {
     std::array<vec3, 3> corners, normals; // world space; normals of any length
@@ -85,7 +85,7 @@ Grid find_facing(const CurvedMesh& mesh, bool closed, std::uint32_t direction) {
     grid.direction = direction;
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const float cosine = shared::curved_place(direction, mesh.triangles[i].geometric).z;
-        if ((closed ? cosine : std::abs(cosine)) <= shared::curved_least_cosine)
+        if ((closed ? cosine : std::abs(cosine)) <= shared::curved_min_cosine)
             continue;
         grid.triangles.push_back(i);
         for (const vec3& corner : mesh.triangles[i].corners) {
@@ -103,7 +103,7 @@ void lay_out(Grid& grid, float texel_side) {
     const float longer = std::max(extent.x, extent.y), shorter = std::min(extent.x, extent.y);
     const float texel =
         std::clamp(std::min(longer / texels_along, shorter / texels_across), finest_share * texel_side, texel_side);
-    grid.texel = std::max(texel, longer / float(most_columns - 2 * margin - 2));
+    grid.texel = std::max(texel, longer / float(max_columns - 2 * margin - 2));
     const auto texels = [&](float side) { return std::uint32_t(std::ceil(side / grid.texel)) + 1 + 2 * margin; };
     grid.columns = texels(extent.x);
     grid.rows = texels(extent.y);
@@ -226,7 +226,7 @@ std::vector<shared::CurvedPoint> find_points(const CurvedMesh& mesh, const Grid&
 } // namespace
 
 void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes, const SurfacePatches& patches,
-                         float texel_side, std::uint64_t most_points) {
+                         float texel_side, std::uint64_t max_points) {
     *this = {};
     std::vector<CurvedMesh> parts;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
@@ -251,7 +251,7 @@ void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes
             }
         }
         texel_side *= 1.25f;
-    } while (total > most_points && texel_side < 1e3f);
+    } while (total > max_points && texel_side < 1e3f);
 
     std::unordered_map<ecs::Entity, std::vector<std::uint32_t>> leaves;
     for (std::uint32_t node = 0; node < patches.nodes().size(); ++node)
@@ -269,8 +269,8 @@ void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes
             chart.rows = grid.rows;
             if (grid.columns > 0) {
                 chart.row.place = vec4(grid.origin, 1.0f / grid.texel);
-                const float range = std::max(grid.high.z - grid.low.z, least_range * grid.texel);
-                chart.row.size = vec4(grid.columns, grid.rows, chart.first_point, shared::highest_curved / range);
+                const float range = std::max(grid.high.z - grid.low.z, min_height_range * grid.texel);
+                chart.row.size = vec4(grid.columns, grid.rows, chart.first_point, shared::curved_max_height / range);
                 const std::vector<shared::CurvedPoint> points = find_points(parts[i], grid);
                 points_.insert(points_.end(), points.begin(), points.end());
             }

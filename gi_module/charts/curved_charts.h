@@ -31,9 +31,9 @@ class CurvedCharts {
 public:
     // Finds the charts of all static instances. Those with normal maps have none: points know vertex normals alone.
     // `texel_side`, m: of large surfaces, smaller ones have finer texels; larger if there would be more than
-    // `most_points`.
+    // `max_points`.
     void build(ecs::Registry& registry, const scene::MeshStore& meshes, const SurfacePatches& patches, float texel_side,
-               std::uint64_t most_points);
+               std::uint64_t max_points);
 
     // `shared::curved_directions` in a row for an instance; empty charts have no columns.
     const std::vector<CurvedChart>& charts() const { return charts_; }

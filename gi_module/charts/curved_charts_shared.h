@@ -23,10 +23,10 @@ struct CurvedChartRow {
 
 // Heights are in [0, 1/2] within a chart; rough cells have this instead.
 SHARED_CONSTANT float curved_rough = 1.0f;
-SHARED_CONSTANT float highest_curved = 0.5f;
+SHARED_CONSTANT float curved_max_height = 0.5f;
 // Charts hold surfaces that are up to 66 degrees off their direction, 2.25 m of height per m. Over the diagonal of a
 // cell that is 3.2 cells; more is a step. From the mean of a cell's corners it is half of that.
-SHARED_CONSTANT float curved_least_cosine = 0.4f;
+SHARED_CONSTANT float curved_min_cosine = 0.4f;
 SHARED_CONSTANT float curved_cell_span = 3.3f;
 SHARED_CONSTANT float curved_point_span = 1.7f;
 

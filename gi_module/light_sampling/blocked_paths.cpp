@@ -43,9 +43,9 @@ bool BlockedPaths::crosses(const Box& box, vec3 from, vec3 to) {
     return enter < leave;
 }
 
-bool BlockedPaths::crosses_way(const Box& box, const LightSample& sample) {
-    for (std::uint32_t leg = 0; leg < sample.way_points; ++leg)
-        if (crosses(box, sample.way[leg], leg + 1 < sample.way_points ? sample.way[leg + 1] : sample.position))
+bool BlockedPaths::crosses_path(const Box& box, const LightSample& sample) {
+    for (std::uint32_t leg = 0; leg < sample.path_vertex_count; ++leg)
+        if (crosses(box, sample.path[leg], leg + 1 < sample.path_vertex_count ? sample.path[leg + 1] : sample.position))
             return true;
     return false;
 }
@@ -68,7 +68,7 @@ void BlockedPaths::update(ecs::Registry& registry, const scene::MeshStore& meshe
     blocked_.assign(samples.size(), 0);
     for (std::size_t i = 0; i < samples.size(); ++i)
         blocked_[i] =
-            std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) { return crosses_way(box, samples[i]); });
+            std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) { return crosses_path(box, samples[i]); });
     count_ = std::size_t(std::count(blocked_.begin(), blocked_.end(), std::uint8_t(1)));
 }
 

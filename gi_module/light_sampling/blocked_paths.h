@@ -33,7 +33,7 @@ private:
     };
     static bool is_large_box(const scene::Mesh& mesh, const Bounds& bounds, const mat4& matrix);
     static bool crosses(const Box& box, vec3 from, vec3 to);
-    static bool crosses_way(const Box& box, const LightSample& sample);
+    static bool crosses_path(const Box& box, const LightSample& sample);
 
     std::vector<Box> boxes_;
     std::vector<std::uint8_t> blocked_; // by sample

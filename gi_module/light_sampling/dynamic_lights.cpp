@@ -151,7 +151,7 @@ void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrac
         if (bounce == 1)
             path.first_hit = point.position;
         path.throughput *= point.material.base_colour;
-        sample.position = lift_sample(point.position, normal, rays, raytrace::Scope::static_only);
+        sample.position = offset_from_surface(point.position, normal, rays, raytrace::Scope::static_only);
         sample.normal = shading;
         sample.bounce = bounce;
         // What a path stops with is nearly the same wherever it stops, within limits: no sample outshines the others.

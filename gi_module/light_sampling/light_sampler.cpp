@@ -12,11 +12,11 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float lift_distance = 1e-3f; // m
+constexpr float surface_offset = 1e-3f; // m
 constexpr float ray_offset = 1e-4f;    // m, off the surface that a walk leaves
 constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
-constexpr std::uint64_t most_candidates = 1u << 18;
+constexpr std::uint64_t max_candidates = 1u << 18;
 
 SequenceKind sequence_kind(const SampleRequest& settings) {
     return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
@@ -66,7 +66,7 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
         return sample;
     }
     const EmittedPoint point = sample_emitter_point(emitter, random.at(0), random.at(1));
-    sample.position = lift_sample(point.position, point.normal, rays, raytrace::Scope::everything);
+    sample.position = offset_from_surface(point.position, point.normal, rays, raytrace::Scope::everything);
     sample.normal = point.normal;
     sample.flux = emitter.flux / count;
     return sample;
@@ -98,12 +98,12 @@ std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitte
 }
 
 // The oldest point gives way where there is no room.
-void add_way_point(LightSample& sample, vec3 point) {
-    if (sample.way_points == LightSample::most_way_points) {
-        std::rotate(sample.way.begin(), sample.way.begin() + 1, sample.way.end());
-        --sample.way_points;
+void add_path_vertex(LightSample& sample, vec3 point) {
+    if (sample.path_vertex_count == LightSample::max_path_vertices) {
+        std::rotate(sample.path.begin(), sample.path.begin() + 1, sample.path.end());
+        --sample.path_vertex_count;
     }
-    sample.way[sample.way_points++] = point;
+    sample.path[sample.path_vertex_count++] = point;
 }
 
 // The samples of one walk, for a flux of 1 W in all walks together (divided by their number later).
@@ -144,16 +144,16 @@ std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::v
         if (!(luminance(flux) > 0.0f))
             break;
         LightSample sample;
-        sample.position = lift_sample(point.position, normal, rays, walk_scope(settings));
+        sample.position = offset_from_surface(point.position, normal, rays, walk_scope(settings));
         sample.normal = shading_normal;
         sample.flux = flux;
         sample.bounce = bounce;
         sample.emitter = emitter.entity;
         if (!samples.empty()) {
-            sample.way = samples.back().way;
-            sample.way_points = samples.back().way_points;
+            sample.path = samples.back().path;
+            sample.path_vertex_count = samples.back().path_vertex_count;
         }
-        add_way_point(sample, ray.origin);
+        add_path_vertex(sample, ray.origin);
         samples.push_back(sample);
         ray = {point.position + ray_offset * normal, sample_cosine_direction(shading_normal, u, v), 0.0f, 1e30f};
         if (glm::dot(ray.direction, normal) <= 0.0f)
@@ -210,10 +210,10 @@ LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std:
                          {sequence_kind(settings), hash_combine(settings.seed, emitter.entity.index), index}, rays);
 }
 
-vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope) {
-    const raytrace::Ray ray{position + 1e-5f * normal, normal, 0.0f, 2.0f * lift_distance};
+vec3 offset_from_surface(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope) {
+    const raytrace::Ray ray{position + 1e-5f * normal, normal, 0.0f, 2.0f * surface_offset};
     const auto hit = rays.closest_hit(ray, scope);
-    return position + normal * (hit ? 0.5f * hit->distance : lift_distance);
+    return position + normal * (hit ? 0.5f * hit->distance : surface_offset);
 }
 
 SampleBudget divide_samples(const SampleRequest& settings, const std::vector<Emitter>& emitters) {
@@ -280,7 +280,7 @@ std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, s
     std::uint32_t walks = 0;
     // With clusters, several times as many are drawn, and like ones are then joined.
     const std::uint64_t wanted = std::max<std::uint64_t>(
-        count, std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, most_candidates));
+        count, std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, max_candidates));
     while (samples.size() < wanted && walks < walk_limit) {
         // Rounds run in parallel; walks are then taken in order until there are enough.
         std::vector<std::vector<LightSample>> round(walks_per_round);

@@ -35,6 +35,6 @@ LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std:
 std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count);
 
 // Moves a sample off its surface: 1 mm, but at most half of the way to the next surface.
-vec3 lift_sample(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope);
+vec3 offset_from_surface(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope);
 
 } // namespace sunfleck::gi

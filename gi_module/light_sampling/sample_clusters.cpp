@@ -13,7 +13,7 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr float normal_length = 1.0f; // m: how far apart opposite normals count, halved
-constexpr float least_extent = 0.3f;  // m: a cluster's flux counts even where its extent is nothing
+constexpr float min_extent = 0.3f;  // m: a cluster's flux counts even where its extent is nothing
 
 using Place = std::array<float, 6>;
 
@@ -50,7 +50,7 @@ public:
                 high[k] = std::max(high[k], place[k]);
             }
         }
-        double square = double(least_extent) * double(least_extent);
+        double square = double(min_extent) * double(min_extent);
         for (std::size_t k = 0; k < 6; ++k) {
             square += double(high[k] - low[k]) * double(high[k] - low[k]);
             if (high[k] - low[k] > high[std::size_t(cluster.axis)] - low[std::size_t(cluster.axis)])

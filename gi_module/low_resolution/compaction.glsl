@@ -40,8 +40,8 @@ void sum_blocks() {
     }
     if (lane != 0u)
         return;
-    const uint total = min((total_entries + group_pixels - 1u) / group_pixels, group_capacity());
-    for (uint i = total_entries; i < total * group_pixels; ++i)
+    const uint total = min((total_entries + pixel_group_size - 1u) / pixel_group_size, group_capacity());
+    for (uint i = total_entries; i < total * pixel_group_size; ++i)
         listed[i] = no_pixel;
     commands[command_groups] = total;
     commands[command_groups + 1u] = 1u;
@@ -50,13 +50,13 @@ void sum_blocks() {
     commands[command_packed + 1u] = 1u;
     commands[command_packed + 2u] = 1u;
     commands[command_totals] = total_entries;
-    commands[command_totals + 1u] = min(total_entries, total * group_pixels);
+    commands[command_totals + 1u] = min(total_entries, total * pixel_group_size);
     commands[command_totals + 2u] = total;
 }
 
 void list_block(uint block) {
     uint place = block_entries[block];
-    const uint end = group_capacity() * group_pixels;
+    const uint end = group_capacity() * pixel_group_size;
     for (uint i = 0; i < units_per_block; ++i) {
         uint unit;
         uvec2 mask = marked_in(block, i, unit);

@@ -19,7 +19,7 @@ void main() {
         packed = pixels[entry];
     } else {
         const uvec2 tile = uvec2(gl_WorkGroupID.x % constants.group_columns, gl_WorkGroupID.x / constants.group_columns);
-        const uvec2 low = tile * group_side + uvec2(gl_LocalInvocationID.x % group_side, gl_LocalInvocationID.x / group_side);
+        const uvec2 low = tile * pixel_group_side + uvec2(gl_LocalInvocationID.x % pixel_group_side, gl_LocalInvocationID.x / pixel_group_side);
         const uvec2 pixel = min(low * constants.scale + constants.scale / 2u, uvec2(constants.width, constants.height) - 1u);
         packed = low.x < constants.low_width && low.y < constants.low_height ? pixel.x | pixel.y << 16 : no_pixel;
     }

@@ -29,8 +29,8 @@ shared::LowResolutionConstants make_constants(const LowResolutionSettings& setti
     constants.scale = frame.every_pixel ? 1 : settings.low_resolution;
     constants.low_width = divide_up(constants.width, constants.scale);
     constants.low_height = divide_up(constants.height, constants.scale);
-    constants.group_columns = divide_up(constants.low_width, shared::group_side);
-    constants.group_count = constants.group_columns * divide_up(constants.low_height, shared::group_side);
+    constants.group_columns = divide_up(constants.low_width, shared::pixel_group_side);
+    constants.group_count = constants.group_columns * divide_up(constants.low_height, shared::pixel_group_side);
     constants.cell_columns = constants.low_width + 1;
     constants.cell_rows = constants.low_height + 1;
     constants.block_columns = divide_up(constants.cell_columns, 8);
@@ -39,7 +39,7 @@ shared::LowResolutionConstants make_constants(const LowResolutionSettings& setti
     // A radian is 0.64 (about an axis) to 1.04 (between axes) octahedral units; the smaller, so that none is missed.
     const float limit = 0.64f * glm::radians(settings.repair_angle);
     constants.normal_limit = limit * limit;
-    const std::uint64_t whole = divide_up(constants.width * constants.height, shared::group_pixels);
+    const std::uint64_t whole = divide_up(constants.width * constants.height, shared::pixel_group_size);
     constants.group_capacity = std::uint32_t(
         std::clamp<std::uint64_t>(std::max(whole / min_repair_fraction, std::min(whole, small_picture_groups)), 64,
                                   std::max<std::uint64_t>(repair_memory / frame.bytes_per_group, 64)));
@@ -94,7 +94,7 @@ Status LowResolution::make_buffer(gpu::Buffer& buffer, const char* name, std::ui
 
 Status LowResolution::make_buffers(const shared::LowResolutionConstants& constants, gpu::FrameResources& resources) {
     const std::uint64_t groups = std::max(constants.group_capacity, constants.group_count);
-    const std::uint64_t entries = groups * shared::group_pixels;
+    const std::uint64_t entries = groups * shared::pixel_group_size;
     SUNFLECK_TRY(make_buffer(pixels_, "pixels of groups", entries * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(sums_, "sums of groups", entries * 16, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, resources,
                              VK_FORMAT_R32G32B32A32_SFLOAT));

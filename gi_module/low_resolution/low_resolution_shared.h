@@ -8,8 +8,8 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-SHARED_CONSTANT uint group_pixels = 64u;
-SHARED_CONSTANT uint group_side = 8u; // of a tile, in pixels of the low-resolution picture
+SHARED_CONSTANT uint pixel_group_size = 64u;
+SHARED_CONSTANT uint pixel_group_side = 8u; // of a tile, in pixels of the low-resolution picture
 // An entry's pixel: x in the low 16 bits, y from bit 16. The top bit: nothing to light there (background, or no pixel).
 SHARED_CONSTANT uint no_pixel = 0xffffffffu;
 SHARED_CONSTANT uint unlit_pixel = 0x80000000u;

@@ -39,8 +39,8 @@ struct Neighbour {
 
 Neighbour neighbour_at(ivec2 low, vec2 first) {
     low = clamp(low, ivec2(0), ivec2(constants.low_width, constants.low_height) - 1);
-    const uint group = uint(low.y) / group_side * constants.group_columns + uint(low.x) / group_side;
-    const vec4 sum = texelFetch(sums, int(group * group_pixels + uint(low.y) % group_side * group_side + uint(low.x) % group_side));
+    const uint group = uint(low.y) / pixel_group_side * constants.group_columns + uint(low.x) / pixel_group_side;
+    const vec4 sum = texelFetch(sums, int(group * pixel_group_size + uint(low.y) % pixel_group_side * pixel_group_side + uint(low.x) % pixel_group_side));
     const ivec2 pixel = min(low * scale + scale / 2, ivec2(constants.width, constants.height) - 1);
     const float depth = texelFetch(depth_image, pixel, 0).r;
     const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t invocations = 64; // texels that a work group handles at a time: baked_light.comp
 // Samples times texels that a frame evaluates at most, and one patch more: 30 to 60 ms on two cores. More at first: the
 // frame that builds the visibility database is long anyway.
-constexpr std::uint64_t most_evaluations = 16000000, most_evaluations_at_first = 400000000;
+constexpr std::uint64_t max_evaluations = 16000000, max_first_evaluations = 400000000;
 // Of the light: by so much may second differences of neighbouring texels exceed a straight line. Interpolation is off
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
@@ -154,7 +154,7 @@ bool BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<
         }
     }
     baked_rows_.assign(rows.begin(), rows.end());
-    return evaluations <= most_evaluations;
+    return evaluations <= max_evaluations;
 }
 
 void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
@@ -195,14 +195,14 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
     std::vector<std::uint32_t> changed;
     const bool first = generation_ != database.generation();
     const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
-                      find_new_strengths(samples, baked_rows_, rows, changed);
+                      find_changed_intensities(samples, baked_rows_, rows, changed);
     if (!same || !follow_strengths(database, rows, changed)) {
         jobs_.clear();
         finish_.clear();
         job_rows_.clear();
         SUNFLECK_TRY(start_anew(database, light_maps, curved, rows, resources));
     }
-    bake_waiting(database, samples, first ? most_evaluations_at_first : most_evaluations);
+    bake_waiting(database, samples, first ? max_first_evaluations : max_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(invocations);
     finish_.split(invocations);

@@ -21,9 +21,9 @@ layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 2) readonly buffer Nodes { NodeRow node_rows[]; };
 layout(set = 0, binding = 3) readonly buffer Rows { uint rows[]; };
-layout(set = 0, binding = 4) writeonly buffer Slots { uint entry_slots[]; };
+layout(set = 0, binding = 4) writeonly buffer Slots { uint entry_local_nodes[]; };
 layout(set = 0, binding = 5) writeonly buffer Entries { uint entries[]; };
-layout(set = 0, binding = 6) writeonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 6) writeonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 7) readonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = 8) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 9) readonly buffer RoughEntries { uint rough_entries[]; };
@@ -40,12 +40,12 @@ vec3 normal_at(ivec2 pixel) { return unpack_normal(texelFetch(normals_image, pix
 ivec2 pixel_of(uint entry) { return ivec2(pixels[entry] & 0xffffu, pixels[entry] >> 16); }
 
 // The cone about the mean of all normals, given their sum.
-void find_cone(uint group, inout GroupBounds bounds) {
+void find_cone(uint group, inout PixelGroupBounds bounds) {
     const float size = length(bounds.axis);
     bounds.axis /= max(size, 1e-6);
     bounds.cosine = size > 0.0 ? 1.0 : -1.0;
-    for (uint i = 0; i < group_pixels; ++i) {
-        const uint entry = rough_entries[group * group_pixels + i];
+    for (uint i = 0; i < pixel_group_size; ++i) {
+        const uint entry = rough_entries[group * pixel_group_size + i];
         if (entry != no_pixel)
             bounds.cosine = min(bounds.cosine, dot(bounds.axis, normal_at(pixel_of(entry))));
     }
@@ -56,13 +56,13 @@ void main() {
     const uint group_count = indirect != 0 ? commands[command_totals + 2u] : constants.group_count;
     if (group >= group_count)
         return;
-    uint slot_nodes[any_node_slot]; // with node_bent, as entries have it
-    [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
-        slot_nodes[s] = no_node;
+    uint group_nodes[other_nodes]; // with node_normal_differs, as entries have it
+    [[unroll]] for (uint s = 0; s < other_nodes; ++s)
+        group_nodes[s] = no_node;
     bool any_pixel = false, any_node = false;
-    GroupBounds bounds = no_bounds();
-    for (uint i = 0; i < group_pixels; ++i) {
-        const uint place = group * group_pixels + i;
+    PixelGroupBounds bounds = no_bounds();
+    for (uint i = 0; i < pixel_group_size; ++i) {
+        const uint place = group * pixel_group_size + i;
         uint entry = place;
         if (phase == phase_rough)
             entry = rough_entries[place];
@@ -71,11 +71,11 @@ void main() {
         exists = exists && (pixels[entry] & unlit_pixel) == 0u;
         uint node = exists ? entry_nodes[entry] : no_node;
         node = node == no_node ? no_node : node & ~node_baked;
-        uint slot = any_node_slot;
+        uint slot = other_nodes;
         if (exists && node != no_node && visibility != 0) {
-            [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
-                if (slot == any_node_slot && (slot_nodes[s] == node || slot_nodes[s] == no_node)) {
-                    slot_nodes[s] = node;
+            [[unroll]] for (uint s = 0; s < other_nodes; ++s) {
+                if (slot == other_nodes && (group_nodes[s] == node || group_nodes[s] == no_node)) {
+                    group_nodes[s] = node;
                     slot = s;
                 }
             }
@@ -88,29 +88,29 @@ void main() {
             bounds.high = max(bounds.high, position);
             bounds.axis += normal_at(pixel);
         }
-        any_node = any_node || (exists && slot == any_node_slot);
-        entry_slots[place] = slot | (node != no_node && (node & node_mask) >= constants.first_mover ? entry_on_mover : 0u);
+        any_node = any_node || (exists && slot == other_nodes);
+        entry_local_nodes[place] = slot | (node != no_node && (node & node_mask) >= constants.first_mover ? entry_on_mover : 0u);
         // Pixels without a slot of their own are lit from nothing, whatever their light map holds.
-        if (slot == any_node_slot && first_batch != 0u && exists)
+        if (slot == other_nodes && first_batch != 0u && exists)
             sums[entry] = vec4(0.0, 0.0, 0.0, 1.0);
     }
     if (phase == phase_rough)
         find_cone(group, bounds);
-    bool mapped[any_node_slot];
-    [[unroll]] for (uint s = 0; s < any_node_slot; ++s)
-        mapped[s] = light_maps != 0 && slot_nodes[s] != no_node && (slot_nodes[s] & node_bent) == 0u && node_rows[min(slot_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
+    bool mapped[other_nodes];
+    [[unroll]] for (uint s = 0; s < other_nodes; ++s)
+        mapped[s] = light_maps != 0 && group_nodes[s] != no_node && (group_nodes[s] & node_normal_differs) == 0u && node_rows[min(group_nodes[s], constants.node_count - 1u)].first_texel != no_light_map;
 
     const uint first = group * constants.list_stride;
     uint tested = 0u, untested = 0u;
     const uint end = any_pixel ? constants.batch_first + constants.batch_count : constants.batch_first;
     for (uint word = constants.batch_first / pairs_per_word; word * pairs_per_word < end; ++word) {
         // Two bits a sample; after this the lower one of each pair speaks.
-        uint partial[any_node_slot], none[any_node_slot];
+        uint partial[other_nodes], none[other_nodes];
         uint any_partial = any_node ? 0x55555555u : 0u, any_free = 0u;
-        [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
+        [[unroll]] for (uint s = 0; s < other_nodes; ++s) {
             partial[s] = none[s] = 0u;
-            if (slot_nodes[s] != no_node) {
-                const uint states = rows[(slot_nodes[s] & node_mask) * constants.words_per_row + word];
+            if (group_nodes[s] != no_node) {
+                const uint states = rows[(group_nodes[s] & node_mask) * constants.words_per_row + word];
                 const uint low = states & 0x55555555u, high = (states >> 1) & 0x55555555u;
                 partial[s] = high & ~low;
                 none[s] = low & ~high;
@@ -126,8 +126,8 @@ void main() {
             const uint bit = 1u << (2u * k);
             if (((any_partial | any_free) & bit) == 0u || sample_index < constants.batch_first || sample_index >= end)
                 continue;
-            uint asks = 1u << any_node_slot, values = 0u;
-            [[unroll]] for (uint s = 0; s < any_node_slot; ++s) {
+            uint asks = 1u << other_nodes, values = 0u;
+            [[unroll]] for (uint s = 0; s < other_nodes; ++s) {
                 const bool is_partial = (partial[s] & bit) != 0u;
                 asks |= is_partial ? 1u << s : 0u;
                 values |= (mapped[s] ? is_partial : (none[s] & bit) != 0u) ? 1u << s : 0u;
@@ -135,12 +135,12 @@ void main() {
             const uint in_batch = sample_index - constants.batch_first;
             if (phase == phase_rough && !may_light(light_rows[in_batch], bounds))
                 continue;
-            const uint entry = in_batch | (values << entry_slots_shift) | (asks << entry_asks_shift);
+            const uint entry = in_batch | (values << list_values_shift) | (asks << list_tests_shift);
             if ((any_partial & bit) != 0u)
                 entries[first + tested++] = entry;
             else
                 entries[first + constants.list_stride - 1u - untested++] = entry;
         }
     }
-    counts[group] = GroupCounts(tested, untested);
+    counts[group] = LightListCounts(tested, untested);
 }

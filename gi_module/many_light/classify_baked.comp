@@ -16,9 +16,9 @@ layout(constant_id = 0) const uint indirect = 0; // 1: the number of groups is i
 layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 2) readonly buffer Rows { uint rows[]; };
-layout(set = 0, binding = 3) buffer Slots { uint entry_slots[]; };
+layout(set = 0, binding = 3) buffer Slots { uint entry_local_nodes[]; };
 layout(set = 0, binding = 4) writeonly buffer Entries { uint entries[]; };
-layout(set = 0, binding = 5) writeonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 5) writeonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 6) readonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = 7) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 8) uniform sampler2D depth_image;
@@ -27,12 +27,12 @@ layout(set = 0, binding = 10) readonly buffer Movers { vec4 movers[]; }; // sphe
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 // A pixel's nodes beyond these are not looked up: every sample is on the list. Neither is wrong, only slow.
-const uint most_nodes = 16u;
-const uint most_words = lights_per_batch / 32u + 1u;
+const uint max_nodes = 16u;
+const uint max_words = lights_per_batch / 32u + 1u;
 
 // Whether a mover, where it is or where the sample's map may still show it, can shadow anything of the group.
 bool may_be_shadowed(LightRow light, vec3 middle, float radius) {
-    bool found = constants.mover_count > most_movers;
+    bool found = constants.mover_count > max_culled_movers;
     for (uint i = 0; i < constants.mover_count && !found; ++i)
         found = shadow_cone_distance(light.position_bound.xyz, middle, radius, movers[i].xyz) <= movers[i].w + light.bitangent.w;
     return found;
@@ -43,30 +43,30 @@ void main() {
     const uint group_count = indirect != 0 ? commands[command_totals + 2u] : constants.group_count;
     if (group >= group_count)
         return;
-    uint nodes[most_nodes];
+    uint nodes[max_nodes];
     uint node_count = 0u, last = no_node;
     bool more = false;
-    for (uint i = 0; i < group_pixels; ++i) {
-        const uint entry = group * group_pixels + i;
+    for (uint i = 0; i < pixel_group_size; ++i) {
+        const uint entry = group * pixel_group_size + i;
         const uint node = (pixels[entry] & unlit_pixel) == 0u ? entry_nodes[entry] : no_node;
         const bool is_baked = node != no_node && (node & node_baked) != 0u;
-        entry_slots[entry] = is_baked ? entry_is_baked : 0u;
+        entry_local_nodes[entry] = is_baked ? entry_is_baked : 0u;
         if (!is_baked || node == last)
             continue;
         last = node;
         bool known = false;
         for (uint k = 0; k < node_count; ++k)
             known = known || nodes[k] == (node & node_mask);
-        if (!known && node_count < most_nodes)
+        if (!known && node_count < max_nodes)
             nodes[node_count++] = node & node_mask;
         else
             more = more || !known;
     }
     const uint end = constants.batch_first + constants.batch_count;
     const uint first_word = constants.batch_first / 32u;
-    uint meets[most_words], blocked[most_words];
+    uint meets[max_words], blocked[max_words];
     bool any_meets = false;
-    for (uint i = 0; i < most_words; ++i) {
+    for (uint i = 0; i < max_words; ++i) {
         const uint word = first_word + i;
         meets[i] = blocked[i] = more && word * 32u < end ? 0xffffffffu : 0u;
         for (uint k = 0; k < node_count && word * 32u < end; ++k) {
@@ -77,9 +77,9 @@ void main() {
         any_meets = any_meets || meets[i] != 0u;
     }
     vec3 low = vec3(1e30), high = vec3(-1e30);
-    for (uint i = 0; i < (any_meets ? group_pixels : 0u); ++i) {
-        const uint entry = group * group_pixels + i;
-        if (entry_slots[entry] != entry_is_baked)
+    for (uint i = 0; i < (any_meets ? pixel_group_size : 0u); ++i) {
+        const uint entry = group * pixel_group_size + i;
+        if (entry_local_nodes[entry] != entry_is_baked)
             continue;
         const ivec2 pixel = ivec2(pixels[entry] & 0xffffu, pixels[entry] >> 16);
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, texelFetch(depth_image, pixel, 0).r);
@@ -90,7 +90,7 @@ void main() {
     const float radius = 0.5 * length(high - low) * 1.0001 + 1e-4;
     const uint first = group * constants.list_stride;
     uint tested = 0u, free = 0u;
-    for (uint i = 0; i < (any_meets ? most_words : 0u); ++i) {
+    for (uint i = 0; i < (any_meets ? max_words : 0u); ++i) {
         uint left = meets[i];
         while (left != 0u) {
             const uint bit = uint(findLSB(left));
@@ -107,5 +107,5 @@ void main() {
                 entries[first + constants.list_stride - 1u - free++] = in_batch;
         }
     }
-    counts[group] = GroupCounts(tested, free);
+    counts[group] = LightListCounts(tested, free);
 }

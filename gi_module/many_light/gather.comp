@@ -116,7 +116,7 @@ vec4 curved_light(uint first_chart, vec3 position, vec3 geometric_normal) {
 }
 
 void main() {
-    const uint entry = gl_WorkGroupID.x * group_pixels + gl_LocalInvocationID.x;
+    const uint entry = gl_WorkGroupID.x * pixel_group_size + gl_LocalInvocationID.x;
     ivec2 pixel;
     bool exists;
     if (from_list != 0) {
@@ -124,8 +124,8 @@ void main() {
         exists = packed != no_pixel;
         pixel = exists ? ivec2(packed & 0xffffu, packed >> 16) : ivec2(0);
     } else {
-        const uint column = (gl_WorkGroupID.x % constants.group_columns) * group_side + gl_LocalInvocationID.x % group_side;
-        const uint row = (gl_WorkGroupID.x / constants.group_columns) * group_side + gl_LocalInvocationID.x / group_side;
+        const uint column = (gl_WorkGroupID.x % constants.group_columns) * pixel_group_side + gl_LocalInvocationID.x % pixel_group_side;
+        const uint row = (gl_WorkGroupID.x / constants.group_columns) * pixel_group_side + gl_LocalInvocationID.x / pixel_group_side;
         exists = column < constants.low_width && row < constants.low_height;
         pixel = min(ivec2(column, row) * int(constants.scale) + int(constants.scale / 2u),
                     ivec2(constants.width, constants.height) - 1);
@@ -151,7 +151,7 @@ void main() {
                 const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
                 const bool bent = dot(bend, bend) >= flat_shaded_limit; // texels know the patch's normal alone
                 bool unshadowed = !bent && light.a != 0.0;
-                node |= bent ? node_bent : unshadowed ? 0u : node_baked;
+                node |= bent ? node_normal_differs : unshadowed ? 0u : node_baked;
                 sum = bent ? vec3(0.0) : light.rgb;
                 curved = bent && baked != 0 && instance.first_curved_chart != no_node;
                 // A loop of one turn at most: unlike a branch, a CPU device leaves it out where no pixel needs it.

@@ -2,19 +2,19 @@
 //
 // The including shader defines before: light_class, and includes light_row_shared.h.
 
-struct GroupBounds {
+struct PixelGroupBounds {
     vec3 low, high;
     vec3 axis;    // unit length, of a cone that holds all normals
     float cosine; // of its half angle; -1 where there is no cone
 };
 
-GroupBounds no_bounds() { return GroupBounds(vec3(1e30), vec3(-1e30), vec3(0.0), 1.0); }
+PixelGroupBounds no_bounds() { return PixelGroupBounds(vec3(1e30), vec3(-1e30), vec3(0.0), 1.0); }
 
-vec3 middle_of(GroupBounds bounds) { return 0.5 * (bounds.low + bounds.high); }
-float radius_of(GroupBounds bounds) { return 0.5 * length(bounds.high - bounds.low) * 1.0001 + 1e-4; }
+vec3 middle_of(PixelGroupBounds bounds) { return 0.5 * (bounds.low + bounds.high); }
+float radius_of(PixelGroupBounds bounds) { return 0.5 * length(bounds.high - bounds.low) * 1.0001 + 1e-4; }
 
 // False only if each pixel is behind the sample's surface, or the sample behind each pixel's.
-bool may_light(LightRow light, GroupBounds bounds) {
+bool may_light(LightRow light, PixelGroupBounds bounds) {
     if (light_class == light_class_directional)
         return true;
     const float radius = radius_of(bounds);

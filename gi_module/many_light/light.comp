@@ -27,9 +27,9 @@ layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform Lights { LightRow light_rows[lights_per_batch]; };
 layout(set = 0, binding = 4) uniform samplerBuffer map_texels;
 layout(set = 0, binding = 5) readonly buffer Pixels { uint pixels[]; };
-layout(set = 0, binding = 6) readonly buffer Slots { uint entry_slots[]; };
+layout(set = 0, binding = 6) readonly buffer Slots { uint entry_local_nodes[]; };
 layout(set = 0, binding = 7) readonly buffer Entries { uint entries[]; };
-layout(set = 0, binding = 8) readonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 8) readonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 10) writeonly uniform image2D output_image;
 layout(set = 0, binding = 11) uniform samplerBuffer static_map_texels;
@@ -55,7 +55,7 @@ float taken_by_movers(LightRow light, Pixel pixel, float visibility) {
 
 void main() {
     const uint group = gl_WorkGroupID.x;
-    const GroupCounts count = counts[group];
+    const LightListCounts count = counts[group];
     if (to_image == 0 && count.tested + count.untested == 0u)
         return; // what the sums hold is all
     Pixel surface[pixels_per_invocation];
@@ -63,7 +63,7 @@ void main() {
     uint slot[pixels_per_invocation], entry_of[pixels_per_invocation];
     ivec2 place[pixels_per_invocation];
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        const uint i = group * group_pixels + k * lanes + gl_LocalInvocationID.x;
+        const uint i = group * pixel_group_size + k * lanes + gl_LocalInvocationID.x;
         entry_of[k] = i;
         if (phase == phase_rough)
             entry_of[k] = rough_entries[i];
@@ -76,23 +76,23 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
-        slot[k] = entry_slots[i] & (entry_on_mover - 1u);
-        surface[k].on_mover = (entry_slots[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
-        if (phase == phase_baked && (entry_slots[i] & entry_is_baked) == 0u)
+        slot[k] = entry_local_nodes[i] & (entry_on_mover - 1u);
+        surface[k].on_mover = (entry_local_nodes[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
+        if (phase == phase_baked && (entry_local_nodes[i] & entry_is_baked) == 0u)
             surface[k].normal = vec3(0.0); // no sample lights it
         sum[k] = sums[entry];
     }
     const uint first = group * constants.list_stride;
     for (uint i = 0; i < count.tested; ++i) {
         const uint entry = entries[first + i];
-        const LightRow light = light_rows[entry & entry_sample_mask];
+        const LightRow light = light_rows[entry & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
             const LightFactor factor = light_factor(light, surface[k], true);
             if (phase == phase_baked) {
                 sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * taken_by_movers(light, surface[k], factor.visibility));
             } else {
-                const float value = float((entry >> (slot[k] + entry_slots_shift)) & 1u);
-                const bool asks = ((entry >> (slot[k] + entry_asks_shift)) & 1u) != 0u;
+                const float value = float((entry >> (slot[k] + list_values_shift)) & 1u);
+                const bool asks = ((entry >> (slot[k] + list_tests_shift)) & 1u) != 0u;
                 sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (asks ? factor.visibility - value : value));
             }
         }
@@ -100,13 +100,13 @@ void main() {
     const uint last = first + constants.list_stride - 1u;
     for (uint i = 0; i < count.untested; ++i) {
         const uint entry = entries[last - i];
-        const LightRow light = light_rows[entry & entry_sample_mask];
+        const LightRow light = light_rows[entry & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
             if (phase == phase_baked) { // no static geometry is in the way
                 const LightFactor factor = light_factor(light, surface[k], true);
                 sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * (1.0 - factor.visibility));
             } else {
-                const float wanted = float((entry >> (slot[k] + entry_slots_shift)) & 1u);
+                const float wanted = float((entry >> (slot[k] + list_values_shift)) & 1u);
                 sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * wanted);
             }
         }

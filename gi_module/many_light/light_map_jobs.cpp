@@ -7,8 +7,8 @@ namespace sunfleck::gi {
 namespace {
 
 // Of an invocation's loops in all: llvmpipe ends a shader's loops, silently, after 65,535.
-constexpr std::uint32_t most_iterations = 40000;
-constexpr std::size_t most_new_strengths = 64; // that are followed; with more, all is summed anew
+constexpr std::uint32_t max_iterations = 40000;
+constexpr std::size_t max_changed_intensities = 64; // that are followed; with more, all is summed anew
 
 } // namespace
 
@@ -40,7 +40,7 @@ void LightMapJobs::add(shared::LightMapJob job, bool clear) {
 void LightMapJobs::split(std::uint32_t invocations) {
     std::vector<shared::LightMapJob> parts;
     for (shared::LightMapJob job : jobs_) {
-        const std::uint32_t turns = std::max(most_iterations / (job.change_count + 1), 1u);
+        const std::uint32_t turns = std::max(max_iterations / (job.change_count + 1), 1u);
         const std::uint32_t all = job.columns * job.rows;
         for (job.first = 0; job.first < all; job.first += job.count) {
             job.count = std::min(turns * invocations, all - job.first);
@@ -50,7 +50,7 @@ void LightMapJobs::split(std::uint32_t invocations) {
     jobs_ = std::move(parts);
 }
 
-bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
+bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
                         std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
     if (now.size() != before.size())
         return false;
@@ -63,7 +63,7 @@ bool find_new_strengths(std::span<const LightSample> samples, std::span<const sh
             return false;
         changed.push_back(i);
     }
-    return changed.size() <= most_new_strengths;
+    return changed.size() <= max_changed_intensities;
 }
 
 } // namespace sunfleck::gi

@@ -48,7 +48,7 @@ inline bool reaches(PairState state) {
 
 // Finds the held samples whose strength alone changed since `before`. False if something else changed, or the strengths
 // of more samples than it pays to follow.
-bool find_new_strengths(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
+bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
                         std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed);
 
 } // namespace sunfleck::gi

@@ -9,10 +9,10 @@ namespace {
 
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
-constexpr std::uint32_t most_samples = 60000; // with more, a single texel would take too many
+constexpr std::uint32_t max_samples = 60000; // with more, a single texel would take too many
 constexpr std::uint32_t invocations = 64;     // of a work group: light_maps.comp
-constexpr std::uint32_t most_texels = 256;    // along a patch's side
-constexpr std::uint64_t most_bytes = std::uint64_t(128) << 20;
+constexpr std::uint32_t max_texels = 256;    // along a patch's side
+constexpr std::uint64_t max_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
 
 } // namespace
@@ -34,7 +34,7 @@ Result<std::unique_ptr<LightMaps>> LightMaps::create(gpu::Device& device, gpu::P
 
 Status LightMaps::lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources) {
     // Large scenes get coarser maps: a shader sees so many bytes of a buffer, and no host has memory without end.
-    const std::uint64_t most = std::min(device_.traits().max_storage_range, most_bytes) / sizeof(glm::ivec4);
+    const std::uint64_t most = std::min(device_.traits().max_storage_range, max_bytes) / sizeof(glm::ivec4);
     std::uint64_t total = place_maps(database, texel_side);
     for (int i = 0; total > most && i < 64; ++i)
         total = place_maps(database, texel_side *= 1.25f);
@@ -58,10 +58,10 @@ std::uint64_t LightMaps::place_maps(const VisibilityDatabase& database, float te
         const SurfacePatch& patch = database.patches().nodes()[i];
         shared::NodeRow& row = node_rows_[i];
         row.first_texel = shared::no_light_map;
-        if (!patch.planar || !patch.is_leaf() || database.sample_count() > most_samples)
+        if (!patch.planar || !patch.is_leaf() || database.sample_count() > max_samples)
             continue;
         const auto texels = [&](const dvec3& a, const dvec3& b) {
-            return std::clamp(std::uint32_t(std::ceil(float(glm::length(b - a)) / texel_side)) + 1u, 2u, most_texels);
+            return std::clamp(std::uint32_t(std::ceil(float(glm::length(b - a)) / texel_side)) + 1u, 2u, max_texels);
         };
         row.place = patch.place;
         row.chart = patch.chart;
@@ -99,7 +99,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
                          std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
     jobs_.clear();
     std::vector<std::uint32_t> changed;
-    if (generation_ == database.generation() && find_new_strengths(samples, summed_rows_, rows, changed)) {
+    if (generation_ == database.generation() && find_changed_intensities(samples, summed_rows_, rows, changed)) {
         job_rows_ = summed_rows_;
         for (const std::uint32_t sample : changed)
             job_rows_.push_back(rows[sample]);

@@ -55,7 +55,7 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
         if (!item.is_static && item.casts_shadow)
             spheres.emplace_back(item.bounds.centre(), 0.5f * glm::length(item.bounds.extent()));
     mover_count_ = std::uint32_t(spheres.size());
-    spheres.resize(std::clamp<std::size_t>(spheres.size(), 1, shared::most_movers));
+    spheres.resize(std::clamp<std::size_t>(spheres.size(), 1, shared::max_culled_movers));
     SUNFLECK_ASSIGN(movers_, resources.upload(std::span<const vec4>(spheres)));
     return tables_.update(device_, database, scene.curved, scene.gpu_scene, node_rows_, changed, resources);
 }
@@ -73,12 +73,12 @@ Status ManyLight::make_buffer(gpu::Buffer& buffer, const char* name, std::uint64
 
 Status ManyLight::make_buffers(const shared::ManyLightConstants& constants, gpu::FrameResources& resources) {
     const std::uint64_t groups = std::max(constants.group_capacity, constants.group_count);
-    const std::uint64_t entries = groups * shared::group_pixels;
-    const std::uint64_t blocks = divide_up(std::uint32_t(groups), shared::groups_per_block);
+    const std::uint64_t entries = groups * shared::pixel_group_size;
+    const std::uint64_t blocks = divide_up(std::uint32_t(groups), shared::pixel_groups_per_block);
     SUNFLECK_TRY(make_buffer(nodes_, "nodes of groups", entries * 4, 0, resources));
-    SUNFLECK_TRY(make_buffer(slots_, "slots of groups", entries * 4, 0, resources));
+    SUNFLECK_TRY(make_buffer(local_nodes_, "local nodes of groups", entries * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(entries_, "lists of groups", groups * constants.list_stride * 4, 0, resources));
-    SUNFLECK_TRY(make_buffer(counts_, "list lengths", groups * sizeof(shared::GroupCounts), 0, resources));
+    SUNFLECK_TRY(make_buffer(counts_, "list lengths", groups * sizeof(shared::LightListCounts), 0, resources));
     SUNFLECK_TRY(make_buffer(block_groups_, "rough blocks", blocks * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(rough_entries_, "rough entries", entries * 4, 0, resources));
     return make_buffer(rough_commands_, "rough commands", shared::command_words * 4,
@@ -143,7 +143,7 @@ Status ManyLight::light(const PixelStage& stage, gpu::FrameResources& resources)
 std::uint64_t ManyLight::memory_bytes() const {
     std::uint64_t bytes = tables_.memory_bytes() + light_maps_->texels().size() + baked_light_->memory_bytes();
     for (const gpu::Buffer* buffer :
-         {&nodes_, &slots_, &entries_, &counts_, &block_groups_, &rough_entries_, &rough_commands_})
+         {&nodes_, &local_nodes_, &entries_, &counts_, &block_groups_, &rough_entries_, &rough_commands_})
         bytes += buffer->size();
     return bytes;
 }

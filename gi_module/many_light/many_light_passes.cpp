@@ -82,7 +82,7 @@ Status ManyLight::add_gather(const Frame& frame) {
 Status ManyLight::add_rough_list(Frame& frame) {
     const bool repair = frame.stage.repair;
     frame.constants.entry_blocks =
-        divide_up(repair ? frame.constants.group_capacity : frame.constants.group_count, shared::groups_per_block);
+        divide_up(repair ? frame.constants.group_capacity : frame.constants.group_count, shared::pixel_groups_per_block);
     for (std::uint32_t action = 0; action < 3; ++action) {
         SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("rough_entries.comp", {action, repair}));
         const std::string name = repair ? "repair rough pixels " : "rough pixels ";
@@ -111,7 +111,7 @@ Status ManyLight::add_classify(const Frame& frame, Phase phase, const LightBatch
         .storage_read(nodes_)
         .storage_read(tables_.nodes())
         .storage_read(tables_.rows())
-        .storage_write(slots_)
+        .storage_write(local_nodes_)
         .storage_write(entries_)
         .storage_write(counts_)
         .storage_read(rough ? rough_commands_ : frame.stage.commands)
@@ -132,7 +132,7 @@ Status ManyLight::add_classify_baked(const Frame& frame, const LightBatch& batch
     pass.storage_read(frame.stage.pixels)
         .storage_read(nodes_)
         .storage_read(tables_.rows())
-        .storage_read_write(slots_)
+        .storage_read_write(local_nodes_)
         .storage_write(entries_)
         .storage_write(counts_)
         .storage_read(frame.stage.commands)
@@ -150,7 +150,7 @@ Status ManyLight::add_light(const Frame& frame, Phase phase, const LightBatch& b
     const std::uint32_t lanes = device_.traits().software ? 8 : 64;
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
                     pipeline("light.comp",
-                             {shared::group_pixels / lanes, batch.light_class,
+                             {shared::pixel_group_size / lanes, batch.light_class,
                               frame.options.shadows ? shared::maps_texel_buffer : shared::maps_none,
                               filters_maps(frame.options.filter, batch.light_class), frame.maps.bits(), to_image, lanes,
                               frame.options.stale_maps, std::uint32_t(phase), frame.options.simplified_movers}));
@@ -161,7 +161,7 @@ Status ManyLight::add_light(const Frame& frame, Phase phase, const LightBatch& b
         .uniform(batch.rows)
         .texels(frame.maps.texels() ? frame.maps.texels() : unused_texels_)
         .storage_read(frame.stage.pixels)
-        .storage_read(slots_)
+        .storage_read(local_nodes_)
         .storage_read(entries_)
         .storage_read(counts_)
         .storage_read_write(frame.stage.sums)

@@ -12,21 +12,21 @@
 SHARED_BEGIN
 
 // Nodes of a group have slots 0 to 9. Slot 10 is for pixels of any further node, or of none: every sample is tested.
-SHARED_CONSTANT uint group_slots = 11u;
-SHARED_CONSTANT uint any_node_slot = 10u;
+SHARED_CONSTANT uint local_node_count = 11u;
+SHARED_CONSTANT uint other_nodes = 10u;
 SHARED_CONSTANT uint entry_on_mover = 256u;    // beside the slot: the pixel shows a mover
 SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for baked light: they are for this pixel
 SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
-SHARED_CONSTANT uint node_bent = 0x40000000u;  // shaded by another normal than its light map knows, which is not used
+SHARED_CONSTANT uint node_normal_differs = 0x40000000u;  // shaded by another normal than its light map knows, which is not used
 SHARED_CONSTANT uint node_mask = 0x3fffffffu;
 
 // A list entry: sample (of the batch) in bits 0 to 8; then two bits for each slot, so that what lights a pixel does not
 // depend on its company. From bit 20: whether the slot's pixels ask the shadow map. From bit 9: for those that ask,
 // whether the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; for the
 // others, whether the sample's light is still to be added.
-SHARED_CONSTANT uint entry_sample_mask = 0x1ffu;
-SHARED_CONSTANT uint entry_slots_shift = 9u;
-SHARED_CONSTANT uint entry_asks_shift = 20u;
+SHARED_CONSTANT uint list_sample_mask = 0x1ffu;
+SHARED_CONSTANT uint list_values_shift = 9u;
+SHARED_CONSTANT uint list_tests_shift = 20u;
 
 // By node: where its light map is.
 struct NodeRow {
@@ -39,7 +39,7 @@ struct NodeRow {
 SHARED_CONSTANT uint no_light_map = 0xffffffffu;
 
 // A group's lists for one batch.
-struct GroupCounts {
+struct LightListCounts {
     uint tested;
     uint untested;
 };
@@ -73,8 +73,8 @@ struct ManyLightConstants {
     uint entry_blocks; // blocks of groups, for the list of rough entries
     uint mover_count;
 };
-SHARED_CONSTANT uint groups_per_block = 4u;
-SHARED_CONSTANT uint most_movers = 32u; // that lists are culled by; with more, they are not
+SHARED_CONSTANT uint pixel_groups_per_block = 4u;
+SHARED_CONSTANT uint max_culled_movers = 32u; // that lists are culled by; with more, they are not
 
 // What show.comp shows in place of the irradiance.
 SHARED_CONSTANT uint show_nothing = 0u;
@@ -90,9 +90,9 @@ SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
 static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 84);
-static_assert(sunfleck::shared::lights_per_batch <= sunfleck::shared::entry_sample_mask + 1);
-static_assert(sunfleck::shared::entry_slots_shift + sunfleck::shared::group_slots <=
-              sunfleck::shared::entry_asks_shift);
-static_assert(sunfleck::shared::entry_asks_shift + sunfleck::shared::group_slots <= 32);
+static_assert(sunfleck::shared::lights_per_batch <= sunfleck::shared::list_sample_mask + 1);
+static_assert(sunfleck::shared::list_values_shift + sunfleck::shared::local_node_count <=
+              sunfleck::shared::list_tests_shift);
+static_assert(sunfleck::shared::list_tests_shift + sunfleck::shared::local_node_count <= 32);
 #endif
 #endif

@@ -7,7 +7,7 @@ namespace sunfleck::gi {
 namespace {
 
 // How far the maintained cover may fall behind before all is grouped anew.
-constexpr double most_decay = 1.15;
+constexpr double max_decay = 1.15;
 
 std::uint32_t shared_count(const LightSet& a, const LightSet& b) {
     std::uint32_t bits = 0;
@@ -61,7 +61,7 @@ std::uint32_t PassCover::covered_with(const Draft& draft, const Open& object) co
     return covered;
 }
 
-// The open object that adds most pairs, at least `least_gain_`. None can add more than it has lights left that are
+// The open object that adds most pairs, at least `min_gain_`. None can add more than it has lights left that are
 // allowed, nor than a pass has room for: those that could add most are tried first, and few have to be.
 std::optional<std::size_t> PassCover::best_addition(const Draft& draft, const std::vector<Open>& open_objects,
                                                     const std::vector<char>& is_member) {
@@ -70,14 +70,14 @@ std::optional<std::size_t> PassCover::best_addition(const Draft& draft, const st
         if (is_member[i] != 0)
             continue;
         const std::uint32_t most = std::min(shared_count(open_objects[i].left, draft.allowed), room());
-        if (most >= least_gain_)
+        if (most >= min_gain_)
             candidates_.push_back({i, most});
     }
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         return a.most != b.most ? a.most > b.most : a.member < b.member;
     });
     std::optional<std::size_t> best;
-    std::uint32_t most = draft.covered + least_gain_ - 1;
+    std::uint32_t most = draft.covered + min_gain_ - 1;
     for (const Candidate& candidate : candidates_) {
         if (draft.covered + candidate.most <= most)
             break;
@@ -160,7 +160,7 @@ void PassCover::rebuild() {
 void PassCover::join_elements(Open& object) {
     for (;;) {
         PassElement* best = nullptr;
-        std::uint32_t most = least_gain_ - 1;
+        std::uint32_t most = min_gain_ - 1;
         for (PassElement& element : elements_) {
             const std::uint32_t gain = shared_count(object.left, element.lights);
             if (gain > most && contains(object.tolerated, element.lights)) {
@@ -197,7 +197,7 @@ void PassCover::regroup(const std::map<std::uint32_t, PassLights>& changed) {
             join_elements(open_objects.back());
         }
     cover(open_objects);
-    if (double(passes()) > most_decay * share_when_rebuilt_ * double(passes_unoptimised()))
+    if (double(passes()) > max_decay * share_when_rebuilt_ * double(passes_unoptimised()))
         rebuild();
 }
 

@@ -3,7 +3,7 @@
 // The thesis merges pairs of elements, so its passes end up with fewer lights than they have room for. Here the pairs
 // of object and light that are needed are covered by full passes: from the object with most lights left, a pass takes
 // in the object that adds most pairs, again and again, while its lights, as many as there is room for, are chosen anew
-// from those that none of its objects minds. An object that adds fewer pairs than `least_gain` waits for another pass:
+// from those that none of its objects minds. An object that adds fewer pairs than `min_gain` waits for another pass:
 // a larger one costs passes, a smaller one fill rate.
 #pragma once
 
@@ -15,8 +15,8 @@ namespace sunfleck::gi {
 
 class PassCover final : public PassGrouping {
 public:
-    explicit PassCover(std::uint32_t lights_per_pass = 7, std::uint32_t least_gain = 2)
-        : PassGrouping(lights_per_pass), least_gain_(least_gain) {}
+    explicit PassCover(std::uint32_t lights_per_pass = 7, std::uint32_t min_gain = 2)
+        : PassGrouping(lights_per_pass), min_gain_(min_gain) {}
 
     void rebuild() override;
 
@@ -50,7 +50,7 @@ private:
     void add(Draft& draft, const std::vector<Open>& open_objects, std::size_t member) const;
     LightSet best_lights(const Draft& draft) const;
 
-    std::uint32_t least_gain_;
+    std::uint32_t min_gain_;
     double share_when_rebuilt_ = 1.0; // of the passes that are left
     mutable std::vector<std::uint32_t> histogram_;
     std::vector<Candidate> candidates_;

@@ -16,17 +16,17 @@ layout(set = 0, binding = 4) readonly buffer NodeOfEntry { uint entry_nodes[]; }
 layout(set = 0, binding = 5) readonly buffer StageCommands { uint stage_commands[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
-const uint units_per_block = groups_per_block;
+const uint units_per_block = pixel_groups_per_block;
 
 uint block_count() { return constants.entry_blocks; }
 uint group_capacity() { return max(constants.group_capacity, constants.group_count); }
 
 uvec2 marked_in(uint block, uint i, out uint unit) {
-    unit = block * groups_per_block + i;
+    unit = block * pixel_groups_per_block + i;
     uvec2 mask = uvec2(0u);
     const uint group_count = indirect != 0 ? stage_commands[command_totals + 2u] : constants.group_count;
-    for (uint k = 0; k < group_pixels && unit < group_count; ++k) {
-        const uint entry = unit * group_pixels + k;
+    for (uint k = 0; k < pixel_group_size && unit < group_count; ++k) {
+        const uint entry = unit * pixel_group_size + k;
         const uint node = entry_nodes[entry];
         const bool rough = (entry_pixels[entry] & unlit_pixel) == 0u && (node == no_node || (node & node_baked) == 0u);
         const uint bit = rough ? 1u << (k & 31u) : 0u;
@@ -35,7 +35,7 @@ uvec2 marked_in(uint block, uint i, out uint unit) {
     return mask;
 }
 
-uint listed_value(uint unit, int bit) { return unit * group_pixels + uint(bit); }
+uint listed_value(uint unit, int bit) { return unit * pixel_group_size + uint(bit); }
 
 #include "gi_module/low_resolution/compaction.glsl"
 

@@ -9,7 +9,7 @@ layout(constant_id = 0) const uint view = show_tiles;
 
 layout(set = 0, binding = 0) readonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 1) readonly buffer Rows { uint rows[]; };
-layout(set = 0, binding = 2) readonly buffer Counts { GroupCounts counts[]; };
+layout(set = 0, binding = 2) readonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 3) readonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 4) readonly buffer CellMasks { uvec2 cell_masks[]; };
 layout(set = 0, binding = 5) readonly buffer Ages { uint ages[]; }; // by sample: frames that its shadow map is out of date
@@ -62,12 +62,12 @@ void main() {
     if (pixel.x >= constants.width || pixel.y >= constants.height)
         return;
     const uvec2 low = min(pixel / constants.scale, uvec2(constants.low_width, constants.low_height) - 1u);
-    const uint group = low.y / group_side * constants.group_columns + low.x / group_side;
-    const uint entry = group * group_pixels + low.y % group_side * group_side + low.x % group_side;
+    const uint group = low.y / pixel_group_side * constants.group_columns + low.x / pixel_group_side;
+    const uint entry = group * pixel_group_size + low.y % pixel_group_side * pixel_group_side + low.x % pixel_group_side;
     const uint node = entry_nodes[entry];
     vec3 colour = vec3(0.0);
     if (view == show_tiles) {
-        const bool border = any(equal(pixel % (constants.scale * group_side), uvec2(0u)));
+        const bool border = any(equal(pixel % (constants.scale * pixel_group_side), uvec2(0u)));
         colour = border ? vec3(0.0) : vec3(counts[group].tested, counts[group].untested, 0.0) / float(constants.list_stride);
     } else if (view == show_repaired) {
         const ivec2 cell = (ivec2(pixel) + int(constants.scale / 2u)) / int(constants.scale);

@@ -238,8 +238,8 @@ namespace {
 // What the camera sees along the ray: single-sided surfaces not from behind.
 std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& rays, raytrace::Ray ray,
                                                       std::uint64_t& count) {
-    constexpr int most_layers = 64;
-    for (int layer = 0; layer < most_layers; ++layer) {
+    constexpr int max_layers = 64;
+    for (int layer = 0; layer < max_layers; ++layer) {
         ++count;
         const auto hit = rays.closest_hit(ray);
         if (!hit)

@@ -10,9 +10,9 @@ namespace sunfleck::gi {
 class MapBudget {
 public:
     // Frame `serial` redraws so many maps.
-    void drew(std::uint64_t serial, std::uint64_t maps);
+    void add_frame(std::uint64_t serial, std::uint64_t maps);
     // What the GPU took for them; serials rise. Frames that `drew` did not name are passed over.
-    void took(std::uint64_t serial, double milliseconds);
+    void add_time(std::uint64_t serial, double milliseconds);
     // Maps that fit, at least one; `unknown` while nothing is known.
     std::uint32_t maps_in(double milliseconds, std::uint32_t unknown) const;
 
@@ -21,7 +21,7 @@ private:
         std::uint64_t serial, maps;
     };
     std::deque<Frame> frames_; // not measured yet, oldest first
-    double milliseconds_a_map_ = 0.0;
+    double milliseconds_per_map_ = 0.0;
 };
 
 } // namespace sunfleck::gi

@@ -87,7 +87,7 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
         to_draw_ =
             scheduler_.choose(samples.samples(), settings_.map_priority, budget, contributions(samples, input, budget));
     }
-    budget_.drew(input.serial, to_draw_.size());
+    budget_.add_frame(input.serial, to_draw_.size());
     before_ = scheduler_;
 }
 
@@ -178,7 +178,7 @@ Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& 
     return draw(graph, gpu_scene, samples, to_draw_, resources);
 }
 
-Status ShadowService::add_group(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+Status ShadowService::add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                                 std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources) {
     std::vector<std::uint32_t> drawn(count);
     for (std::uint32_t i = 0; i < count; ++i)

@@ -49,14 +49,14 @@ public:
     // Marks what movers touched, and chooses the maps to redraw.
     void schedule(const SampleSet& samples, const ScheduleInput& input);
     // What the GPU took for an earlier frame's maps, ms; only for ShadowSettings::map_milliseconds.
-    void measured(std::uint64_t serial, double milliseconds) { budget_.took(serial, milliseconds); }
+    void measured(std::uint64_t serial, double milliseconds) { budget_.add_time(serial, milliseconds); }
 
     // Adds the passes that redraw the chosen maps.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                       gpu::FrameResources& resources);
     // Where there are more samples than slots, samples take turns: adds the passes that draw the maps of samples
     // [first, first + count), over those that used the slots before.
-    Status add_group(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+    Status add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                      std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources);
     // The frame's passes never reached the GPU: what they would have drawn is as stale as it was.
     void lost_frame();

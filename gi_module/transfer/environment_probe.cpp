@@ -10,7 +10,7 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr float shortening = 1e-4f; // of a ray's length, at the light's end: samples lie on surfaces
-constexpr int most_layers = 64;     // of the mover itself that a ray passes
+constexpr int max_layers = 64;     // of the mover itself that a ray passes
 
 bool meets(const raytrace::Ray& ray, const Bounds& bounds) {
     float enter = 0.0f, leave = ray.maximum;
@@ -95,7 +95,7 @@ private:
     bool hidden_by_movers(raytrace::Ray ray) const {
         if (std::none_of(others_.begin(), others_.end(), [&](const Bounds& bounds) { return meets(ray, bounds); }))
             return false;
-        for (int layer = 0; layer < most_layers; ++layer) {
+        for (int layer = 0; layer < max_layers; ++layer) {
             const auto hit = scene_.rays.closest_hit(ray);
             if (!hit)
                 return false;

@@ -46,12 +46,12 @@ vec3 irradiance(const TransferData& transfer, std::size_t vertex, const Environm
 
 } // namespace
 
-bool TransferLighting::takes(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
+bool TransferLighting::supports(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
                              std::uint32_t mesh) {
     if (item.is_static || item.kind == scene::surface_kind_holes || meshes.revision(mesh) != 0)
         return false;
     const scene::Mesh& shape = meshes[mesh];
-    if (shape.triangle_count() < least_triangles || shape.positions.size() > most_vertices)
+    if (shape.triangle_count() < min_triangles || shape.positions.size() > max_vertices)
         return false;
     const vec3 lengths(glm::length(vec3(matrix[0])), glm::length(vec3(matrix[1])), glm::length(vec3(matrix[2])));
     const float longest = std::max({lengths.x, lengths.y, lengths.z});
@@ -84,7 +84,7 @@ Status TransferLighting::update(const ecs::Registry& registry, const scene::Mesh
             continue;
         const std::uint32_t mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
         const mat4 matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
-        if (!takes(item, matrix, meshes, mesh))
+        if (!supports(item, matrix, meshes, mesh))
             continue;
         SUNFLECK_ASSIGN(const TransferData* transfer, transfer_of(meshes, mesh, options));
         const PointGrid grid(meshes.bounds(mesh), options.points);

@@ -25,10 +25,10 @@ struct TransferLightingOptions {
 class TransferLighting {
 public:
     // Triangles from which a mesh is lit this way, and vertices up to which.
-    static constexpr std::uint32_t least_triangles = 128, most_vertices = 65536;
+    static constexpr std::uint32_t min_triangles = 128, max_vertices = 65536;
 
     // Whether a mover can be lit this way: rigid, opaque, scaled alike in all directions, and complex enough.
-    static bool takes(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
+    static bool supports(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
                       std::uint32_t mesh);
 
     // Once a frame: the draws of all movers that `takes` says yes to. Meshes are precomputed when first met.

@@ -17,7 +17,7 @@ constexpr Counter memory{"precomputed_transfer", "B", memory_group, "Precomputed
 constexpr Counter technique_counters[] = {vertices, memory};
 
 bool supports(const scene::DrawItem& mover, const ecs::Registry& registry, const scene::MeshStore& meshes) {
-    return TransferLighting::takes(mover, registry.get<scene::WorldTransform>(mover.entity).matrix, meshes,
+    return TransferLighting::supports(mover, registry.get<scene::WorldTransform>(mover.entity).matrix, meshes,
                                    registry.get<scene::MeshInstance>(mover.entity).mesh);
 }
 

@@ -105,8 +105,8 @@ Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const Plann
         return technique != nobody && techniques[std::size_t(technique)].some_receivers;
     };
     const auto give = [&](std::size_t cell, std::int32_t technique) {
-        const std::int32_t before = is_partial(plan.owner_[cell]) ? plan.rest_[cell] : plan.owner_[cell];
-        plan.rest_[cell] = is_partial(technique) ? before : nobody;
+        const std::int32_t before = is_partial(plan.owner_[cell]) ? plan.fallback_[cell] : plan.owner_[cell];
+        plan.fallback_[cell] = is_partial(technique) ? before : nobody;
         plan.owner_[cell] = technique;
     };
     for (std::size_t i = 0; i < light_cell_count; ++i) {
@@ -149,7 +149,7 @@ Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const Plann
 CellSet LightPlan::lit_by(std::int32_t technique) const {
     CellSet cells;
     for (std::size_t i = 0; i < light_cell_count; ++i)
-        cells[i] = owner_[i] == technique || (rest_[i] != nobody && rest_[i] == technique);
+        cells[i] = owner_[i] == technique || (fallback_[i] != nobody && fallback_[i] == technique);
     return cells;
 }
 

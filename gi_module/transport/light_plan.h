@@ -83,7 +83,7 @@ struct TermOwners {
 
 class LightPlan {
 public:
-    LightPlan() { owner_.fill(nobody), rest_.fill(nobody); }
+    LightPlan() { owner_.fill(nobody), fallback_.fill(nobody); }
 
     // One message if a cell is given to a technique that cannot light it, is named twice, or if a technique would have
     // to light other receivers for some paths than for others (a pass lights all paths of a pixel at once).
@@ -92,7 +92,7 @@ public:
     // Index of the technique, or nobody.
     std::int32_t owner(LightCell cell) const { return owner_[cell.index()]; }
     // Who lights the receivers of the cell that the owner does not support; nobody where the owner supports all.
-    std::int32_t rest(LightCell cell) const { return rest_[cell.index()]; }
+    std::int32_t fallback(LightCell cell) const { return fallback_[cell.index()]; }
     // Cells that the technique lights, those as rest among them.
     CellSet lit_by(std::int32_t technique) const;
     bool uses(std::int32_t technique) const { return lit_by(technique).any(); }
@@ -105,7 +105,7 @@ private:
     bool shares_movers(std::int32_t technique) const;
 
     std::array<std::int32_t, light_cell_count> owner_;
-    std::array<std::int32_t, light_cell_count> rest_;
+    std::array<std::int32_t, light_cell_count> fallback_;
 };
 
 } // namespace sunfleck::gi

@@ -29,9 +29,9 @@ struct LightSample {
     ecs::Entity emitter;
     // Reflected light of emitters that stay: the way that it came, from the emitter or, of long ways, the last points
     // of them; the last leg ends in `position`.
-    static constexpr std::uint32_t most_way_points = 6;
-    std::array<vec3, most_way_points> way{};
-    std::uint32_t way_points = 0;
+    static constexpr std::uint32_t max_path_vertices = 6;
+    std::array<vec3, max_path_vertices> path{};
+    std::uint32_t path_vertex_count = 0;
     // Of an emitter that moves or varies: never in light maps, and its visibility is decided for whole charts only.
     bool dynamic = false;
 

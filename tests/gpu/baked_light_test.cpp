@@ -145,7 +145,7 @@ TEST_F(BakedLightTest, CurvedSurfacesHoldWhatRaysSay) {
         const std::uint32_t y = std::uint32_t(uniform() * float(chart.rows - 1));
         const std::size_t first = first_point + chart.first_point + y * chart.columns + x;
         const float height = baked.texels[first].a;
-        if (height > shared::highest_curved)
+        if (height > shared::curved_max_height)
             continue;
         vec3 axis(0.0f);
         axis[int(chart.direction / 2)] = chart.direction % 2 == 0 ? 1.0f : -1.0f;
@@ -198,7 +198,7 @@ TEST_F(BakedLightTest, CurvedChartsAreFoundWhenWanted) {
     const Baked baked = read_baked(world);
     const auto first = baked.texels.end() - std::ptrdiff_t(points);
     EXPECT_GT(
-        std::count_if(first, baked.texels.end(), [](const vec4& texel) { return texel.a <= shared::highest_curved; }),
+        std::count_if(first, baked.texels.end(), [](const vec4& texel) { return texel.a <= shared::curved_max_height; }),
         500);
 }
 

@@ -85,7 +85,7 @@ std::optional<Found> look_up(const gi::CurvedCharts& charts, std::uint32_t first
         normal += weight.x * weight.y * shared::unpack_normal(here.normal);
     }
     const float cell = 1.0f / chart.row.place.w;
-    EXPECT_LE(high * chart.row.size.w, shared::highest_curved * 1.0001f);
+    EXPECT_LE(high * chart.row.size.w, shared::curved_max_height * 1.0001f);
     if (high - low > shared::curved_cell_span * cell ||
         std::abs(point.z - 0.25f * sum) > shared::curved_point_span * cell)
         return std::nullopt;
@@ -106,10 +106,10 @@ struct World {
         registry.emplace<scene::MeshInstance>(entity, scene::MeshInstance{meshes.add(std::move(mesh))});
         registry.emplace<scene::WorldTransform>(entity, scene::WorldTransform{matrix});
     }
-    void build(std::uint64_t most_points = 1u << 20) {
+    void build(std::uint64_t max_points = 1u << 20) {
         patches.build(registry, meshes, {}, blockers);
         patches.finish();
-        charts.build(registry, meshes, patches, 0.05f, most_points);
+        charts.build(registry, meshes, patches, 0.05f, max_points);
     }
 };
 

@@ -47,7 +47,7 @@ TEST(LightPlan, TermsOwnTheirCells) {
                                                                               : indirect;
                     const bool taken = cell.on_mover && movers == prt && base != nobody;
                     EXPECT_EQ(plan.owner(cell), taken ? prt : base) << cell.name();
-                    EXPECT_EQ(plan.rest(cell), taken ? base : nobody) << cell.name();
+                    EXPECT_EQ(plan.fallback(cell), taken ? base : nobody) << cell.name();
                 }
             }
 }
@@ -108,7 +108,7 @@ TEST(LightPlan, EveryAssignmentHasOneOwnerACell) {
             EXPECT_TRUE((plan->lit_by(t) & ~three[std::size_t(t)].can_light).none()) << text;
         for (std::size_t i = 0; i < light_cell_count; ++i)
             if (plan->owner(LightCell::at(i)) == prt) {
-                EXPECT_NE(plan->rest(LightCell::at(i)), prt);
+                EXPECT_NE(plan->fallback(LightCell::at(i)), prt);
             }
     }
     EXPECT_GT(accepted, 20);

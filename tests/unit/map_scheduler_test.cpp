@@ -29,11 +29,11 @@ TEST(MapBudget, KeepsToTheTimeThatItIsGiven) {
     std::uint32_t maps = 0;
     for (std::uint64_t serial = 1; serial <= 80; ++serial) {
         if (late.size() == 3) {
-            budget.took(late.front().first, late.front().second);
+            budget.add_time(late.front().first, late.front().second);
             late.pop_front();
         }
         maps = budget.maps_in(5.0, 77);
-        budget.drew(serial, maps);
+        budget.add_frame(serial, maps);
         late.emplace_back(serial, a_map * double(maps));
         if (serial == 30) {
             EXPECT_NEAR(maps, 50, 1);
@@ -43,12 +43,12 @@ TEST(MapBudget, KeepsToTheTimeThatItIsGiven) {
     EXPECT_NEAR(maps, 12, 1);
     EXPECT_EQ(budget.maps_in(0.001, 77), 1u) << "some progress is always made";
     MapBudget other;
-    other.drew(5, 10);
-    other.took(4, 100.0); // not known
-    other.took(6, 100.0);
+    other.add_frame(5, 10);
+    other.add_time(4, 100.0); // not known
+    other.add_time(6, 100.0);
     EXPECT_EQ(other.maps_in(5.0, 77), 77u);
-    other.drew(7, 0); // nothing was drawn
-    other.took(7, 3.0);
+    other.add_frame(7, 0); // nothing was drawn
+    other.add_time(7, 3.0);
     EXPECT_EQ(other.maps_in(5.0, 77), 77u);
 }
 
