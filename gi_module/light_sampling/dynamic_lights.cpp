@@ -6,15 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace sunfleck::gi {
 namespace {
 
 constexpr std::uint32_t direction_count = 512;
-constexpr float leg_margin = 2e-3f;            // m, before the first surface
-constexpr float far_away = 1e4f;               // m
-constexpr std::uint32_t resampled_at_once = 4; // a light and frame
-constexpr float worst_cell = 3.0f;             // times the mean: a path moves there from where cells are smallest
+constexpr float segment_margin = 2e-3f;    // m, off the emitter and the first surface
+constexpr float far_away = 1e4f;           // m
+constexpr std::uint32_t max_resampled = 4; // per light and frame
+constexpr float max_cell = 3.0f;           // times the mean: a path with a small cell moves into a larger one
 
 mat3 rotation_of(const mat4& matrix) {
     mat3 result(matrix);
@@ -40,33 +41,37 @@ void DynamicLights::reset(const std::vector<Emitter>& emitters, std::uint32_t co
     samples_.clear();
     moved_.clear();
     resampled_ = paths_made_ = 0;
-    const bool direct = settings.direct;
-    const bool indirect = settings.indirect && settings.bounces > 0;
-    if (emitters.empty() || (!direct && !indirect))
+    if (emitters.empty() || (!settings.direct && !(settings.indirect && settings.bounces > 0)))
         return;
     std::vector<double> weights;
     for (const Emitter& emitter : emitters)
         weights.push_back(std::max(double(luminance(emitter.flux)), 1e-6));
     const std::vector<std::uint32_t> counts =
         apportion(weights, std::max<std::uint32_t>(count, std::uint32_t(emitters.size())));
-    for (std::size_t e = 0; e < emitters.size(); ++e) {
-        Light light;
-        light.emitter = emitters[e];
-        light.first = std::uint32_t(samples_.size());
-        if (direct && emitters[e].is_delta())
-            light.direct = 1;
-        else if (direct)
-            light.direct = indirect ? std::max(1u, std::uint32_t(float(counts[e]) * settings.direct_share)) : counts[e];
-        const std::uint32_t paths = indirect ? counts[e] - std::min(light.direct, counts[e]) : 0;
-        light.paths.resize(paths);
-        make_directions(light, hash_combine(settings.seed, 0xd1a0u + std::uint32_t(e)));
-        samples_.resize(samples_.size() + light.direct + paths);
-        place_direct(light, rays);
-        fill_gaps(light, paths, rays);
-        share_flux(light);
-        lights_.push_back(std::move(light));
-    }
+    for (std::size_t e = 0; e < emitters.size(); ++e)
+        add_light(emitters[e], std::uint32_t(e), counts[e], rays);
     moved_.assign(samples_.size(), 1);
+}
+
+// `count`: samples on the emitter and of its paths.
+void DynamicLights::add_light(const Emitter& emitter, std::uint32_t number, std::uint32_t count,
+                              const raytrace::RayScene& rays) {
+    const bool indirect = settings_.indirect && settings_.bounces > 0;
+    Light light;
+    light.emitter = emitter;
+    light.first = std::uint32_t(samples_.size());
+    if (settings_.direct && emitter.is_delta())
+        light.direct = 1;
+    else if (settings_.direct)
+        light.direct = indirect ? std::max(1u, std::uint32_t(float(count) * settings_.direct_share)) : count;
+    const std::uint32_t paths = indirect ? count - std::min(light.direct, count) : 0;
+    light.paths.resize(paths);
+    make_directions(light, hash_combine(settings_.seed, 0xd1a0u + number));
+    samples_.resize(samples_.size() + light.direct + paths);
+    place_direct(light, rays);
+    fill_gaps(light, paths, rays);
+    share_flux(light);
+    lights_.push_back(std::move(light));
 }
 
 void DynamicLights::update(const std::vector<Emitter>& emitters, const raytrace::RayScene& rays) {
@@ -84,7 +89,7 @@ void DynamicLights::update(const std::vector<Emitter>& emitters, const raytrace:
         if (!still)
             validate(light, rays);
         if (!still || !complete)
-            fill_gaps(light, resampled_at_once, rays);
+            fill_gaps(light, max_resampled, rays);
         share_flux(light);
     }
 }
@@ -112,62 +117,32 @@ void DynamicLights::place_direct(Light& light, const raytrace::RayScene& rays) {
     }
 }
 
-// Which first legs the emitter still sees, and where they lead as seen from it.
+// Which first segments are still unoccluded, and their directions as seen from the emitter.
 void DynamicLights::validate(Light& light, const raytrace::RayScene& rays) const {
     const mat3 to_local = glm::transpose(rotation_of(light.emitter.matrix));
     for (Path& path : light.paths) {
         const EmittedRay emitted = sample_emitter_ray(light.emitter, path.numbers);
-        const vec3 origin = emitted.origin + leg_margin * emitted.normal;
-        const vec3 leg = path.first_hit - origin;
-        const float length = glm::length(leg);
-        const vec3 direction = leg / std::max(length, 1e-6f);
+        const vec3 origin = emitted.origin + segment_margin * emitted.normal;
+        const vec3 segment = path.first_hit - origin;
+        const float length = glm::length(segment);
+        const vec3 direction = segment / std::max(length, 1e-6f);
         path.direction = to_local * direction;
-        path.valid =
-            path.valid && length > 2.0f * leg_margin && emits_towards(light.emitter, emitted.normal, direction) &&
-            !rays.occluded(raytrace::Ray{origin, direction, 0.0f, length - leg_margin}, raytrace::Scope::static_only);
+        path.valid = path.valid && length > 2.0f * segment_margin &&
+                     emits_towards(light.emitter, emitted.normal, direction) &&
+                     !rays.occluded(raytrace::Ray{origin, direction, 0.0f, length - segment_margin},
+                                    raytrace::Scope::static_only);
     }
 }
 
 void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrace::RayScene& rays) {
     Path& path = light.paths[index];
     LightSample& sample = samples_[light.first + light.direct + index];
-    const std::uint32_t seed = hash_combine(settings_.seed, 0x9a7u);
-    RandomSequence random(SequenceKind::pseudo_random, seed, paths_made_++);
     const EmittedRay emitted = sample_emitter_ray(light.emitter, path.numbers);
-    raytrace::Ray ray{emitted.origin + leg_margin * emitted.normal, emitted.direction, 0.0f, 1e30f};
     path.throughput = vec3(1.0f);
     path.escaped = false;
     path.valid = true;
-    for (std::uint32_t bounce = 1; bounce <= settings_.bounces; ++bounce) {
-        const auto hit = rays.closest_hit(ray, raytrace::Scope::static_only);
-        if (!hit) {
-            path.escaped = bounce == 1;
-            path.throughput = vec3(0.0f);
-            break;
-        }
-        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
-        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
-        const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
-        if (bounce == 1)
-            path.first_hit = point.position;
-        path.throughput *= point.material.base_colour;
-        sample.position = offset_from_surface(point.position, normal, rays, raytrace::Scope::static_only);
-        sample.normal = shading;
-        sample.bounce = bounce;
-        // What a path stops with is nearly the same wherever it stops, within limits: no sample outshines the others.
-        const float largest =
-            std::max({point.material.base_colour.x, point.material.base_colour.y, point.material.base_colour.z});
-        const float stop = bounce == settings_.bounces ? 1.0f : std::clamp(1.0f - largest, 0.35f, 0.8f);
-        const float u = random.next(), v = random.next();
-        if (random.next() < stop) {
-            path.throughput /= stop;
-            break;
-        }
-        path.throughput /= 1.0f - stop;
-        ray = {point.position + 1e-4f * normal, sample_cosine_direction(shading, u, v), 0.0f, 1e30f};
-    }
+    trace_path(path, sample, {emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f}, rays);
     if (path.escaped) {
-        path.first_hit = ray.origin + far_away * ray.direction;
         sample.position = emitted.origin;
         sample.normal = emitted.direction;
         sample.bounce = 1;
@@ -180,47 +155,99 @@ void DynamicLights::sample_path(Light& light, std::uint32_t index, const raytrac
     ++resampled_;
 }
 
-// Invalid paths go to the middle of the largest gaps. When all are valid, but a gap is much larger than the rest, the
-// path with the smallest cell goes there.
-void DynamicLights::fill_gaps(Light& light, std::uint32_t most, const raytrace::RayScene& rays) {
-    if (light.paths.empty())
-        return;
-    const std::size_t n = light.paths.size();
-    std::vector<float> nearest(light.directions.size(), -2.0f); // largest cosine to any valid path
-    std::vector<std::uint32_t> owner(light.directions.size(), 0);
-    const auto claim = [&](std::uint32_t p) {
-        for (std::size_t d = 0; d < light.directions.size(); ++d)
-            if (const float cosine = glm::dot(light.paths[p].direction, light.directions[d]); cosine > nearest[d]) {
-                nearest[d] = cosine;
-                owner[d] = p;
-            }
-    };
-    std::vector<std::uint32_t> wanted;
-    for (std::uint32_t p = 0; p < n; ++p) {
-        if (light.paths[p].valid)
-            claim(p);
-        else
-            wanted.push_back(p);
+// A random walk from the emitted ray; the sample lies where it ends.
+void DynamicLights::trace_path(Path& path, LightSample& sample, raytrace::Ray ray, const raytrace::RayScene& rays) {
+    const std::uint32_t seed = hash_combine(settings_.seed, 0x9a7u);
+    RandomSequence random(SequenceKind::pseudo_random, seed, paths_made_++);
+    for (std::uint32_t bounce = 1; bounce <= settings_.bounces; ++bounce) {
+        const auto hit = rays.closest_hit(ray, raytrace::Scope::static_only);
+        if (!hit) {
+            path.escaped = bounce == 1;
+            path.throughput = vec3(0.0f);
+            break;
+        }
+        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
+        const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
+        if (bounce == 1)
+            path.first_hit = point.position;
+        const vec3 albedo = point.material.base_colour;
+        path.throughput *= albedo;
+        sample.position = offset_from_surface(point.position, normal, rays, raytrace::Scope::static_only);
+        sample.normal = shading;
+        sample.bounce = bounce;
+        // The throughput of a path is nearly the same wherever it ends, within limits: no sample outshines the others.
+        const float largest = std::max({albedo.x, albedo.y, albedo.z});
+        const float stop = bounce == settings_.bounces ? 1.0f : std::clamp(1.0f - largest, 0.35f, 0.8f);
+        const float u = random.next(), v = random.next();
+        if (random.next() < stop) {
+            path.throughput /= stop;
+            break;
+        }
+        path.throughput /= 1.0f - stop;
+        ray = {point.position + 1e-4f * normal, sample_cosine_direction(shading, u, v), 0.0f, 1e30f};
     }
-    if (wanted.empty()) {
-        std::vector<float> cells(n, 0.0f);
+    if (path.escaped)
+        path.first_hit = ray.origin + far_away * ray.direction;
+}
+
+// The directions of a light, by the valid path that each is nearest to.
+struct DynamicLights::Cells {
+    explicit Cells(const Light& light) : nearest(light.directions.size(), -2.0f), owner(light.directions.size(), 0) {}
+
+    std::vector<float> nearest; // largest cosine to any path
+    std::vector<std::uint32_t> owner;
+
+    void add(const Light& light, std::uint32_t path) {
+        for (std::size_t d = 0; d < light.directions.size(); ++d)
+            if (const float cosine = glm::dot(light.paths[path].direction, light.directions[d]); cosine > nearest[d]) {
+                nearest[d] = cosine;
+                owner[d] = path;
+            }
+    }
+
+    // The path with the smallest cell, if the largest is much larger than the mean.
+    std::optional<std::uint32_t> most_crowded(const Light& light) const {
+        std::vector<float> cells(light.paths.size(), 0.0f);
         for (std::size_t d = 0; d < owner.size(); ++d)
             cells[owner[d]] += light.weights[d];
-        const auto [least, largest] = std::minmax_element(cells.begin(), cells.end());
-        if (*largest * float(n) < worst_cell * float(light.directions.size()))
-            return;
-        wanted.push_back(std::uint32_t(least - cells.begin()));
+        const auto [smallest, largest] = std::minmax_element(cells.begin(), cells.end());
+        if (*largest * float(light.paths.size()) < max_cell * float(light.directions.size()))
+            return std::nullopt;
+        return std::uint32_t(smallest - cells.begin());
     }
-    wanted.resize(std::min<std::size_t>(wanted.size(), most));
-    for (const std::uint32_t p : wanted) {
-        std::size_t gap = 0;
-        for (std::size_t d = 1; d < nearest.size(); ++d)
-            if (nearest[d] < nearest[gap])
-                gap = d;
+
+    std::size_t largest_gap() const {
+        return std::size_t(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
+    }
+};
+
+// Invalid paths are sampled again, at most `count` of them, in the middle of the largest gaps between the others. When
+// all are valid, but a gap is much larger than the rest, the path with the smallest cell moves there.
+void DynamicLights::fill_gaps(Light& light, std::uint32_t count, const raytrace::RayScene& rays) {
+    if (light.paths.empty())
+        return;
+    Cells cells(light);
+    std::vector<std::uint32_t> chosen;
+    for (std::uint32_t p = 0; p < light.paths.size(); ++p) {
+        if (light.paths[p].valid)
+            cells.add(light, p);
+        else
+            chosen.push_back(p);
+    }
+    if (chosen.empty()) {
+        const std::optional<std::uint32_t> moved = cells.most_crowded(light);
+        if (!moved)
+            return;
+        chosen.push_back(*moved);
+    }
+    chosen.resize(std::min<std::size_t>(chosen.size(), count));
+    for (const std::uint32_t p : chosen) {
+        const std::size_t gap = cells.largest_gap();
         std::copy(light.numbers[gap].begin(), light.numbers[gap].end(), light.paths[p].numbers);
         light.paths[p].direction = light.directions[gap];
         sample_path(light, p, rays);
-        claim(p);
+        cells.add(light, p);
     }
 }
 

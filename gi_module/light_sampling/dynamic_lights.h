@@ -1,11 +1,12 @@
-// Samples of emitters that move or change their strength. Those on the emitter follow it; reflected ones stay where
-// they are as long as the emitter still sees the place where their path met the first surface, and only those that it
-// no longer sees are sampled again, a few a frame, where the emitted light has the largest gap. After S. Laine et al.,
-// "Incremental Instant Radiosity for Real-Time Indirect Illumination", 2007, with paths of several bounces: a path is
-// valid as a whole while its first leg is.
+// Light samples (VPLs) of dynamic emitters: those that move or change their strength. Samples on the emitter follow it.
+// Reflected ones keep their places as long as the first segment of their path is unoccluded; the others are sampled
+// again, a few a frame, where the emitted light has the largest gap. After S. Laine et al., "Incremental Instant
+// Radiosity for Real-Time Indirect Illumination", 2007, with paths of several bounces: a path is valid as a whole while
+// its first segment is.
 //
 // Each reflected sample carries the share of the emitted flux that leaves nearer to its path's direction than to any
-// other's (the Voronoi cell of its direction, measured with a fixed set of directions drawn from what is emitted).
+// other's: the Voronoi cell of the direction, measured with a fixed set of directions that are distributed like the
+// emitted light.
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"
@@ -16,15 +17,15 @@ namespace sunfleck::gi {
 
 class DynamicLights {
 public:
-    // Starts anew with `count` samples for these emitters together (each gets one at least, so there may be more).
+    // Starts over with `count` samples for all these emitters together (at least one each, so there may be more).
     void reset(const std::vector<Emitter>& emitters, std::uint32_t count, const SampleRequest& settings,
                const raytrace::RayScene& rays);
     // Follows the same emitters, in the same order. A pure function of all updates since reset.
     void update(const std::vector<Emitter>& emitters, const raytrace::RayScene& rays);
 
-    // All `dynamic`; their number and kinds stay until the next reset.
+    // All `dynamic`; their number and kinds do not change until the next reset.
     const std::vector<LightSample>& samples() const { return samples_; }
-    // By sample: whether place or direction changed in the last update (flux may have changed as well or alone).
+    // By sample: whether position or direction changed in the last update. Flux may change with or without them.
     const std::vector<std::uint8_t>& moved() const { return moved_; }
     // Paths that were sampled again in the last update.
     std::uint32_t resampled() const { return resampled_; }
@@ -34,9 +35,9 @@ public:
 private:
     struct Path {
         float numbers[4] = {}; // of the emitted ray
-        vec3 direction{0.0f};  // of the first leg, in the emitter's frame
-        vec3 first_hit{0.0f};  // world; or a point far along the leg of a path that met nothing
-        vec3 throughput{0.0f}; // of the whole path, without the emitter's flux
+        vec3 direction{0.0f};  // of the first segment, in the emitter's frame
+        vec3 first_hit{0.0f};  // world space; far along the ray if the path hit nothing
+        vec3 throughput{0.0f}; // of the whole path; the emitter's flux is not in it
         bool escaped = false, valid = false;
     };
     struct Light {
@@ -47,11 +48,14 @@ private:
         std::vector<float> weights;
         std::vector<std::array<float, 4>> numbers;
     };
+    struct Cells;
+    void add_light(const Emitter& emitter, std::uint32_t number, std::uint32_t count, const raytrace::RayScene& rays);
     void make_directions(Light& light, std::uint32_t seed) const;
     void place_direct(Light& light, const raytrace::RayScene& rays);
     void validate(Light& light, const raytrace::RayScene& rays) const;
     void sample_path(Light& light, std::uint32_t path, const raytrace::RayScene& rays);
-    void fill_gaps(Light& light, std::uint32_t most, const raytrace::RayScene& rays);
+    void trace_path(Path& path, LightSample& sample, raytrace::Ray ray, const raytrace::RayScene& rays);
+    void fill_gaps(Light& light, std::uint32_t count, const raytrace::RayScene& rays);
     void share_flux(Light& light);
 
     SampleRequest settings_;

@@ -1,4 +1,4 @@
-// All that emits light in a registry, in one form that samplers and the path tracer share.
+// All emitters of a registry, in one form that the samplers of VPLs and the path tracer share.
 #pragma once
 
 #include "engine/scene/components.h"
@@ -21,17 +21,17 @@ struct Emitter {
     vec3 intensity{0.0f};                             // point and spot: W/sr; directional: irradiance W/m2
     float width = 0.0f, height = 0.0f, radius = 0.0f; // world sizes of the analytic shapes
     float area = 0.0f;                                // m2, of the area kinds
-    vec3 flux{0.0f};      // W; of directional light and environment: what crosses the scene's bounding sphere
-    bool moves = false;   // it, or something above it in the hierarchy, has a Mover
+    vec3 flux{0.0f};      // W; of directional light and environment: what enters the scene's bounding sphere
+    bool moves = false;   // it, or one of its parents, has a Mover
     bool is_lamp = false; // the surface of an AreaLight: views of irradiance leave it out
     float inner_cosine = 1.0f, outer_cosine = 0.0f;
-    float scene_radius = 0.0f; // bounding sphere of the scene, for light from outside
+    float scene_radius = 0.0f; // of the scene's bounding sphere, for directional light and environment
     vec3 scene_centre{0.0f};
-    // kind mesh: world-space triangles and the running sum of their areas
+    // Kind mesh: world-space triangles and the running sum of their areas.
     std::vector<vec3> corners; // three a triangle
     std::vector<float> cumulative_area;
     bool textured = false; // `radiance` is a mean
-    // kind environment, with a picture: `radiance` is a mean, and what the picture is multiplied by is this.
+    // Kind environment, with an image: `radiance` is the mean, `map_scale` multiplies the image.
     scene::EnvironmentMap map;
     vec3 map_scale{1.0f};
 
@@ -39,7 +39,7 @@ struct Emitter {
         return map.image ? map_scale * map.image->radiance(map.to_image(direction)) : radiance;
     }
 
-    // A point source or a direction: one sample carries all of it.
+    // A point or a direction (a delta distribution): one sample carries all of its light.
     bool is_delta() const {
         return kind == EmitterKind::point || kind == EmitterKind::spot || kind == EmitterKind::directional;
     }
@@ -49,14 +49,14 @@ struct Emitter {
 struct EmittedPoint {
     vec3 position{0.0f};
     vec3 normal{0.0f};
-    // Kind mesh: where on it; weights of the second and third corner.
+    // Kind mesh: the triangle and the barycentric weights of its second and third corner.
     std::uint32_t triangle = 0;
     float u = 0.0f, v = 0.0f;
 };
 
-// Emitters by rising entity index. `scene`: box around all geometry. Emitters whose flux is zero, not finite or
-// negative, and those of zero area, are left out; each of the latter two kinds is logged once as a warning. Those of
-// zero flux stay if they are in `keep_dark`.
+// Emitters in ascending order of entity index. `scene`: box around all geometry. Emitters whose flux is zero, not
+// finite or negative, and those of zero area, are left out; all but those of zero flux are logged once as a warning.
+// Emitters of zero flux are kept if they are in `keep_dark`.
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
                                       const std::set<ecs::Entity>& keep_dark = {});
 
@@ -67,18 +67,21 @@ EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v);
 vec3 sample_cosine_direction(vec3 normal, float u, float v);
 vec3 sample_sphere_direction(float u, float v);
 
-// A ray of light leaving the emitter with density proportional to what it emits, so that each carries flux / paths.
+// A ray that leaves the emitter with a density proportional to the emitted radiance, so that all rays carry the same
+// flux.
 struct EmittedRay {
     vec3 origin{0.0f};
     vec3 normal{0.0f}; // of the surface at the origin, or zero
     vec3 direction{0.0f};
-    // Flux that the ray carries is emitter.flux * weight / number of rays (1 but for spot lights).
-    float weight = 1.0f;
-    vec3 tint{1.0f}; // and this: environments drawn by their picture's luminance
+    // The ray carries emitter.flux * weight * tint / number of rays.
+    float weight = 1.0f; // 1 except for spot lights
+    vec3 tint{1.0f};     // 1 except for environments with an image, which is importance-sampled by luminance
 };
 EmittedRay sample_emitter_ray(const Emitter& emitter, const float numbers[4]);
 
-// Falloff of a spot light: clamp(cos * scale + offset, 0, 1)^2, as KHR_lights_punctual says.
+// Falloff of a spot light: clamp(cos * scale + offset, 0, 1)^2, as in KHR_lights_punctual.
 void spot_cone(const Emitter& emitter, float& scale, float& offset);
+// Integral of that falloff over the sphere, sr.
+float spot_solid_angle(const Emitter& emitter);
 
 } // namespace sunfleck::gi

@@ -1,8 +1,5 @@
 #include "gi_module/light_sampling/light_sampler.h"
 
-#include "gi_module/light_sampling/sample_clusters.h"
-
-#include "engine/core/jobs.h"
 #include "engine/core/random.h"
 
 #include <algorithm>
@@ -13,18 +10,6 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr float surface_offset = 1e-3f; // m
-constexpr float ray_offset = 1e-4f;    // m, off the surface that a walk leaves
-constexpr std::uint32_t walks_per_round = 256;
-constexpr std::uint32_t walk_limit = 1u << 22; // a scene that swallows this many walks gets fewer samples
-constexpr std::uint64_t max_candidates = 1u << 18;
-
-SequenceKind sequence_kind(const SampleRequest& settings) {
-    return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
-}
-
-raytrace::Scope walk_scope(const SampleRequest& settings) {
-    return settings.movers_are_static ? raytrace::Scope::everything : raytrace::Scope::static_only;
-}
 
 LightSample delta_sample(const Emitter& emitter) {
     LightSample sample;
@@ -46,7 +31,7 @@ LightSample delta_sample(const Emitter& emitter) {
     return sample;
 }
 
-// One of `count` samples that share the emitter.
+// One of `count` samples that share the flux of an emitter.
 LightSample shared_sample(const Emitter& emitter, float count, const RandomSequence& random,
                           const raytrace::RayScene& rays) {
     LightSample sample;
@@ -83,10 +68,7 @@ std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitte
     std::vector<LightSample> samples;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double target = (double(i) + start) / count * total;
-        const std::size_t chosen = std::min<std::size_t>(
-            std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin()),
-            emitters.size() - 1);
-        const Emitter& emitter = emitters[chosen];
+        const Emitter& emitter = emitters[choose_emitter(cumulative, target)];
         const float expected = float(double(luminance(emitter.flux)) / total * count);
         LightSample sample = emitter.is_delta()
                                  ? delta_sample(emitter)
@@ -97,96 +79,30 @@ std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitte
     return samples;
 }
 
-// The oldest point gives way where there is no room.
-void add_path_vertex(LightSample& sample, vec3 point) {
-    if (sample.path_vertex_count == LightSample::max_path_vertices) {
-        std::rotate(sample.path.begin(), sample.path.begin() + 1, sample.path.end());
-        --sample.path_vertex_count;
-    }
-    sample.path[sample.path_vertex_count++] = point;
-}
-
-// The samples of one walk, for a flux of 1 W in all walks together (divided by their number later).
-std::vector<LightSample> walk(const std::vector<Emitter>& emitters, const std::vector<double>& cumulative,
-                              std::uint32_t index, const SampleRequest& settings, const raytrace::RayScene& rays) {
-    std::vector<LightSample> samples;
-    RandomSequence random(sequence_kind(settings), hash_combine(settings.seed, 0x1d1), index);
-    const float numbers[4] = {random.at(0), random.at(1), random.at(2), random.at(3)};
-    const double target = double(random.at(4)) * cumulative.back();
-    const std::size_t chosen = std::min<std::size_t>(
-        std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin()),
-        emitters.size() - 1);
-    const Emitter& emitter = emitters[chosen];
-    const EmittedRay emitted = sample_emitter_ray(emitter, numbers);
-    vec3 flux =
-        emitter.flux * emitted.tint * emitted.weight * float(cumulative.back() / double(luminance(emitter.flux)));
-    raytrace::Ray ray{emitted.origin + ray_offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
-    for (std::uint32_t bounce = 1; bounce <= settings.bounces; ++bounce) {
-        const auto hit = rays.closest_hit(ray, walk_scope(settings));
-        if (!hit)
-            break;
-        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
-        const bool front = glm::dot(point.geometric_normal, ray.direction) < 0.0f;
-        const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
-        const vec3 shading_normal = front ? point.shading_normal : -point.shading_normal;
-        flux *= point.material.base_colour;
-        const float largest =
-            std::max({point.material.base_colour.x, point.material.base_colour.y, point.material.base_colour.z});
-        random.seek(8 + bounce * 4);
-        const float u = random.next(), v = random.next(), survive = random.next();
-        if (settings.termination == Termination::russian_roulette) {
-            // The decision comes before the sample, so that samples carry nearly equal flux.
-            const float probability = std::clamp(largest, 0.05f, 1.0f);
-            if (survive >= probability)
-                break;
-            flux /= probability;
-        }
-        if (!(luminance(flux) > 0.0f))
-            break;
-        LightSample sample;
-        sample.position = offset_from_surface(point.position, normal, rays, walk_scope(settings));
-        sample.normal = shading_normal;
-        sample.flux = flux;
-        sample.bounce = bounce;
-        sample.emitter = emitter.entity;
-        if (!samples.empty()) {
-            sample.path = samples.back().path;
-            sample.path_vertex_count = samples.back().path_vertex_count;
-        }
-        add_path_vertex(sample, ray.origin);
-        samples.push_back(sample);
-        ray = {point.position + ray_offset * normal, sample_cosine_direction(shading_normal, u, v), 0.0f, 1e30f};
-        if (glm::dot(ray.direction, normal) <= 0.0f)
-            break; // below the true surface
-    }
-    return samples;
-}
-
-// Keeps `count` of the samples, evenly spread over them, and hands the flux of the others on.
-std::vector<LightSample> thin_out(std::vector<LightSample> samples, std::uint32_t count, std::uint32_t seed) {
-    if (samples.size() <= count)
-        return samples;
-    const double step = double(samples.size()) / count;
-    const double start = double(to_unit_float(hash_combine(seed, 991))) * step;
-    std::vector<LightSample> kept;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const std::size_t place = std::min(samples.size() - 1, std::size_t(start + i * step));
-        kept.push_back(samples[place]);
-        kept.back().flux *= float(step);
-    }
-    return kept;
-}
-
 } // namespace
 
-// By largest remainders, first of equals.
+SequenceKind sequence_kind(const SampleRequest& settings) {
+    return settings.sequence == Sequence::sobol ? SequenceKind::sobol : SequenceKind::pseudo_random;
+}
+
+raytrace::Scope walk_scope(const SampleRequest& settings) {
+    return settings.movers_are_static ? raytrace::Scope::everything : raytrace::Scope::static_only;
+}
+
+std::size_t choose_emitter(const std::vector<double>& cumulative, double target) {
+    return std::min<std::size_t>(
+        std::size_t(std::upper_bound(cumulative.begin(), cumulative.end(), target) - cumulative.begin()),
+        cumulative.size() - 1);
+}
+
+// The largest-remainder method; of equal remainders, the first wins.
 std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count) {
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<std::uint32_t> result(weights.size());
     std::vector<std::pair<double, std::size_t>> remainders;
     std::uint32_t given = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        // Each takes part, so that no light goes missing.
+        // At least one each, so that no light is lost.
         const double exact = std::max(1.0, weights[i] / total * count);
         result[i] = std::uint32_t(exact);
         remainders.emplace_back(exact - std::floor(exact), i);
@@ -230,7 +146,7 @@ SampleBudget divide_samples(const SampleRequest& settings, const std::vector<Emi
     if (deltas == emitters.size())
         share = std::min<std::uint32_t>(std::max<std::uint32_t>(share, std::uint32_t(deltas)), std::uint32_t(deltas));
     else
-        share = std::max<std::uint32_t>(share, std::uint32_t(deltas) + 1); // no emitter goes without
+        share = std::max<std::uint32_t>(share, std::uint32_t(deltas) + 1); // every emitter gets one
     if (!indirect)
         share = deltas == emitters.size() ? std::uint32_t(deltas) : settings.lights;
     budget.direct = direct ? std::min(share, settings.lights) : 0;
@@ -266,37 +182,6 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
             samples.push_back(shared_sample(*sharing[e], float(counts[e]), {sequence_kind(settings), seed, i}, rays));
     }
     return samples;
-}
-
-std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                         const SampleRequest& settings, const raytrace::RayScene& rays) {
-    if (count == 0 || emitters.empty() || settings.bounces == 0)
-        return {};
-    std::vector<double> cumulative;
-    double total = 0;
-    for (const Emitter& emitter : emitters)
-        cumulative.push_back(total += double(luminance(emitter.flux)));
-    std::vector<LightSample> samples;
-    std::uint32_t walks = 0;
-    // With clusters, several times as many are drawn, and like ones are then joined.
-    const std::uint64_t wanted = std::max<std::uint64_t>(
-        count, std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, max_candidates));
-    while (samples.size() < wanted && walks < walk_limit) {
-        // Rounds run in parallel; walks are then taken in order until there are enough.
-        std::vector<std::vector<LightSample>> round(walks_per_round);
-        parallel_for_chunks(walks_per_round, 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                round[i] = walk(emitters, cumulative, walks + std::uint32_t(i), settings, rays);
-        });
-        for (std::size_t i = 0; i < round.size() && samples.size() < wanted; ++i, ++walks)
-            samples.insert(samples.end(), round[i].begin(), round[i].end());
-    }
-    if (walks > 0)
-        for (LightSample& sample : samples)
-            sample.flux /= float(walks);
-    if (settings.candidates > 1)
-        return cluster_samples(samples, count, settings.spread, settings.seed);
-    return thin_out(std::move(samples), count, settings.seed);
 }
 
 } // namespace sunfleck::gi

@@ -1,7 +1,7 @@
-// Fewer, better placed samples from many: the samples of several times as many walks are divided into clusters of like
-// place and orientation, and each cluster is stood for by the sample in its middle, with the flux of all. The thesis
-// suggests it in sec. 6.1 (samples spread evenly in space, weighted by the walks that reach their region); the division
-// follows the global cuts of B. Walter et al., "Lightcuts", 2005.
+// Fewer, better placed light samples (VPLs): several times as many candidates are clustered by position and
+// orientation, and each cluster is represented by its medoid, the candidate nearest to the flux-weighted mean, with the
+// flux of all. The thesis suggests it in sec. 6.1 (samples spread evenly in space, weighted by the walks that reach
+// their region); the subdivision follows the global cuts of B. Walter et al., "Lightcuts", 2005.
 #pragma once
 
 #include "gi_module/transport/light_sample.h"
@@ -10,10 +10,11 @@
 
 namespace sunfleck::gi {
 
-// At most `count` samples. Flux is kept, by channel. Where light is smooth over a cluster, its middle says more than a
-// sample drawn at random (the midpoint rule; squared errors of 300 samples are a half to a third), at the price of an
-// error that seeds share and that shrinks with the clusters. `spread` 0 divides where most flux is, 1 where most
-// surface is. `seed` draws the ways that the light came, from the clusters' members in proportion to their luminance.
+// At most `count` samples. Flux is preserved, by channel. Where light is smooth over a cluster, its medoid is more
+// accurate than a member drawn at random (like the midpoint rule; squared errors of 300 samples drop to between a half
+// and a third), at the price of a bias that all seeds share and that shrinks with the clusters. `spread`: 0 subdivides
+// where most flux is, 1 where most surface is. `seed` draws the path of each cluster's light from its members, in
+// proportion to their luminance.
 std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples, std::uint32_t count, float spread,
                                          std::uint32_t seed);
 

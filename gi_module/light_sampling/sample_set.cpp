@@ -11,7 +11,7 @@
 namespace sunfleck::gi {
 namespace {
 
-// Tells whether anything about the emitters changed.
+// Of everything about the emitters that samples depend on.
 std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
     std::uint64_t hash = hash_start;
     const auto add = [&](const void* data, std::size_t size) { hash = hash_bytes(hash, data, size); };
@@ -35,7 +35,7 @@ std::uint64_t next_generation() {
     return ++last;
 }
 
-// Samples left for emitters that move or vary: their share, but at least two for each.
+// Samples for dynamic emitters: their share, but at least two each. `others`: there are static ones, too.
 std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_emitters, bool others) {
     if (dynamic_emitters == 0 || request.lights == 0)
         return 0;
@@ -47,13 +47,14 @@ std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_em
 
 constexpr Counter light_samples{"light_samples", "samples", "light samples", "Light samples (VPLs) in all"};
 constexpr Counter direct_samples{"light_samples_direct", "samples", "light samples",
-                                 "Light samples that lie on emitters"};
+                                 "Light samples that lie on emitters: direct light"};
 constexpr Counter dynamic_samples{"light_samples_dynamic", "samples", "light samples",
                                   "Light samples of emitters that move or vary"};
 constexpr Counter moved_samples{"light_samples_moved", "samples", "light samples",
-                                "Light samples whose place or direction changed in this frame"};
-constexpr Counter blocked_samples{"light_samples_blocked", "samples", "light samples",
-                                  "Reflected samples that get no light because a door or the like stands in its way"};
+                                "Light samples whose position or direction changed in this frame"};
+constexpr Counter blocked_samples{
+    "light_samples_blocked", "samples", "light samples",
+    "Reflected samples that are dark because a door or the like blocks the path of their light"};
 
 } // namespace
 
@@ -81,8 +82,8 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request) {
         follow_dynamic_lights(scene.rays);
 }
 
-// Those that move have samples of their own, and so have those that once changed their strength: the first change makes
-// new samples for all, later ones only scale.
+// Emitters that move have samples of their own, and so have those that once changed their flux: the first change
+// generates all samples again, later ones only scale.
 void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& request) {
     const Bounds& fixed = scene.gpu_scene.static_bounds();
     const Bounds bounds = fixed.empty() ? scene.gpu_scene.bounds() : fixed;
@@ -101,7 +102,7 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
     std::erase_if(emitters_, moves);
 }
 
-// True if there are new ones. One that went out is noticed by its absence.
+// True if there are new ones. One that was switched off is noticed by its absence.
 bool SampleSet::find_varying(ecs::Registry& registry) {
     std::map<ecs::Entity, vec3> flux;
     for (const Emitter& emitter : emitters_)
@@ -120,9 +121,9 @@ bool SampleSet::find_varying(ecs::Registry& registry) {
 
 bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
     std::uint64_t hash = hash_emitters(emitters_);
-    for (const Emitter& emitter : dynamic_emitters_) // only which they are
+    for (const Emitter& emitter : dynamic_emitters_) // only which ones there are
         hash = hash * 0x100000001b3ull ^ (emitter.entity.bits() * 16 + std::uint64_t(emitter.kind));
-    // Where movers count as static geometry, their every move makes new walks.
+    // Where movers count as static geometry, each of their moves needs new walks.
     const std::uint64_t geometry = request.movers_are_static ? rays.generation() : rays.static_generation();
     const bool same =
         valid_ && request.same_samples(sampled_) && hash == emitter_hash_ && geometry == geometry_generation_;
@@ -136,7 +137,7 @@ bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::
 void SampleSet::make_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
     const std::uint32_t share = dynamic_share(request, dynamic_emitters_.size(), !emitters_.empty());
     dynamic_lights_.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
-    SampleRequest fixed = request; // what is left for emitters that stay
+    SampleRequest fixed = request; // for static emitters: what the dynamic ones leave
     fixed.lights = request.lights - std::min(request.lights, std::uint32_t(dynamic_lights_.samples().size()));
     samples_ = sample_sources()[request.source].make(emitters_, fixed, rays);
     const auto& dynamic = dynamic_lights_.samples();
@@ -149,7 +150,7 @@ void SampleSet::sort_samples() {
     const auto key = [](const LightSample& sample) { return std::pair(light_class(sample.kind), sample.dynamic); };
     std::stable_sort(samples_.begin(), samples_.end(),
                      [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
-    // Dynamic samples keep among themselves the order in which DynamicLights has them.
+    // Within a class, dynamic samples keep the order of DynamicLights.
     const auto& dynamic = dynamic_lights_.samples();
     std::vector<std::uint32_t> order(dynamic.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
@@ -181,6 +182,19 @@ void SampleSet::follow_dynamic_lights(const raytrace::RayScene& rays) {
     }
 }
 
+// Dynamic emitters have few samples, each with more flux: their reflected samples are clamped as if there were no
+// others.
+void SampleSet::update_bounds(const SceneView& scene, const LightSettings& settings) {
+    std::uint32_t surface_samples = 0, dynamic_reflected = 0;
+    for (const LightSample& sample : samples_) {
+        surface_samples += sample.kind == SampleKind::surface;
+        dynamic_reflected += sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0;
+    }
+    const float area = scene.rays.static_area();
+    bound_ = gi::geometry_bound(surface_samples, area, settings.clamp_scale);
+    dynamic_bound_ = gi::geometry_bound(dynamic_reflected, area, settings.clamp_scale);
+}
+
 void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
                             float indirect_scale) {
     if (settings.mover_paths && !sampled_.movers_are_static)
@@ -189,17 +203,8 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
         blocked_paths_ = {};
     remapped_.clear();
     slots_ = std::max(slots, 1u);
-    // Emitters that move have few samples of their own, each of which carries more: the bound of what they reflect is
-    // as if there were no others.
-    std::uint32_t surface_samples = 0, dynamic_reflected = 0;
-    for (const LightSample& sample : samples_) {
-        surface_samples += sample.kind == SampleKind::surface;
-        dynamic_reflected += sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0;
-    }
-    const float area = scene.rays.static_area();
-    bound_ = gi::geometry_bound(surface_samples, area, settings.clamp_scale);
-    const float dynamic_bound = gi::geometry_bound(dynamic_reflected, area, settings.clamp_scale);
-    // The maps of directional lights cover the scene's bounds, so all of them follow a change of those.
+    update_bounds(scene, settings);
+    // The maps of directional lights cover the scene's bounds and change with them.
     const Bounds bounds = scene.gpu_scene.bounds();
     const bool resized = bounds.minimum != bounds_.minimum || bounds.maximum != bounds_.maximum;
     bounds_ = bounds;
@@ -208,10 +213,10 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
         const LightSample& sample = samples_[i];
         const bool reflected = sample.bounce > 0;
         const float cone = rows_[i].position_bound.w;
-        const float bound = geometry_bound_of(sample.radius, sample.dynamic && reflected ? dynamic_bound : bound_,
+        const float bound = geometry_bound_of(sample.radius, sample.dynamic && reflected ? dynamic_bound_ : bound_,
                                               settings.clamp_scale);
         rows_[i] = make_light_row(sample, slot(i), bound, bounds_);
-        // A spot's map covers its cone, whose angle may change where the light stays.
+        // A spot light's map covers its cone, whose angle may change while the light stays.
         if ((resized && sample.kind == SampleKind::directional) ||
             (sample.kind == SampleKind::spot && rows_[i].position_bound.w != cone))
             remapped_.push_back(i);

@@ -1,12 +1,13 @@
-// The light samples (VPLs) of a scene: the one copy that all techniques read. It follows the registry: samples are made
-// when the request, emitters that stay, or static geometry changed; those of emitters that move or vary follow them.
+// The light samples (virtual point lights, VPLs) of a scene: the one copy that all techniques read. It follows the
+// registry: samples are generated again when the request, static emitters or static geometry changed; those of dynamic
+// emitters (which move or vary) follow them.
 //
-// A set is a value that owns all it needs: a next one can be prepared from the same registry while another lights, and
-// two systems can light one registry.
+// A set is a value that owns all it needs: the next one can be prepared from the same registry while another lights,
+// and two systems can light one registry.
 //
-// Samples are sorted by light class, then those that stay before dynamic ones, then direct before reflected; a sample's
-// index is its place, and shadow map, visibility rows and GPU rows follow it. Samples, indices and rows are stable
-// until generation() changes.
+// Samples are sorted by light class, then static before dynamic ones, then direct before reflected; a sample's index is
+// its position in this order, and shadow map, visibility rows and GPU rows follow it. Samples, indices and rows are
+// stable until generation() changes.
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
@@ -22,7 +23,7 @@
 
 namespace sunfleck::gi {
 
-// What is lit, as the engine has it. All must be up to date and outlive the call.
+// The scene to be lit. All parts must be up to date and outlive the call.
 struct SceneView {
     ecs::Registry& registry;
     const scene::MeshStore& meshes;
@@ -32,9 +33,9 @@ struct SceneView {
 
 class SampleSet {
 public:
-    // Makes or moves samples. Call once a frame, then update_rows.
+    // Generates or moves samples. Call once a frame, then update_rows.
     void update(const SceneView& scene, const SampleRequest& request);
-    // What shaders see of the samples. `slots`: shadow maps that memory holds; sample i uses slot i % slots.
+    // Fills the rows that shaders read. `slots`: shadow maps that fit into memory; sample i uses slot i % slots.
     // Reflected light is multiplied by `indirect_scale`.
     void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots, float indirect_scale);
 
@@ -44,17 +45,17 @@ public:
     std::uint32_t light_class_of(std::uint32_t sample) const { return light_class(samples_[sample].kind); }
     std::uint32_t slot(std::uint32_t sample) const { return sample % slots_; }
 
-    // Another number means other samples altogether; unique among all sets of the process.
+    // Changes when the samples are generated again; unique among all sets of the process.
     std::uint64_t generation() const { return generation_; }
-    // Dynamic samples whose place or direction changed in the last update.
+    // Dynamic samples whose position or direction changed in the last update.
     std::span<const std::uint32_t> moved() const { return moved_; }
-    // Samples that stayed, but whose shadow map covers something else since the last update_rows: its static part is
-    // void, too.
+    // Samples that stayed, but whose shadow map covers another region since the last update_rows: its static part is
+    // invalid, too.
     std::span<const std::uint32_t> remapped() const { return remapped_; }
-    // Whether a door or the like keeps the sample's light from it.
+    // Whether a door or the like blocks the path of the sample's light.
     bool is_blocked(std::uint32_t sample) const { return blocked_paths_.is_blocked(sample); }
 
-    // The bound of the geometry term in use, 1/m2 (transport/clamping.h); single samples may have lower ones.
+    // The bound that clamps the geometry term, 1/m2 (transport/clamping.h); single samples may have lower ones.
     float geometry_bound() const { return bound_; }
 
     static std::span<const Counter> counters();
@@ -67,23 +68,24 @@ private:
     void make_samples(const SampleRequest& request, const raytrace::RayScene& rays);
     void sort_samples();
     void follow_dynamic_lights(const raytrace::RayScene& rays);
+    void update_bounds(const SceneView& scene, const LightSettings& settings);
 
     std::vector<LightSample> samples_;
     std::vector<shared::LightRow> rows_;
-    std::vector<Emitter> emitters_;         // whose samples stay
+    std::vector<Emitter> emitters_;         // static
     std::vector<Emitter> dynamic_emitters_; // that move or vary
-    std::set<ecs::Entity> varying_;         // do not move, but have changed their strength
+    std::set<ecs::Entity> varying_;         // do not move, but have changed their flux
     std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
     DynamicLights dynamic_lights_;
     BlockedPaths blocked_paths_;
-    std::vector<std::uint32_t> dynamic_samples_; // place of each dynamic sample among all
+    std::vector<std::uint32_t> dynamic_samples_; // index of each dynamic sample among all
     std::vector<std::uint32_t> moved_, remapped_;
-    SampleRequest sampled_; // what the samples were made for
+    SampleRequest sampled_; // what the samples were generated for
     std::uint32_t slots_ = 1;
     bool valid_ = false;
     std::uint64_t generation_ = 0, geometry_generation_ = 0, emitter_hash_ = 0;
-    Bounds bounds_; // of the scene, at the last update_rows
-    float bound_ = 0.0f;
+    Bounds bounds_;                             // of the scene, at the last update_rows
+    float bound_ = 0.0f, dynamic_bound_ = 0.0f; // of the geometry term
 };
 
 } // namespace sunfleck::gi

@@ -18,7 +18,8 @@ std::vector<LightSample> sample_by_random_walks(const std::vector<Emitter>& emit
 
 std::span<const SampleSource> sample_sources() {
     static const SampleSource sources[] = {
-        {"random_walk", "Random walks from the emitters leave a sample wherever they are reflected (thesis sec. 4.1)",
+        {"random_walk",
+         "Random walks from the emitters leave a sample at every reflection (instant radiosity, thesis sec. 4.1)",
          sample_by_random_walks},
     };
     return sources;

@@ -1,5 +1,5 @@
-// Where light samples come from: the second list of the module, beside that of techniques. A source turns emitters and
-// static geometry into the samples of emitters that stay; those of emitters that move are dynamic_lights.h's.
+// How light samples (VPLs) are generated: the module's second list, next to that of techniques. A source makes the
+// samples of static emitters from emitters and static geometry; those of dynamic emitters are dynamic_lights.h's.
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"
@@ -14,7 +14,7 @@ namespace sunfleck::gi {
 struct SampleSource {
     std::string_view name; // --source NAME
     std::string_view tooltip;
-    // Exactly `request.lights` samples where there is light enough; a pure function of its arguments.
+    // Exactly `request.lights` samples unless too little light meets a surface; a pure function of its arguments.
     std::vector<LightSample> (*make)(const std::vector<Emitter>& emitters, const SampleRequest& request,
                                      const raytrace::RayScene& rays);
 };

@@ -6,7 +6,7 @@ namespace sunfleck::gi {
 namespace {
 
 Field source_field() {
-    Field field = SUNFLECK_CHOICE(SamplingSettings, source, "Where light samples come from");
+    Field field = SUNFLECK_CHOICE(SamplingSettings, source, "How light samples are generated");
     for (const SampleSource& source : sample_sources())
         field.choices.push_back(source.name);
     return field.flagged(needs_new_samples);
@@ -16,11 +16,11 @@ std::vector<Field> sampling_fields() {
     std::vector<Field> fields = {
         source_field(),
         SUNFLECK_FIELD(SamplingSettings, lights, "", 0, 65536, "Number of light samples; more is smoother and slower"),
-        SUNFLECK_FIELD(SamplingSettings, direct_share, "", 0, 1, "Share of the samples that lie on emitters"),
+        SUNFLECK_FIELD(SamplingSettings, direct_share, "", 0, 1,
+                       "Share of the samples that lie on emitters: direct light"),
         SUNFLECK_FIELD(SamplingSettings, dynamic_share, "", 0, 1,
-                       "Share of the samples for emitters that move or vary, where there are any"),
-        SUNFLECK_FIELD(SamplingSettings, bounces, "", 0, 64,
-                       "How often light is reflected at most; 0 is direct light only"),
+                       "Share of the samples for emitters that move or vary, if there are any"),
+        SUNFLECK_FIELD(SamplingSettings, bounces, "", 0, 64, "Maximum number of reflections; 0 is direct light only"),
         SUNFLECK_FIELD(SamplingSettings, seed, "", 0, 4294967295.0, "Another seed gives another set of samples"),
         SUNFLECK_CHOICE(SamplingSettings, sequence, "Random numbers of the samples; sobol is smoother at equal count",
                         "pseudo_random", "sobol"),
@@ -30,9 +30,9 @@ std::vector<Field> sampling_fields() {
             "equal flux",
             "bounce_limit", "russian_roulette"),
         SUNFLECK_FIELD(SamplingSettings, candidates, "", 1, 1024,
-                       "Reflected samples are clustered from so many times as many; 1: as random walks leave them"),
+                       "Reflected samples are clustered from this many times as many; 1: no clustering"),
         SUNFLECK_FIELD(SamplingSettings, spread, "", 0, 1,
-                       "What clusters are divided by: 0 the flux in them, 1 the surface that they cover")};
+                       "How clusters are subdivided: 0 by their flux, 1 by the surface that they cover")};
     for (Field& field : fields)
         field = field.flagged(needs_new_samples);
     return fields;
@@ -41,8 +41,8 @@ std::vector<Field> sampling_fields() {
 } // namespace
 
 const TypeDescription& SamplingSettings::description() {
-    static const TypeDescription type{"SamplingSettings", 1, "Light samples (VPLs): how many, and where from.",
-                                      sampling_fields()};
+    static const TypeDescription type{"SamplingSettings", 1,
+                                      "Light samples (VPLs): how many, and how they are generated.", sampling_fields()};
     return type;
 }
 
@@ -58,7 +58,7 @@ const TypeDescription& LightSettings::description() {
         1,
         "How light samples become lights.",
         {SUNFLECK_FIELD(LightSettings, mover_paths, "", 0, 1,
-                        "Doors and other large boxes that move block the light that samples reflect"),
+                        "Doors and other large boxes that move block the paths of reflected light"),
          SUNFLECK_FIELD(LightSettings, clamp_scale, "", 0.001, 1e6,
                         "Scales the bound of the geometry term; more is brighter in corners and blotchier")}};
     return type;
