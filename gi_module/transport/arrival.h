@@ -1,5 +1,5 @@
-// Light of one sample at one point, before any shadow: the kernels' light_factor (shadows/shadowed_light.glsl) on the
-// CPU, for a plane that faces the light.
+// Irradiance of one light sample (VPL) at a point, unshadowed, on a plane that faces the light: what light_factor
+// (shadows/shadowed_light.glsl) computes in the kernels, on the CPU.
 #pragma once
 
 #include "gi_module/transport/light_row.h"
@@ -10,7 +10,7 @@ namespace sunfleck::gi {
 
 struct Arrival {
     vec3 irradiance{0.0f}; // W/m2, on a plane that faces the light
-    vec3 to_light{0.0f};   // the way to it, m; of parallel light `far` long
+    vec3 to_light{0.0f};   // vector to the light, m; `far` long for parallel light
 };
 
 inline Arrival arrival(const shared::LightRow& row, std::uint32_t light_class, vec3 point, float far) {

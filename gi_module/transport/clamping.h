@@ -1,14 +1,14 @@
-// The bound of the geometry term cos*cos/d^2.
+// The bound that clamps the geometry term cos*cos/d^2 of surface samples (VPLs).
 //
-// One of N surface samples stands for an area A/N of the scene's surface A, a disc of radius r = sqrt(A / (pi N)).
-// Nearer than r the point light misjudges the disc that it stands for, so the term is held below 1/r^2 = pi N / A. The
-// bound grows in proportion to N: the picture converges, which it does not with a fixed bound. It has no unit of length
-// of its own: scaling the scene scales it along.
+// One of N surface samples represents an area A/N of the scene's surface A, a disc of radius r = sqrt(A / (pi N)).
+// Nearer than r the point light misrepresents its disc, so the term is clamped to 1/r^2 = pi N / A. The bound grows in
+// proportion to N, so the picture converges, which it does not with a fixed bound. The bound has no unit of length of
+// its own: it scales with the scene.
 //
-// A sample that stands for a cluster of walks (light_sampling/sample_clusters.h) has a disc of its own, which is wide
-// where little light comes from. At a distance of its radius a disc shines half as brightly along its axis as the point
-// does, pi L r^2 / (d^2 + r^2): such a sample's term is held below 1 / (2 r^2), where that is less. What the bound
-// removes is counted (see BruteForce) and reported as clamped_flux.
+// The medoid of a cluster of random walks (light_sampling/sample_clusters.h) has a disc of its own, which is wide where
+// little light comes from. At a distance of its radius a disc is half as bright along its axis as the point is,
+// pi L r^2 / (d^2 + r^2): such a sample's term is clamped to 1 / (2 r^2), where that is less. The energy that clamping
+// removes (its bias) is counted (see BruteForce) and reported as clamped_flux.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ inline float geometry_bound(std::uint32_t surface_samples, float area, float sca
     return scale * 3.14159265f * float(surface_samples) / area;
 }
 
-// Of a sample whose disc has this radius, m; 0: `bound`, that of all.
+// For a sample whose disc has this radius, m; 0: `bound`, which all other samples have.
 inline float geometry_bound_of(float radius, float bound, float scale) {
     return radius > 0.0f ? std::min(bound, scale / (2.0f * radius * radius)) : bound;
 }

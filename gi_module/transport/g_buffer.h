@@ -1,24 +1,27 @@
-// What the passes of the module read of the geometry pass, and what they write. All images have one size.
+// The G-buffer that the module reads, and the images that it writes. All images have the same size.
 //
-// Read as sampled images in compute and fragment shaders, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL; required:
-//   depth               D32_SFLOAT or R32_SFLOAT. Reverse Z without a far plane: near / distance along the camera's
-//                       axis, with the near distance of the CameraRow. 0 where nothing is.
-//   normals             R32G32_UINT. x: shading normal, y: geometric normal, each packed by engine/core/octahedral.h;
-//                       world space. The geometric normal faces the camera, the shading normal is on its side.
+// Input: sampled images, read in compute and fragment shaders in VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL.
+// Required:
+//   depth               D32_SFLOAT or R32_SFLOAT. Reverse Z with an infinite far plane: near / distance along the view
+//                       axis, with the near distance of the CameraRow. 0 is background.
+//   normals             R32G32_UINT, world space. x: shading normal, y: geometric normal, each packed by
+//                       engine/core/octahedral.h. The geometric normal faces the camera, and the shading normal lies on
+//                       the same side.
 //   surface             R32_UINT or R16_UINT. Row of scene::GpuScene + 1 in the bits of surface_row_mask
-//                       (engine/scene/instance_shared.h); 0 where nothing is.
-// The same; optional, and free of cost while no technique reads them:
-//   motion              R16G16_SFLOAT or R32G32_SFLOAT. Place in the previous frame minus place in this one; 1 is the
-//                       picture's width or height.
+//                       (engine/scene/instance_shared.h); 0 is background.
+// Optional; they cost nothing while no technique reads them:
+//   motion              R16G16_SFLOAT or R32G32_SFLOAT. Position in the previous frame minus position in this one,
+//   where
+//                       1 is the width or height of the picture.
 //   metallic_roughness  R8G8_UNORM, R8G8B8A8_UNORM or R16G16_SFLOAT. x: metallic, y: roughness, as in glTF.
 //
-// Written as storage images in compute shaders, VK_IMAGE_LAYOUT_GENERAL, all pixels:
-//   irradiance          R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. W/m2 without albedo; alpha 1, 0 where nothing is.
-//   specular            The same formats; optional. Radiance reflected specularly, W/(sr m2); 0 while no technique
-//                       lights it.
+// Output: storage images, written in compute shaders in VK_IMAGE_LAYOUT_GENERAL, every pixel.
+//   irradiance          R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. W/m2 without albedo; alpha is 1, background 0.
+//   specular            The same formats; optional. Specularly reflected radiance, W/(sr m2); 0 while no technique
+//                       computes it.
 //
-// With the engine's frame graph these are graph resources, and barriers follow from the declarations. What geometry
-// passes write in other forms (projections, depth and normal formats), gi_module/g_buffer/ converts to this one.
+// With the engine's frame graph these are graph resources, and barriers follow from the declared accesses. G-buffers in
+// other forms (projections, depth and normal formats) are converted to this one by gi_module/g_buffer/.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"

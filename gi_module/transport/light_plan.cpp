@@ -24,7 +24,7 @@ constexpr Selector selectors[] = {
     {"specular", [](LightCell cell) { return cell.specular; }},
 };
 
-// Takes the text up to `separator` off the front of `text`.
+// Removes the text up to `separator` from the front of `text` and returns it.
 std::string_view take_until(std::string_view& text, char separator) {
     const std::size_t end = std::min(text.find(separator), text.size());
     const std::string_view head = text.substr(0, end);
@@ -35,7 +35,7 @@ std::string_view take_until(std::string_view& text, char separator) {
 Result<CellSet> selected_cells(std::string_view text) {
     const std::string whole(text);
     CellSet cells = all_diffuse_cells() | ~all_diffuse_cells();
-    bool says_specular = false;
+    bool names_specular = false;
     while (!text.empty()) {
         const std::string_view word = take_until(text, '.');
         const Selector* found = nullptr;
@@ -46,11 +46,11 @@ Result<CellSet> selected_cells(std::string_view text) {
             return Error{"light plan '" + whole + "': '" + std::string(word) +
                          "' is not a part of the light (direct, first_bounce, later_bounces, indirect, fixed, dynamic, "
                          "on_fixed, on_mover, diffuse, specular)"};
-        says_specular = says_specular || word == "specular";
+        names_specular = names_specular || word == "specular";
         cells &= cells_where(found->holds);
     }
-    // Specular light is only meant where it is named: few techniques can light it.
-    return says_specular ? cells : cells & all_diffuse_cells();
+    // Specular light is only meant if it is named: few techniques can compute it.
+    return names_specular ? cells : cells & all_diffuse_cells();
 }
 
 std::string names_of(CellSet cells) {
@@ -79,7 +79,7 @@ std::int32_t owner_by_term(const TermOwners& terms, LightCell cell) {
     return cell.path == PathPart::direct ? terms.direct : terms.indirect;
 }
 
-// By path and whether it is dynamic: what a technique lights on the receivers of one kind.
+// By path and whether it is dynamic: the diffuse light of a technique on receivers of one kind.
 std::bitset<6> paths_on(CellSet cells, bool on_mover) {
     std::bitset<6> paths;
     for (std::size_t i = 0; i < light_cell_count; ++i)
@@ -99,25 +99,18 @@ CellSet all_diffuse_cells() {
     return cells_where([](LightCell cell) { return !cell.specular; });
 }
 
-Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const PlannedTechnique> techniques) {
-    LightPlan plan;
-    const auto is_partial = [&](std::int32_t technique) {
-        return technique != nobody && techniques[std::size_t(technique)].some_receivers;
+void LightPlan::give(std::size_t cell, std::int32_t technique, std::span<const PlannedTechnique> techniques) {
+    const auto is_partial = [&](std::int32_t index) {
+        return index != nobody && techniques[std::size_t(index)].some_receivers;
     };
-    const auto give = [&](std::size_t cell, std::int32_t technique) {
-        const std::int32_t before = is_partial(plan.owner_[cell]) ? plan.fallback_[cell] : plan.owner_[cell];
-        plan.fallback_[cell] = is_partial(technique) ? before : nobody;
-        plan.owner_[cell] = technique;
-    };
-    for (std::size_t i = 0; i < light_cell_count; ++i) {
-        const LightCell cell = LightCell::at(i);
-        give(i, owner_by_term(terms, cell));
-        // Movers' own technique takes what is lit at all.
-        if (terms.movers != nobody && cell.on_mover && !cell.specular && plan.owner_[i] != nobody)
-            give(i, terms.movers);
-    }
+    const std::int32_t before = is_partial(owner_[cell]) ? fallback_[cell] : owner_[cell];
+    fallback_[cell] = is_partial(technique) ? before : nobody;
+    owner_[cell] = technique;
+}
+
+Status LightPlan::apply_exceptions(std::string_view text, std::span<const PlannedTechnique> techniques) {
     CellSet named;
-    for (std::string_view text = terms.exceptions; !text.empty();) {
+    while (!text.empty()) {
         std::string_view exception = take_until(text, ',');
         SUNFLECK_ASSIGN(const CellSet cells, selected_cells(take_until(exception, '=')));
         SUNFLECK_ASSIGN(const std::int32_t technique, find_technique(exception, techniques));
@@ -126,23 +119,38 @@ Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const Plann
         named |= cells;
         for (std::size_t i = 0; i < light_cell_count; ++i)
             if (cells[i])
-                give(i, technique);
+                give(i, technique, techniques);
     }
-    for (std::int32_t t = 0; t < std::int32_t(techniques.size()); ++t) {
-        const PlannedTechnique& technique = techniques[std::size_t(t)];
-        const CellSet lit = plan.lit_by(t);
-        if ((lit & ~technique.can_light).any())
-            return Error{"light plan: " + std::string(technique.name) + " cannot light " +
-                         names_of(lit & ~technique.can_light)};
-        const std::bitset<6> fixed = paths_on(lit, false), movers = paths_on(lit, true);
-        if (fixed.any() && movers.any() && fixed != movers)
-            return Error{"light plan: " + std::string(technique.name) +
-                         " must light the same paths on movers as on fixed surfaces, or only one of the two"};
-        if (technique.some_receivers && movers.any() && plan.shares_movers(t))
-            return Error{"light plan: " + std::string(technique.name) +
-                         " must own all light on movers that anybody lights, since a receiver that it supports is lit "
-                         "by it alone"};
+    return {};
+}
+
+Status LightPlan::check(std::int32_t index, const PlannedTechnique& technique) const {
+    const CellSet lit = lit_by(index);
+    const std::string name = "light plan: " + std::string(technique.name);
+    if ((lit & ~technique.can_light).any())
+        return Error{name + " cannot light " + names_of(lit & ~technique.can_light)};
+    const std::bitset<6> fixed = paths_on(lit, false), movers = paths_on(lit, true);
+    if (fixed.any() && movers.any() && fixed != movers)
+        return Error{name + " must light the same paths on movers as on fixed surfaces, or only one of the two"};
+    if (technique.some_receivers && movers.any() && shares_movers(index))
+        return Error{name +
+                     " must own all light on movers that anybody lights, since a receiver that it supports is lit "
+                     "by it alone"};
+    return {};
+}
+
+Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const PlannedTechnique> techniques) {
+    LightPlan plan;
+    for (std::size_t i = 0; i < light_cell_count; ++i) {
+        const LightCell cell = LightCell::at(i);
+        plan.give(i, owner_by_term(terms, cell), techniques);
+        // The movers' own technique replaces other owners; cells without one stay unlit.
+        if (terms.movers != nobody && cell.on_mover && !cell.specular && plan.owner_[i] != nobody)
+            plan.give(i, terms.movers, techniques);
     }
+    SUNFLECK_TRY(plan.apply_exceptions(terms.exceptions, techniques));
+    for (std::size_t t = 0; t < techniques.size(); ++t)
+        SUNFLECK_TRY(plan.check(std::int32_t(t), techniques[t]));
     return plan;
 }
 
@@ -153,7 +161,7 @@ CellSet LightPlan::lit_by(std::int32_t technique) const {
     return cells;
 }
 
-// Whether somebody else owns diffuse light on movers.
+// Whether another technique owns diffuse light on movers.
 bool LightPlan::shares_movers(std::int32_t technique) const {
     for (std::size_t i = 0; i < light_cell_count; ++i)
         if (const LightCell cell = LightCell::at(i);

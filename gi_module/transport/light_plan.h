@@ -1,16 +1,15 @@
-// Which technique lights what. The light in a picture is divided into cells:
+// The light plan: which technique computes which part of the light. The light in a picture is divided into cells:
 //
-//     {direct, first bounce, later bounces}                         how often it was reflected before the visible
-//     surface
-//   x {fixed, dynamic: the emitter or a reflector moves or varies}  its path
+//     {direct, first bounce, later bounces}                         reflections before the visible surface
+//   x {fixed, dynamic: the emitter or a reflector moves or varies}  the light's path
 //   x {fixed, mover}                                                the surface that receives it
 //   x {diffuse, specular}                                           how that surface reflects it to the camera
 //
 // Each cell has exactly one owner, which may be nobody. A technique is only ever given the light that it owns, so no
 // light is counted twice. A technique that can light only some receivers (precomputed transfer: rigid, opaque movers)
-// leaves the others to the owner that the cell would have without it: the cell's rest.
+// leaves the others to the owner that the cell would have without it: the cell's fallback.
 //
-// Pure CPU, without state: a plan is a value made from the settings.
+// Pure CPU code without state: a plan is a value made from the settings.
 #pragma once
 
 #include "engine/core/result.h"
@@ -26,7 +25,7 @@ namespace sunfleck::gi {
 
 enum class PathPart : std::uint8_t { direct, first_bounce, later_bounces };
 
-// What a number of reflections before the visible surface belongs to.
+// `bounce`: reflections before the visible surface.
 constexpr PathPart path_part(std::uint32_t bounce) {
     return bounce == 0 ? PathPart::direct : bounce == 1 ? PathPart::first_bounce : PathPart::later_bounces;
 }
@@ -43,7 +42,7 @@ struct LightCell {
     static constexpr LightCell at(std::size_t index) {
         return {PathPart(index % 3), (index / 3) % 2 != 0, (index / 6) % 2 != 0, index / 12 != 0};
     }
-    // "first_bounce.dynamic.on_mover.diffuse", in the words that LightPlan::make reads.
+    // "first_bounce.dynamic.on_mover.diffuse", in the syntax of TermOwners::exceptions.
     std::string name() const;
 };
 
@@ -60,23 +59,23 @@ CellSet cells_where(Predicate holds) {
 }
 CellSet all_diffuse_cells();
 
-// What the plan needs to know of a technique.
+// What the plan needs to know about a technique.
 struct PlannedTechnique {
     std::string_view name;
     CellSet can_light;
-    bool some_receivers = false; // of those cells it lights only the receivers that it supports
+    bool some_receivers = false; // it lights only those receivers in these cells that it supports
 };
 
 inline constexpr std::int32_t nobody = -1;
 
-// Choices by term, as indices into the list of techniques, or nobody.
+// Owners by term, as indices into the list of techniques, or nobody.
 struct TermOwners {
     std::int32_t direct = nobody;
     std::int32_t indirect = nobody;
     std::int32_t specular = nobody;
-    std::int32_t movers = nobody; // a technique that lights movers in place of the two above
-    // Owners of single cells, on top: "cells=technique" separated by commas, where `cells` joins with dots what
-    // restricts them: direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover; diffuse,
+    std::int32_t movers = nobody; // lights movers in place of the owners of direct and indirect light
+    // Exceptions for single cells: "cells=technique", separated by commas, where `cells` is a list of restrictions
+    // joined by dots: direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover; diffuse,
     // specular. Example: "first_bounce.dynamic=brute_force,specular=none". Naming a cell twice is an error.
     std::string_view exceptions{};
 };
@@ -85,23 +84,26 @@ class LightPlan {
 public:
     LightPlan() { owner_.fill(nobody), fallback_.fill(nobody); }
 
-    // One message if a cell is given to a technique that cannot light it, is named twice, or if a technique would have
-    // to light other receivers for some paths than for others (a pass lights all paths of a pixel at once).
+    // An error if a cell is named twice or given to a technique that cannot light it, or if a technique would have to
+    // light different receivers for different paths (a pass lights all paths of a pixel at once).
     static Result<LightPlan> make(const TermOwners& terms, std::span<const PlannedTechnique> techniques);
 
     // Index of the technique, or nobody.
     std::int32_t owner(LightCell cell) const { return owner_[cell.index()]; }
-    // Who lights the receivers of the cell that the owner does not support; nobody where the owner supports all.
+    // Who lights the receivers of the cell that the owner does not support; nobody if the owner supports all.
     std::int32_t fallback(LightCell cell) const { return fallback_[cell.index()]; }
-    // Cells that the technique lights, those as rest among them.
+    // Cells that the technique lights, as owner or as fallback.
     CellSet lit_by(std::int32_t technique) const;
     bool uses(std::int32_t technique) const { return lit_by(technique).any(); }
-    // Whether any technique lights a cell of these.
+    // Whether any of these cells has an owner.
     bool lights_any(CellSet cells) const;
 
     bool operator==(const LightPlan&) const = default;
 
 private:
+    void give(std::size_t cell, std::int32_t technique, std::span<const PlannedTechnique> techniques);
+    Status apply_exceptions(std::string_view text, std::span<const PlannedTechnique> techniques);
+    Status check(std::int32_t index, const PlannedTechnique& technique) const;
     bool shares_movers(std::int32_t technique) const;
 
     std::array<std::int32_t, light_cell_count> owner_;

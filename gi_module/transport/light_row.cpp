@@ -6,9 +6,9 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float cone_margin = 1.02f; // for the texels beside the cone's edge that a blended look-up reads
+constexpr float cone_margin = 1.02f; // for the texels beyond the cone's edge that a filtered look-up reads
 
-// Of the map of a spot's cone; 0 if a spherical one shows it as well: half angles above 45 degrees.
+// Scale of the map of a spot light's cone; 0 for half angles above 45 degrees, where a spherical map is as good.
 float cone_map_scale(const LightSample& sample) {
     if (!(sample.cone_scale > 0.0f))
         return 0.0f;
@@ -34,8 +34,8 @@ std::uint32_t light_class(SampleKind kind) {
     return shared::light_class_surface;
 }
 
-bool filters_maps(bool wished, std::uint32_t light_class) {
-    return wished || light_class == shared::light_class_point;
+bool filters_maps(bool filter_requested, std::uint32_t light_class) {
+    return filter_requested || light_class == shared::light_class_point;
 }
 
 shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, float geometry_bound,

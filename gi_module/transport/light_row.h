@@ -1,3 +1,4 @@
+// Light samples (VPLs) as shaders read them: from sample to row.
 #pragma once
 
 #include "gi_module/transport/light_row_shared.h"
@@ -7,12 +8,12 @@ namespace sunfleck::gi {
 
 std::uint32_t light_class(SampleKind kind);
 
-// Whether map look-ups of a class blend neighbouring texels: where it is wished, and always for point and spot lights,
-// whose light is one sample, so that each step of its shadow's edge is seen.
-bool filters_maps(bool wished, std::uint32_t light_class);
+// Whether shadow map look-ups of a class are filtered (percentage-closer): if requested, and always for point and spot
+// lights, whose light is a single sample, so that every texel of the shadow's edge would be visible.
+bool filters_maps(bool filter_requested, std::uint32_t light_class);
 
-// The numbers a shader needs. `geometry_bound`: see transport/clamping.h. `scene`: box around all geometry; the map of
-// a directional sample covers its bounding sphere.
+// `geometry_bound`: see transport/clamping.h. `scene`: box around all geometry; the map of a directional sample covers
+// its bounding sphere.
 shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, float geometry_bound,
                                 const Bounds& scene);
 

@@ -14,10 +14,11 @@ const TypeDescription& LightSample::description() {
          SUNFLECK_FIELD(LightSample, bounce, "", 0, 1000, "Reflections so far"),
          SUNFLECK_FIELD(LightSample, cone_scale, "", -1e6, 1e6, "Spot cone: slope of the falloff"),
          SUNFLECK_FIELD(LightSample, cone_offset, "", -1e6, 1e6, "Spot cone: offset of the falloff"),
-         SUNFLECK_FIELD(LightSample, radius, "m", 0, 1e6, "Of the disc of surface that it stands for; 0: all alike"),
+         SUNFLECK_FIELD(LightSample, radius, "m", 0, 1e6,
+                        "Of the disc of surface that it represents; 0: the same for all samples"),
          SUNFLECK_FIELD(LightSample, index, "", 0, 4294967295.0, "Stable number"),
-         SUNFLECK_FIELD(LightSample, emitter, "", 0, 0, "Where its light comes from"),
-         SUNFLECK_FIELD(LightSample, path_vertex_count, "", 0, 6, "Known points of the way that the light came"),
+         SUNFLECK_FIELD(LightSample, emitter, "", 0, 0, "Entity that emits its light"),
+         SUNFLECK_FIELD(LightSample, path_vertex_count, "", 0, 6, "Stored vertices of the light's path"),
          SUNFLECK_FIELD(LightSample, dynamic, "", 0, 1, "Its emitter moves or varies")}};
     return type;
 }

@@ -1,4 +1,4 @@
-// A light sample (virtual point light, VPL): the one currency of all techniques. Thesis sec. 4.1.
+// A light sample (virtual point light, VPL): the common currency of all techniques. Thesis sec. 4.1.
 #pragma once
 
 #include "engine/scene/components.h"
@@ -14,8 +14,8 @@ enum class SampleKind : std::uint32_t {
     directional, // parallel light along `normal`; `flux` is the irradiance on a facing plane, W/m2
 };
 
-// `flux` is already divided by the number of samples that share an emitter or a set of walks: the irradiance at a point
-// is the plain sum over all samples. Nothing else is folded in (no pi, no albedo of the receiver).
+// `flux` is already divided by the number of samples that share an emitter or a set of random walks: the irradiance at
+// a point is the plain sum over all samples. Nothing else is folded in (no pi, no albedo of the receiver).
 struct LightSample {
     SampleKind kind = SampleKind::surface;
     vec3 position{0.0f};
@@ -24,15 +24,15 @@ struct LightSample {
     std::uint32_t bounce = 0;      // reflections so far: 0 is direct light
     float cone_scale = 0.0f;       // spot: intensity factor is clamp(cos * scale + offset, 0, 1)^2
     float cone_offset = 0.0f;
-    float radius = 0.0f;     // of the disc of surface that it stands for, m; 0: as those of all others (clamping.h)
-    std::uint32_t index = 0; // stable: map slot, GPU row and random sequence follow it
+    float radius = 0.0f;     // of the disc of surface that it represents, m; 0: the same for all samples (clamping.h)
+    std::uint32_t index = 0; // stable: shadow map slot, GPU row and random sequence follow it
     ecs::Entity emitter;
-    // Reflected light of emitters that stay: the way that it came, from the emitter or, of long ways, the last points
-    // of them; the last leg ends in `position`.
+    // Reflected light of static emitters: the vertices of its path, from the emitter on; of a long path, the last ones.
+    // The last segment ends in `position`.
     static constexpr std::uint32_t max_path_vertices = 6;
     std::array<vec3, max_path_vertices> path{};
     std::uint32_t path_vertex_count = 0;
-    // Of an emitter that moves or varies: never in light maps, and its visibility is decided for whole charts only.
+    // Its emitter moves or varies: it is never in light maps, and its visibility is computed for whole charts only.
     bool dynamic = false;
 
     static const TypeDescription& description();

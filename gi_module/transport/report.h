@@ -1,5 +1,5 @@
-// What users see of the module while it runs: counters, memory and debug views. Each is declared once, by who owns it,
-// with name, unit and tooltip; --stats, --view, overlays, host.h, documentation and tests read these declarations.
+// What the module reports while it runs: counters, memory and debug views. Each is declared once, by its owner, with
+// name, unit and tooltip; --stats, --view, overlays, host.h, documentation and tests read these declarations.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace sunfleck::gi {
 
-// One number of a frame. Objects are static; they are told apart by name.
+// One number per frame. Objects are static and identified by name.
 struct Counter {
     std::string_view name;    // key of --stats
-    std::string_view unit;    // "samples", "W", "B"; "" is a pure number
-    std::string_view group;   // heading in overlays; "memory" is for sizes of what stays from frame to frame
+    std::string_view unit;    // "samples", "W", "B"; "" for a pure number
+    std::string_view group;   // heading in overlays; "memory" for sizes of what is kept from frame to frame
     std::string_view tooltip; // one sentence
-    bool from_gpu = false;    // counted there: of the newest frame that is complete, not of the last one
+    bool from_gpu = false;    // counted on the GPU: of the newest completed frame, not of the last one
 };
 
 inline constexpr std::string_view memory_group = "memory";
@@ -25,13 +25,13 @@ struct DebugView {
     std::string_view name; // --view NAME
     std::string_view tooltip;
     std::string_view legend; // what the colours mean
-    std::string_view unit;   // of what is shown; "" where colours stand for kinds
+    std::string_view unit;   // of what is shown; "" if colours are categories
     std::string_view group;
-    std::uint32_t code = 0;   // the owner's own
+    std::uint32_t code = 0;   // for the owner's use
     bool every_pixel = false; // shown at full resolution, whatever light is evaluated at
 };
 
-// The numbers of one frame. Counters that nobody set read 0.
+// The numbers of one frame. Counters that were not set read 0.
 class Report {
 public:
     void clear() { values_.clear(); }
@@ -56,7 +56,7 @@ public:
     };
     std::span<const Value> values() const { return values_; }
 
-    // Takes over what the GPU counted from a report of a later frame.
+    // Takes the GPU's counts from the report of a later frame.
     void take_gpu_counts(const Report& later) {
         for (const Value& value : later.values_)
             if (value.counter->from_gpu)
