@@ -34,21 +34,22 @@ TEST_F(ManyLightTest, UmbraStaysDark) {
     EXPECT_GT(dark, 2000);
 }
 
+void make_wavy_floor(assets::SceneBuilder& s) {
+    const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+    s.room(vec3(-3, -0.01f, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
+           {{"lamp", vec2(-2.0f), 0.5f, 0.5f, vec3(40.0f)}});
+    scene::Mesh floor = scene::make_rectangle(6.0f, 6.0f, 24, 24);
+    for (std::size_t i = 0; i < floor.normals.size(); ++i) {
+        floor.positions[i] = vec3(floor.positions[i].x, 0.0f, -floor.positions[i].y);
+        floor.normals[i] = glm::normalize(vec3(0.6f * std::sin(3.0f * floor.positions[i].x), 1.0f, 0.0f));
+    }
+    s.add("floor", std::move(floor), assets::diffuse(vec3(0.6f)));
+    s.camera("view", vec3(0.5f, 2.9f, 0.5f), vec3(0.0f), 60.0f); // of the floor alone
+}
+
 // A flat floor that is shaded as if it were wavy: what light maps know of it is of no use.
 TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
-    const auto make = [](assets::SceneBuilder& s) {
-        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
-        s.room(vec3(-3, -0.01f, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
-               {{"lamp", vec2(-2.0f), 0.5f, 0.5f, vec3(40.0f)}});
-        scene::Mesh floor = scene::make_rectangle(6.0f, 6.0f, 24, 24);
-        for (std::size_t i = 0; i < floor.normals.size(); ++i) {
-            floor.positions[i] = vec3(floor.positions[i].x, 0.0f, -floor.positions[i].y);
-            floor.normals[i] = glm::normalize(vec3(0.6f * std::sin(3.0f * floor.positions[i].x), 1.0f, 0.0f));
-        }
-        s.add("floor", std::move(floor), assets::diffuse(vec3(0.6f)));
-        s.camera("view", vec3(0.5f, 2.9f, 0.5f), vec3(0.0f), 60.0f); // of the floor alone
-    };
-    Pair pair(make, "view");
+    Pair pair(make_wavy_floor, "view");
     pair.size(192, 144);
     gi::Settings settings;
     settings.lights = 100;
@@ -79,24 +80,33 @@ std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps
     return values;
 }
 
+void scatter(ecs::Registry& registry, const std::vector<ecs::Entity>& boxes, std::mt19937& random) {
+    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
+    for (const ecs::Entity box : boxes)
+        registry.patch<scene::Transform>(box, [&](scene::Transform& transform) {
+            transform.position = vec3(uniform(-3, 3), uniform(0, 3), uniform(-3, 3));
+            transform.rotation = glm::angleAxis(uniform(0, 6), vec3(0, 1, 0));
+        });
+}
+
+void make_room_of_screens(assets::SceneBuilder& s) {
+    const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
+    s.room(vec3(-3, 0, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls, {{"lamp", vec2(0), 1.0f, 1.0f, vec3(20.0f)}});
+    for (int i = 0; i < 10; ++i) {
+        scene::Transform transform;
+        transform.position = vec3(0.0f, 1.0f, 0.0f);
+        const ecs::Entity box =
+            s.add("box", scene::make_box(vec3(1.6f, 1.6f, 0.2f)), assets::diffuse(vec3(0.5f)), transform);
+        s.mover(box, {});
+    }
+    s.camera("view", vec3(2.5f, 1.5f, 2.5f), vec3(0.0f, 1.0f, 0.0f), 60.0f);
+}
+
 // Boxes wander through a room for 5,000 changes of place, two million of light maps (a tenth in the short size); large
 // ones hide whole patches from samples, so light maps change all the time. At the end they equal maps that know nothing
 // of the past, to the last bit.
 TEST_F(ManyLightTest, LightMapsNeverDrift) {
-    const auto make = [](assets::SceneBuilder& s) {
-        const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
-        s.room(vec3(-3, 0, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
-               {{"lamp", vec2(0), 1.0f, 1.0f, vec3(20.0f)}});
-        for (int i = 0; i < 10; ++i) {
-            scene::Transform transform;
-            transform.position = vec3(0.0f, 1.0f, 0.0f);
-            const ecs::Entity box =
-                s.add("box", scene::make_box(vec3(1.6f, 1.6f, 0.2f)), assets::diffuse(vec3(0.5f)), transform);
-            s.mover(box, {});
-        }
-        s.camera("view", vec3(2.5f, 1.5f, 2.5f), vec3(0.0f, 1.0f, 0.0f), 60.0f);
-    };
-    GpuWorld world(make, "view");
+    GpuWorld world(make_room_of_screens, "view");
     gi::Settings settings;
     settings.lights = 100;
     settings.shadow_map_resolution = 16;
@@ -108,16 +118,11 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
         [&](ecs::Entity entity, const scene::Mover&) { boxes.push_back(entity); });
     ASSERT_EQ(boxes.size(), 10u);
     std::mt19937 random(21);
-    const auto uniform = [&](float low, float high) { return low + (high - low) * float(random() >> 8) * 0x1p-24f; };
     std::uint64_t updates = 0;
     world.render();
     const int frames = by_size(50, 500);
     for (int frame = 0; frame < frames; ++frame) {
-        for (const ecs::Entity box : boxes)
-            world.renderer->registry().patch<scene::Transform>(box, [&](scene::Transform& transform) {
-                transform.position = vec3(uniform(-3, 3), uniform(0, 3), uniform(-3, 3));
-                transform.rotation = glm::angleAxis(uniform(0, 6), vec3(0, 1, 0));
-            });
+        scatter(world.renderer->registry(), boxes, random);
         world.render();
         updates += world.renderer->lighting().counters()["light_map_updates"];
     }

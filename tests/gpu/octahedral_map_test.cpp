@@ -15,6 +15,29 @@ namespace {
 using namespace shared;
 
 // What can be seen of a box through a face lies in its area.
+// The i-th of all kinds.
+void set_kind(gi::LightSample& sample, int i, RandomSequence& random) {
+    sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional,
+                             gi::SampleKind::spot}[i % 4u];
+    sample.cone_scale = 20.0f;
+    sample.cone_offset = -20.0f * std::cos(0.1f + 0.9f * random.next()); // some wider than a map of their own takes
+}
+
+// Where the light's map shows the direction `d` of light space, from -1 to 1; false where it does not.
+bool place_on_map(const LightRow& light, std::uint32_t kind, vec3 d, vec2& uv) {
+    const float scale = light.position_bound.w;
+    if (kind == light_class_surface) {
+        uv = vec2(hemisphere_map(d));
+        return d.z > 0.0f;
+    }
+    if (kind == light_class_point) {
+        uv = vec2(scale > 0.0f ? cone_map(d, scale) : sphere_map(d));
+        return scale <= 0.0f || d.z >= 1e-3f;
+    }
+    uv = vec2(d) * light.tangent_scale.w;
+    return true;
+}
+
 TEST(OctahedralMap, AreasCoverTheirBoxes) {
     RandomSequence random(SequenceKind::pseudo_random, 8, 5);
     const auto number = [&] { return 2.0f * random.next() - 1.0f; };
@@ -22,10 +45,7 @@ TEST(OctahedralMap, AreasCoverTheirBoxes) {
     for (int i = 0; i < 3000; ++i) {
         gi::LightSample sample;
         sample.normal = glm::normalize(vec3(number(), number(), number()));
-        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional,
-                                 gi::SampleKind::spot}[i % 4u];
-        sample.cone_scale = 20.0f;
-        sample.cone_offset = -20.0f * std::cos(0.1f + 0.9f * random.next()); // some wider than a map of their own takes
+        set_kind(sample, i, random);
         Bounds scene, box;
         scene.add(vec3(-2.0f));
         scene.add(vec3(2.0f));
@@ -43,16 +63,9 @@ TEST(OctahedralMap, AreasCoverTheirBoxes) {
                            vec3(light.position_bound);
             const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
                          glm::dot(vec3(light.normal_offset), v));
-            vec2 uv = vec2(d) * light.tangent_scale.w;
-            if (kind == light_class_surface && d.z <= 0.0f)
+            vec2 uv;
+            if (!place_on_map(light, kind, d, uv))
                 continue;
-            if (kind == light_class_surface)
-                uv = vec2(hemisphere_map(d));
-            const float scale = light.position_bound.w;
-            if (kind == light_class_point && scale > 0.0f && d.z < 1e-3f)
-                continue;
-            if (kind == light_class_point)
-                uv = vec2(scale > 0.0f ? cone_map(d, scale) : sphere_map(d));
             const vec2 texel = (uv * 0.5f + 0.5f) * 64.0f;
             if (texel.x < 0.0f || texel.y < 0.0f || texel.x >= 64.0f || texel.y >= 64.0f)
                 continue;
@@ -90,6 +103,25 @@ TEST(OctahedralMap, JoinedAreasDoNotOverlap) {
 }
 
 // The numbers that vertices are given place points of an occluder where the definition does.
+// The clip coordinates of light-space direction `d` on a face are those that the face's own functions give.
+void expect_clip(const LightRow& light, std::uint32_t kind, std::uint32_t face, vec3 d, vec4 clip) {
+    if (kind == light_class_directional) {
+        ASSERT_NEAR(clip.x, d.x * light.tangent_scale.w, 1e-5f);
+        ASSERT_NEAR(clip.y, d.y * light.tangent_scale.w, 1e-5f);
+        ASSERT_NEAR(clip.z, 1.0f - d.z * light.normal_offset.w, 1e-5f);
+        ASSERT_EQ(clip.w, 1.0f);
+        return;
+    }
+    const bool cone = face == cone_face && kind == light_class_point;
+    const vec3 expected = kind == light_class_surface ? hemisphere_face_clip(d, face)
+                          : cone                      ? cone_clip(d, light.position_bound.w)
+                                                      : sphere_face_clip(d, face);
+    ASSERT_NEAR(clip.x, expected.x, cone ? 1e-4f : 1e-5f); // times up to ten
+    ASSERT_NEAR(clip.y, expected.y, cone ? 1e-4f : 1e-5f);
+    ASSERT_NEAR(clip.w, expected.z, 1e-5f);
+    ASSERT_NEAR(clip.z, d.z, 1e-5f);
+}
+
 TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
     RandomSequence random(SequenceKind::pseudo_random, 8, 1);
     const auto number = [&] { return 2.0f * random.next() - 1.0f; };
@@ -98,10 +130,7 @@ TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
         gi::LightSample sample;
         sample.position = vec3(number(), number(), number());
         sample.normal = glm::normalize(vec3(number(), number(), number()));
-        sample.kind = std::array{gi::SampleKind::surface, gi::SampleKind::point, gi::SampleKind::directional,
-                                 gi::SampleKind::spot}[i % 4u];
-        sample.cone_scale = 20.0f;
-        sample.cone_offset = -20.0f * std::cos(0.1f + 0.9f * random.next()); // some wider than a map of their own takes
+        set_kind(sample, i, random);
         Bounds bounds;
         bounds.add(vec3(-2.0f));
         bounds.add(vec3(3.0f));
@@ -124,20 +153,7 @@ TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
         const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
                      glm::dot(vec3(light.normal_offset), v));
         const vec4 clip(glm::dot(job.x, p), glm::dot(job.y, p), glm::dot(job.z, p), glm::dot(job.w, p));
-        if (kind == light_class_directional) {
-            ASSERT_NEAR(clip.x, d.x * light.tangent_scale.w, 1e-5f);
-            ASSERT_NEAR(clip.y, d.y * light.tangent_scale.w, 1e-5f);
-            ASSERT_NEAR(clip.z, 1.0f - d.z * light.normal_offset.w, 1e-5f);
-            ASSERT_EQ(clip.w, 1.0f);
-            continue;
-        }
-        const vec3 expected = kind == light_class_surface ? hemisphere_face_clip(d, face)
-                              : cone                      ? cone_clip(d, light.position_bound.w)
-                                                          : sphere_face_clip(d, face);
-        ASSERT_NEAR(clip.x, expected.x, cone ? 1e-4f : 1e-5f); // times up to ten
-        ASSERT_NEAR(clip.y, expected.y, cone ? 1e-4f : 1e-5f);
-        ASSERT_NEAR(clip.w, expected.z, 1e-5f);
-        ASSERT_NEAR(clip.z, d.z, 1e-5f);
+        expect_clip(light, kind, face, d, clip);
     }
     EXPECT_GT(cones, 2000);
 }

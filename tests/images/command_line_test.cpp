@@ -160,7 +160,7 @@ const std::map<std::string, std::string> invalid_models = {
     {"wrongTypes/badString.gltf", "text"},
     {"wrongTypes/badUint.gltf", "index"}};
 
-TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
+std::vector<fs::path> sample_models() {
     std::vector<fs::path> files;
     for (const char* place : {"/usr/share/assimp/models/glTF2", SUNFLECK_SOURCE_DIR "/../shared/assets",
                               SUNFLECK_SOURCE_DIR "/tests/corpus/gltf"}) {
@@ -169,6 +169,11 @@ TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
             if (entry.path().extension() == ".gltf" || entry.path().extension() == ".glb")
                 files.push_back(entry.path());
     }
+    return files;
+}
+
+TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
+    const std::vector<fs::path> files = sample_models();
     if (files.size() < 20)
         std::printf("only %zu models are here; assimp-testmodels has more\n", files.size());
     int rendered = 0;
@@ -258,32 +263,37 @@ TEST_F(CommandLine, TheDemosBadArgumentsGetOneMessage) {
     expect_clear_error(shell("unset DISPLAY; " + in_folder), {"--headless"});
 }
 
+// What a user does in the window.
+std::string window_script(const fs::path& folder) {
+    return "cd " + folder.string() +
+           "\nexport XDG_CONFIG_HOME=$PWD/config\n"
+           "if command -v openbox >/dev/null; then openbox & fi\n" SUNFLECK_DEMO " --validation --size 192x108 & P=$!\n"
+           "for i in $(seq 200); do W=$(xdotool search --name 'Lantern House$' | head -1); [ -n \"$W\" ] && break; "
+           "sleep "
+           "0.2; done\n"
+           "sleep 2; xdotool windowfocus $W; sleep 0.5; xdotool key Return; sleep 4\n"
+           "xdotool keydown w; sleep 1; xdotool keyup w; xdotool mousemove_relative 40 10\n"
+           "for k in l t e c f f l; do xdotool key $k; sleep 0.4; done\n"
+           "xdotool windowsize $W 300 300; sleep 0.7; xdotool windowsize $W 211 400; sleep 0.7\n"
+           "command -v openbox >/dev/null && { xdotool windowminimize $W; sleep 1; xdotool windowmap $W; sleep 1; "
+           "xdotool "
+           "windowfocus $W; sleep 0.5; xdotool key Return; sleep 1; }\n"
+           // A machine that is slow may still show the menu, which Return leaves; in the game it does nothing.
+           "for i in $(seq 30); do xdotool key p; sleep 0.5; [ -f sunfleck_0001.png ] && break; [ $((i % 6)) = 0 ] && "
+           "{ xdotool windowfocus $W; xdotool key Return; sleep 1; }; done\n"
+           "xdotool key Escape; sleep 0.7; for k in Down Return; do xdotool key $k; sleep 0.5; done\n" // settings
+           "xdotool key Escape; sleep 0.5\n"
+           "for k in Down Down Down Down; do xdotool key $k; sleep 0.4; done; xdotool key Return\n"
+           "for i in $(seq 40); do kill -0 $P 2>/dev/null || break; sleep 0.5; done\n"
+           "kill -0 $P 2>/dev/null && { echo 'did not quit'; kill $P; }\n"
+           "wait $P\n";
+}
+
 // The window under a virtual display: title, a walk, lights, pause, settings, resizing, a picture, a polite end.
 TEST_F(CommandLine, TheDemoRunsInAWindow) {
     if (shell("command -v xvfb-run && command -v xdotool").status != 0)
         GTEST_SKIP() << "xvfb and xdotool are not installed";
-    const std::string script =
-        "cd " + folder.string() +
-        "\nexport XDG_CONFIG_HOME=$PWD/config\n"
-        "if command -v openbox >/dev/null; then openbox & fi\n" SUNFLECK_DEMO " --validation --size 192x108 & P=$!\n"
-        "for i in $(seq 200); do W=$(xdotool search --name 'Lantern House$' | head -1); [ -n \"$W\" ] && break; sleep "
-        "0.2; done\n"
-        "sleep 2; xdotool windowfocus $W; sleep 0.5; xdotool key Return; sleep 4\n"
-        "xdotool keydown w; sleep 1; xdotool keyup w; xdotool mousemove_relative 40 10\n"
-        "for k in l t e c f f l; do xdotool key $k; sleep 0.4; done\n"
-        "xdotool windowsize $W 300 300; sleep 0.7; xdotool windowsize $W 211 400; sleep 0.7\n"
-        "command -v openbox >/dev/null && { xdotool windowminimize $W; sleep 1; xdotool windowmap $W; sleep 1; xdotool "
-        "windowfocus $W; sleep 0.5; xdotool key Return; sleep 1; }\n"
-        // A machine that is slow may still show the menu, which Return leaves; in the game it does nothing.
-        "for i in $(seq 30); do xdotool key p; sleep 0.5; [ -f sunfleck_0001.png ] && break; [ $((i % 6)) = 0 ] && "
-        "{ xdotool windowfocus $W; xdotool key Return; sleep 1; }; done\n"
-        "xdotool key Escape; sleep 0.7; for k in Down Return; do xdotool key $k; sleep 0.5; done\n" // settings
-        "xdotool key Escape; sleep 0.5\n"
-        "for k in Down Down Down Down; do xdotool key $k; sleep 0.4; done; xdotool key Return\n"
-        "for i in $(seq 40); do kill -0 $P 2>/dev/null || break; sleep 0.5; done\n"
-        "kill -0 $P 2>/dev/null && { echo 'did not quit'; kill $P; }\n"
-        "wait $P\n";
-    ASSERT_TRUE(write_file(folder / "drive.sh", script));
+    ASSERT_TRUE(write_file(folder / "drive.sh", window_script(folder)));
     const Outcome outcome =
         shell("timeout 120 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;

@@ -28,6 +28,13 @@ struct Pair {
             world->request.height = height;
         }
     }
+    void tone_map() {
+        for (GpuWorld* world : {&brute, &many}) {
+            world->request.view = shared::view_final;
+            world->request.tone_map = true;
+            world->request.ev100 = viewer::scene_exposure(world->renderer->registry());
+        }
+    }
     // The many-light system has a past: its maps and lists are from earlier frames. Brute force has none.
     void run_to(std::uint64_t step, float degrees) {
         const scene::CameraView start = many.request.camera;

@@ -74,6 +74,25 @@ struct Agreement {
     std::uint64_t rays = 0, wrong_none = 0, wrong_full = 0, pairs_free = 0, pairs_free_none = 0;
 };
 
+// Rays from the sample to random points of the patch that it faces.
+struct RayCount {
+    int facing = 0, blocked = 0;
+};
+inline RayCount ask_rays(const raytrace::RayScene& rays, const SurfacePatch& patch, const LightSample& sample,
+                         int count, std::mt19937& random) {
+    RayCount result;
+    for (int i = 0; i < count; ++i) {
+        const double u = double(uniform(random, 0, 1)), v = double(uniform(random, 0, 1));
+        const dvec3 point =
+            patch.corners[0] + (patch.corners[1] - patch.corners[0]) * u + (patch.corners[3] - patch.corners[0]) * v;
+        if (sample.kind == SampleKind::surface && dot(sample.normal, vec3(point) - sample.position) <= 1e-4f)
+            continue;
+        ++result.facing;
+        result.blocked += rays.occluded(shortened(sample, vec3(point)));
+    }
+    return result;
+}
+
 inline Agreement compare_with_rays(VisibilityWorld& world, const VisibilityDatabase& database, int rays_per_pair,
                                    std::uint32_t seed) {
     std::mt19937 random(seed);
@@ -95,17 +114,7 @@ inline Agreement compare_with_rays(VisibilityWorld& world, const VisibilityDatab
                 continue;
             // Many rays for one pair in eight, which decide usefulness; few for the others.
             const int count = random() % 8 == 0 ? rays_per_pair : 4;
-            int facing = 0, blocked = 0;
-            for (int i = 0; i < count; ++i) {
-                const double u = double(uniform(random, 0, 1)), v = double(uniform(random, 0, 1));
-                const dvec3 point = patch.corners[0] + (patch.corners[1] - patch.corners[0]) * u +
-                                    (patch.corners[3] - patch.corners[0]) * v;
-                const LightSample& sample = world.samples[s];
-                if (sample.kind == SampleKind::surface && dot(sample.normal, vec3(point) - sample.position) <= 1e-4f)
-                    continue;
-                ++facing;
-                blocked += world.rays->occluded(shortened(sample, vec3(point)));
-            }
+            const auto [facing, blocked] = ask_rays(*world.rays, patch, lamp, count, random);
             result.rays += std::uint64_t(facing);
             result.wrong_none += state == PairState::none ? std::uint64_t(blocked) : 0;
             result.wrong_full += state == PairState::full ? std::uint64_t(facing - blocked) : 0;
@@ -116,6 +125,30 @@ inline Agreement compare_with_rays(VisibilityWorld& world, const VisibilityDatab
         }
     }
     return result;
+}
+
+// What the databases say differently of sample `s` and a node, which is `n` in the one and `m` in the other.
+inline std::uint64_t count_differences(const VisibilityDatabase& a, std::uint32_t n, const VisibilityDatabase& b,
+                                       std::uint32_t m, std::uint32_t s) {
+    std::uint64_t wrong = 0;
+    wrong += a.state(n, s) != b.state(m, s);
+    wrong += a.blockers(n, s) != b.blockers(m, s);
+    const auto bits = [s](const VisibilityDatabase& d, std::uint32_t node) {
+        return (d.rows()[node * d.words_per_row() + s / 16] >> (s % 16 * 2)) & 3u;
+    };
+    wrong += bits(a, n) != std::uint32_t(a.state(n, s)) || bits(b, m) != std::uint32_t(b.state(m, s));
+    if (n >= a.patches().nodes().size())
+        return wrong;
+    const auto flag = [&](std::uint32_t first) {
+        return ((a.rows()[n * a.words_per_row() + first + s / 32] >> (s % 32)) & 1u) != 0;
+    };
+    bool by_mover = false;
+    for (const auto& blocker : a.blockers(n, s))
+        by_mover |= !blocker.entity.is_null();
+    const PairState fixed = a.static_state(n, s);
+    wrong += flag(a.state_words()) != by_mover;
+    wrong += flag(a.state_words() + a.flag_words()) != (fixed == PairState::partial || fixed == PairState::full);
+    return wrong;
 }
 
 // Everything that two databases say, movers matched by entity.
@@ -131,26 +164,8 @@ inline void expect_equal(const VisibilityDatabase& a, const VisibilityDatabase& 
     for (const auto& [n, m] : pairs) {
         ASSERT_NE(n, shared::no_node);
         ASSERT_NE(m, shared::no_node);
-        for (std::uint32_t s = 0; s < a.sample_count(); ++s) {
-            wrong += a.state(n, s) != b.state(m, s);
-            wrong += a.blockers(n, s) != b.blockers(m, s);
-            const auto bits = [s](const VisibilityDatabase& d, std::uint32_t node) {
-                return (d.rows()[node * d.words_per_row() + s / 16] >> (s % 16 * 2)) & 3u;
-            };
-            wrong += bits(a, n) != std::uint32_t(a.state(n, s)) || bits(b, m) != std::uint32_t(b.state(m, s));
-            if (n >= a.patches().nodes().size())
-                continue;
-            const auto flag = [&](std::uint32_t first) {
-                return ((a.rows()[n * a.words_per_row() + first + s / 32] >> (s % 32)) & 1u) != 0;
-            };
-            bool by_mover = false;
-            for (const auto& blocker : a.blockers(n, s))
-                by_mover |= !blocker.entity.is_null();
-            const PairState fixed = a.static_state(n, s);
-            wrong += flag(a.state_words()) != by_mover;
-            wrong +=
-                flag(a.state_words() + a.flag_words()) != (fixed == PairState::partial || fixed == PairState::full);
-        }
+        for (std::uint32_t s = 0; s < a.sample_count(); ++s)
+            wrong += count_differences(a, n, b, m, s);
     }
     EXPECT_EQ(wrong, 0u);
     EXPECT_EQ(a.counters().full, b.counters().full);

@@ -206,17 +206,8 @@ TEST(CurvedCharts, KeepsItsBound) {
     EXPECT_GT(world.charts.points().size(), free / 8);
 }
 
-TEST(CurvedCharts, NothingForWhatTexelsDoNotKnow) {
-    World flat(scene::make_box(vec3(1.0f)), mat4(1.0f));
-    flat.build();
-    EXPECT_EQ(flat.charts.first_chart(flat.entity), shared::no_node);
-    World mapped(scene::make_sphere(0.5f), mat4(1.0f));
-    scene::MaterialTextures textures;
-    textures.normal.texture = 0;
-    mapped.registry.emplace<scene::MaterialTextures>(mapped.entity, textures);
-    mapped.build();
-    EXPECT_EQ(mapped.charts.first_chart(mapped.entity), shared::no_node);
-    // Flat-shaded from twelve sides, all of them charts.
+// Flat-shaded from twelve sides, all of them charts.
+scene::Mesh faceted_cylinder() {
     scene::Mesh facets = scene::make_cylinder(0.3f, 2.0f, 12);
     for (std::size_t t = 0; t < facets.triangle_count(); ++t) {
         // Its vertices are shared: a copy for each triangle.
@@ -229,7 +220,20 @@ TEST(CurvedCharts, NothingForWhatTexelsDoNotKnow) {
         facets.normals.resize(facets.positions.size(),
                               glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0])));
     }
-    World faceted(facets, mat4(1.0f));
+    return facets;
+}
+
+TEST(CurvedCharts, NothingForWhatTexelsDoNotKnow) {
+    World flat(scene::make_box(vec3(1.0f)), mat4(1.0f));
+    flat.build();
+    EXPECT_EQ(flat.charts.first_chart(flat.entity), shared::no_node);
+    World mapped(scene::make_sphere(0.5f), mat4(1.0f));
+    scene::MaterialTextures textures;
+    textures.normal.texture = 0;
+    mapped.registry.emplace<scene::MaterialTextures>(mapped.entity, textures);
+    mapped.build();
+    EXPECT_EQ(mapped.charts.first_chart(mapped.entity), shared::no_node);
+    World faceted(faceted_cylinder(), mat4(1.0f));
     faceted.build();
     EXPECT_EQ(faceted.charts.first_chart(faceted.entity), shared::no_node);
     // Squeezed flat: what there is of it has normals.

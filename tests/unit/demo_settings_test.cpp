@@ -99,8 +99,13 @@ TEST(Controls, HandOnWhatIsHeldAndAllOfTheLook) {
     EXPECT_EQ(first.look_up, 880);
     EXPECT_EQ(second.turn, 0) << "the motion is handed on once";
     EXPECT_EQ(second.forward, 100);
+}
+
+TEST(Controls, MissNoKeyAndKeepStillWhilePaused) {
+    DemoSettings settings;
+    Controls controls;
+    app::InputState input;
     // A key that went down and up between two polls still counts, once.
-    input = {};
     input.went_down = {'E'};
     controls.take(input, settings, 0.016, true);
     EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_use));

@@ -134,9 +134,14 @@ TEST(MapScheduler, ContributionsGoFirstAndNothingComesInBursts) {
     }
     EXPECT_GT(seen, 100 * 14) << "those in sight are redrawn in most frames";
     EXPECT_LT(unseen_at_most, 20) << "never all of the budget for those out of sight";
-    // Without contributions, or where nothing is in sight, flux decides.
-    scheduler.done(all);
-    for (const std::uint32_t i : all)
+}
+
+TEST(MapScheduler, FluxDecidesWhereNothingContributes) {
+    std::mt19937 random(5);
+    const auto samples = samples_of(100, random);
+    MapScheduler scheduler;
+    scheduler.reset(samples.size());
+    for (std::uint32_t i = 0; i < samples.size(); ++i)
         scheduler.mark(i);
     const auto by_flux = scheduler.choose(samples, MapPriority::flux_and_age, 25);
     EXPECT_EQ(scheduler.choose(samples, MapPriority::contribution, 25), by_flux);

@@ -13,69 +13,88 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct Loaded {
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+};
+
+bool nearly(vec3 a, vec3 b) {
+    return glm::length(a - b) <= 1e-5f * (1.0f + glm::length(a));
+}
+
+void expect_same_shape(const Loaded& before, ecs::Entity old_entity, const Loaded& after, ecs::Entity entity) {
+    if (const auto* t = before.registry.try_get<scene::Transform>(old_entity)) {
+        const auto& u = after.registry.get<scene::Transform>(entity);
+        EXPECT_TRUE(nearly(t->position, u.position) && nearly(t->scale, u.scale));
+        EXPECT_NEAR(std::abs(glm::dot(t->rotation, u.rotation)), 1.0f, 1e-5f);
+    }
+    if (const auto* m = before.registry.try_get<scene::MeshInstance>(old_entity)) {
+        const scene::Mesh& a = before.meshes[m->mesh];
+        const scene::Mesh& b = after.meshes[after.registry.get<scene::MeshInstance>(entity).mesh];
+        EXPECT_EQ(a.positions, b.positions);
+        EXPECT_EQ(a.normals, b.normals);
+        EXPECT_EQ(a.indices, b.indices);
+    }
+}
+
+void expect_same_rest(const ecs::Registry& before, ecs::Entity old_entity, const ecs::Registry& after,
+                      ecs::Entity entity) {
+    if (const auto* m = before.try_get<scene::Material>(old_entity)) {
+        const auto& n = after.get<scene::Material>(entity);
+        EXPECT_TRUE(nearly(m->base_colour, n.base_colour) && nearly(m->emission, n.emission));
+        EXPECT_EQ(m->specular, n.specular);
+    }
+    if (const auto* c = before.try_get<scene::Camera>(old_entity)) {
+        EXPECT_NEAR(c->vertical_field_of_view, after.get<scene::Camera>(entity).vertical_field_of_view, 1e-6f);
+    }
+    if (const auto* m = before.try_get<scene::Mover>(old_entity)) {
+        EXPECT_EQ(m->path, after.get<scene::Mover>(entity).path);
+        EXPECT_EQ(m->period, after.get<scene::Mover>(entity).period);
+    }
+    if (const auto* l = before.try_get<scene::AreaLight>(old_entity)) {
+        EXPECT_EQ(l->radiance, after.get<scene::AreaLight>(entity).radiance);
+    }
+    if (const auto* l = before.try_get<scene::SpotLight>(old_entity)) {
+        EXPECT_TRUE(nearly(l->intensity, after.get<scene::SpotLight>(entity).intensity));
+    }
+}
+
 TEST(SceneFiles, EverySceneComesBackAsItWas) {
     const Folder folder;
     for (const assets::BuiltInScene& built_in : assets::built_in_scenes()) {
-        ecs::Registry before, after;
-        scene::MeshStore meshes, read;
+        Loaded before, after;
         scene::TextureStore textures;
-        assets::SceneBuilder builder(before, meshes);
+        assets::SceneBuilder builder(before.registry, before.meshes);
         built_in.make(builder);
         const fs::path file = folder.path / (std::string(built_in.name) + ".scene.json");
-        ASSERT_TRUE(io::save_scene(file, before, meshes, textures));
-        const auto report = io::load_scene(file, after, read, textures);
+        ASSERT_TRUE(io::save_scene(file, before.registry, before.meshes, textures));
+        const auto report = io::load_scene(file, after.registry, after.meshes, textures);
         ASSERT_TRUE(report) << report.error().message;
         EXPECT_TRUE(report->notes.empty());
         int compared = 0;
-        before.view<scene::Name>().each([&](ecs::Entity old_entity, const scene::Name& name) {
-            const ecs::Entity entity = scene::find_by_name(after, name.name);
+        before.registry.view<scene::Name>().each([&](ecs::Entity old_entity, const scene::Name& name) {
+            const ecs::Entity entity = scene::find_by_name(after.registry, name.name);
             ASSERT_FALSE(entity.is_null()) << name.name;
             ++compared;
-            const auto near = [](vec3 a, vec3 b) { return glm::length(a - b) <= 1e-5f * (1.0f + glm::length(a)); };
-            if (const auto* t = before.try_get<scene::Transform>(old_entity)) {
-                const auto& u = after.get<scene::Transform>(entity);
-                EXPECT_TRUE(near(t->position, u.position) && near(t->scale, u.scale));
-                EXPECT_NEAR(std::abs(glm::dot(t->rotation, u.rotation)), 1.0f, 1e-5f);
-            }
-            if (const auto* m = before.try_get<scene::Material>(old_entity)) {
-                const auto& n = after.get<scene::Material>(entity);
-                EXPECT_TRUE(near(m->base_colour, n.base_colour) && near(m->emission, n.emission));
-                EXPECT_EQ(m->specular, n.specular);
-            }
-            if (const auto* m = before.try_get<scene::MeshInstance>(old_entity)) {
-                const scene::Mesh& a = meshes[m->mesh];
-                const scene::Mesh& b = read[after.get<scene::MeshInstance>(entity).mesh];
-                EXPECT_EQ(a.positions, b.positions);
-                EXPECT_EQ(a.normals, b.normals);
-                EXPECT_EQ(a.indices, b.indices);
-            }
-            if (const auto* c = before.try_get<scene::Camera>(old_entity)) {
-                EXPECT_NEAR(c->vertical_field_of_view, after.get<scene::Camera>(entity).vertical_field_of_view, 1e-6f);
-            }
-            if (const auto* m = before.try_get<scene::Mover>(old_entity)) {
-                { EXPECT_EQ(m->path, after.get<scene::Mover>(entity).path); }
-                EXPECT_EQ(m->period, after.get<scene::Mover>(entity).period);
-            }
-            if (const auto* l = before.try_get<scene::AreaLight>(old_entity)) {
-                EXPECT_EQ(l->radiance, after.get<scene::AreaLight>(entity).radiance);
-            }
-            if (const auto* l = before.try_get<scene::SpotLight>(old_entity)) {
-                EXPECT_TRUE(near(l->intensity, after.get<scene::SpotLight>(entity).intensity));
-            }
+            expect_same_shape(before, old_entity, after, entity);
+            expect_same_rest(before.registry, old_entity, after.registry, entity);
         });
         EXPECT_GT(compared, 2);
     }
 }
 
-// Damaged files give an error or a scene, never a crash: every prefix, and bytes changed at random.
+// good.scene.json and good.glb.
+void save_good_scene(const fs::path& folder) {
+    World world;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    assets::make_gap_room(builder);
+    ASSERT_TRUE(io::save_scene(folder / "good.scene.json", world.registry, world.meshes, world.textures));
+}
+
 TEST(SceneFiles, DamagedFilesAreErrors) {
     const Folder folder;
-    ecs::Registry registry;
-    scene::MeshStore meshes;
+    save_good_scene(folder.path);
     scene::TextureStore textures;
-    assets::SceneBuilder builder(registry, meshes);
-    assets::make_gap_room(builder);
-    ASSERT_TRUE(io::save_scene(folder.path / "good.scene.json", registry, meshes, textures));
     const std::string good = read_file(folder.path / "good.glb").value();
     int errors = 0;
     for (std::uint32_t i = 0; i < 300; ++i) {
@@ -96,6 +115,12 @@ TEST(SceneFiles, DamagedFilesAreErrors) {
         }
     }
     EXPECT_GT(errors, 100);
+}
+
+TEST(SceneFiles, DamagedJsonIsAnError) {
+    const Folder folder;
+    save_good_scene(folder.path);
+    scene::TextureStore textures;
     for (const std::string& text :
          {std::string("{}"), std::string("[]"), std::string(200000, '['), std::string(),
           std::string(R"({"sunfleck_scene":1,"gltf":"good.glb","entities":{"lamp":{"AreaLight":{"width":-1}}}})"),
@@ -140,6 +165,18 @@ TEST(SceneFiles, ChecksumsTellDamage) {
 }
 
 // A scene that refers to a glTF file keeps what was changed, and leaves that file alone.
+// The floor's colour and place, a light without a name, and one with.
+void edit(ecs::Registry& registry) {
+    const ecs::Entity floor = scene::find_by_name(registry, "floor");
+    registry.patch<scene::Material>(floor, [](scene::Material& m) { m.base_colour = vec3(0.123456789f, 0.2f, 0.3f); });
+    registry.patch<scene::Transform>(floor, [](scene::Transform& t) { t.position.y = -0.1f; });
+    registry.emplace<scene::PointLight>(registry.create());
+    const ecs::Entity lamp = registry.create();
+    registry.emplace<scene::Name>(lamp, {"new lamp"});
+    registry.emplace<scene::Transform>(lamp, {vec3(0.1f, 0.2f, 0.3f)});
+    registry.emplace<scene::PointLight>(lamp, {vec3(1.0f / 3.0f)});
+}
+
 TEST(SceneFiles, ReferencesKeepChanges) {
     const Folder folder;
     World world;
@@ -149,15 +186,7 @@ TEST(SceneFiles, ReferencesKeepChanges) {
     const std::string before = read_file(folder.path / "artist.glb").value();
     World edited;
     ASSERT_TRUE(io::load_scene(folder.path / "artist.glb", edited.registry, edited.meshes, edited.textures));
-    const ecs::Entity floor = scene::find_by_name(edited.registry, "floor");
-    edited.registry.patch<scene::Material>(floor,
-                                           [](scene::Material& m) { m.base_colour = vec3(0.123456789f, 0.2f, 0.3f); });
-    edited.registry.patch<scene::Transform>(floor, [](scene::Transform& t) { t.position.y = -0.1f; });
-    edited.registry.emplace<scene::PointLight>(edited.registry.create());
-    const ecs::Entity lamp = edited.registry.create();
-    edited.registry.emplace<scene::Name>(lamp, {"new lamp"});
-    edited.registry.emplace<scene::Transform>(lamp, {vec3(0.1f, 0.2f, 0.3f)});
-    edited.registry.emplace<scene::PointLight>(lamp, {vec3(1.0f / 3.0f)});
+    edit(edited.registry);
     const fs::path path = folder.path / "edit.scene.json";
     ASSERT_TRUE(io::save_scene(path, edited.registry, edited.meshes, edited.textures, {"artist.glb", {}}));
     EXPECT_EQ(read_file(folder.path / "artist.glb").value(), before);

@@ -268,58 +268,68 @@ TEST(Simulation, DoorsDoNotCrushPeople) {
     EXPECT_EQ(house.simulation->player().rescued(), 0u);
 }
 
-TEST(PathMovers, PosesFollowTheirPaths) {
-    ecs::Registry registry;
-    scene::register_components(registry);
-    const auto make = [&](const scene::Mover& mover, vec3 position) {
+// A registry whose movers show any moment.
+struct MovedScene {
+    MovedScene() { scene::register_components(registry); }
+    ecs::Entity make(const scene::Mover& mover, vec3 position) {
         const ecs::Entity entity = registry.create();
         scene::Transform transform;
         transform.position = position;
         registry.emplace<scene::Transform>(entity, transform);
         registry.emplace<scene::Mover>(entity, mover);
         return entity;
-    };
+    }
+    vec3 at(ecs::Entity entity, double seconds) {
+        set_movers_to_step(registry, std::uint64_t(std::lround(seconds / step_seconds)));
+        return registry.get<scene::Transform>(entity).position;
+    }
+    ecs::Registry registry;
+};
+
+TEST(PathMovers, HingesAndLinesFollowTheirPaths) {
+    MovedScene moved;
     scene::Mover mover;
     mover.path = scene::MoverPath::hinge;
     mover.centre = vec3(1.0f, 0.0f, 0.0f);
     mover.angle = 1.0f;
     mover.period = 4.0f;
-    const ecs::Entity hinge = make(mover, vec3(3.0f, 0.0f, 0.0f));
+    const ecs::Entity hinge = moved.make(mover, vec3(3.0f, 0.0f, 0.0f));
     mover = {};
     mover.path = scene::MoverPath::line;
     mover.travel = vec3(0.0f, 2.0f, 0.0f);
     mover.period = 8.0f;
     mover.easing = scene::MoverEasing::dwell;
-    const ecs::Entity lift = make(mover, vec3(0.0f));
+    const ecs::Entity lift = moved.make(mover, vec3(0.0f));
     mover.easing = scene::MoverEasing::linear;
-    const ecs::Entity even = make(mover, vec3(0.0f));
-    mover = {};
+    const ecs::Entity even = moved.make(mover, vec3(0.0f));
+    moved.at(hinge, 0.0);
+    // A quarter of the pendulum's period: one radian about the hinge, two metres away from it.
+    const vec3 swung(1.0f + 2.0f * std::cos(1.0f), 0.0f, -2.0f * std::sin(1.0f));
+    EXPECT_NEAR(glm::length(moved.at(hinge, 1.0) - swung), 0.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(even, 1.0).y, 1.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(even, 2.0).y, 2.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(even, 3.0).y, 1.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(even, 6.0).y, -2.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(lift, 1.5).y, 2.0f, 1e-4f); // waits from 1 s to 3 s
+    EXPECT_NEAR(moved.at(lift, 2.9).y, 2.0f, 1e-4f);
+    EXPECT_NEAR(moved.at(lift, 6.0).y, -2.0f, 1e-4f);
+}
+
+TEST(PathMovers, SplinesPassTheirPoints) {
+    MovedScene moved;
+    scene::Mover mover;
     mover.path = scene::MoverPath::spline;
     mover.period = 6.0f;
-    const ecs::Entity curve = make(mover, vec3(0.0f));
+    const ecs::Entity curve = moved.make(mover, vec3(0.0f));
     scene::SplinePath path;
     path.point_1 = vec3(0.0f);
     path.point_2 = vec3(3.0f, 0.0f, 0.0f);
     path.point_3 = vec3(0.0f, 0.0f, 3.0f);
-    registry.emplace<scene::SplinePath>(curve, path);
-    const auto at = [&](ecs::Entity entity, double seconds) {
-        set_movers_to_step(registry, std::uint64_t(std::lround(seconds / step_seconds)));
-        return registry.get<scene::Transform>(entity).position;
-    };
-    at(hinge, 0.0);
-    // A quarter of the pendulum's period: one radian about the hinge, two metres away from it.
-    EXPECT_NEAR(glm::length(at(hinge, 1.0) - vec3(1.0f + 2.0f * std::cos(1.0f), 0.0f, -2.0f * std::sin(1.0f))), 0.0f,
-                1e-4f);
-    EXPECT_NEAR(at(even, 1.0).y, 1.0f, 1e-4f);
-    EXPECT_NEAR(at(even, 2.0).y, 2.0f, 1e-4f);
-    EXPECT_NEAR(at(even, 3.0).y, 1.0f, 1e-4f);
-    EXPECT_NEAR(at(even, 6.0).y, -2.0f, 1e-4f);
-    EXPECT_NEAR(at(lift, 1.5).y, 2.0f, 1e-4f); // waits from 1 s to 3 s
-    EXPECT_NEAR(at(lift, 2.9).y, 2.0f, 1e-4f);
-    EXPECT_NEAR(at(lift, 6.0).y, -2.0f, 1e-4f);
-    EXPECT_NEAR(glm::length(at(curve, 2.0) - path.point_2), 0.0f, 1e-4f);
-    EXPECT_NEAR(glm::length(at(curve, 4.0) - path.point_3), 0.0f, 1e-4f);
-    EXPECT_NEAR(glm::length(at(curve, 6.0) - path.point_1), 0.0f, 1e-4f);
+    moved.registry.emplace<scene::SplinePath>(curve, path);
+    moved.at(curve, 0.0);
+    EXPECT_NEAR(glm::length(moved.at(curve, 2.0) - path.point_2), 0.0f, 1e-4f);
+    EXPECT_NEAR(glm::length(moved.at(curve, 4.0) - path.point_3), 0.0f, 1e-4f);
+    EXPECT_NEAR(glm::length(moved.at(curve, 6.0) - path.point_1), 0.0f, 1e-4f);
 }
 
 TEST(InputRecording, SurvivesTheRoundTripAndRejectsNonsense) {

@@ -5,6 +5,22 @@
 namespace sunfleck::gi {
 namespace {
 
+// A mover comes, goes, moves into a sample, anywhere, or a little.
+void change_one(std::vector<MoverPlace>& movers, VisibilityWorld& world, std::uint32_t boxes, std::mt19937& random) {
+    const std::uint32_t action = random() % 8;
+    const std::size_t which = movers.empty() ? 0 : random() % movers.size();
+    if ((action == 0 || movers.empty()) && movers.size() < 12)
+        movers.push_back({world.registry.create(), random() % 2 ? boxes : 0, random_place(random)});
+    else if (action == 1 && !movers.empty())
+        movers.erase(movers.begin() + std::ptrdiff_t(which));
+    else if (action == 2 && !movers.empty()) // into a sample
+        movers[which].matrix[3] = vec4(world.samples[random() % world.samples.size()].position, 1.0f);
+    else if (action < 5 && !movers.empty())
+        movers[which].matrix = random_place(random);
+    else if (!movers.empty())
+        movers[which].matrix = glm::translate(mat4(1.0f), vec3(uniform(random, -0.1f, 0.1f))) * movers[which].matrix;
+}
+
 // The short size makes 200 changes, which do all that there is to do some 25 times each.
 TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
     VisibilityWorld world(assets::make_four_pillars, 150);
@@ -17,19 +33,7 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
     std::uint64_t changes = 0;
     const int steps = tests::by_size(200, 1000);
     for (int step = 0; step < steps; ++step) {
-        const std::uint32_t action = random() % 8;
-        const std::size_t which = movers.empty() ? 0 : random() % movers.size();
-        if ((action == 0 || movers.empty()) && movers.size() < 12)
-            movers.push_back({world.registry.create(), random() % 2 ? boxes : 0, random_place(random)});
-        else if (action == 1 && !movers.empty())
-            movers.erase(movers.begin() + std::ptrdiff_t(which));
-        else if (action == 2 && !movers.empty()) // into a sample
-            movers[which].matrix[3] = vec4(world.samples[random() % world.samples.size()].position, 1.0f);
-        else if (action < 5 && !movers.empty())
-            movers[which].matrix = random_place(random);
-        else if (!movers.empty())
-            movers[which].matrix =
-                glm::translate(mat4(1.0f), vec3(uniform(random, -0.1f, 0.1f))) * movers[which].matrix;
+        change_one(movers, world, boxes, random);
         std::shuffle(movers.begin(), movers.end(), random);
         database.begin_frame();
         database.update_movers(movers, world.meshes);
@@ -93,6 +97,28 @@ TEST(VisibilityDatabase, ChangedSamplesAreDecidedAnew) {
     expect_equal(database, fresh, world.places);
 }
 
+// With rays, movers at their places.
+void expect_agreement(VisibilityWorld& world, const VisibilityDatabase& database) {
+    for (const MoverPlace& place : world.places)
+        world.registry.patch<scene::WorldTransform>(place.entity, [&](auto& t) { t.matrix = place.matrix; });
+    ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
+    const Agreement result = compare_with_rays(world, database, 16, 5);
+    EXPECT_EQ(result.wrong_none, 0u);
+    EXPECT_EQ(result.wrong_full, 0u);
+}
+
+// A third of every fifth sample; says which.
+std::vector<std::uint32_t> move_some(std::vector<LightSample>& samples, std::mt19937& random) {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t s = 0; s < samples.size(); s += 5)
+        if (random() % 3 == 0) {
+            samples[s].position =
+                vec3(uniform(random, -1.2f, 1.2f), uniform(random, 0.1f, 3.4f), uniform(random, -1.2f, 1.2f));
+            changed.push_back(s);
+        }
+    return changed;
+}
+
 // Samples of a light that is carried about, while objects move, too: as if built for them.
 TEST(VisibilityDatabase, FollowsSamplesThatMove) {
     VisibilityWorld world(assets::make_four_pillars, 90);
@@ -106,13 +132,7 @@ TEST(VisibilityDatabase, FollowsSamplesThatMove) {
     std::mt19937 random(17);
     std::size_t changes = 0;
     for (int frame = 0; frame < 60; ++frame) {
-        std::vector<std::uint32_t> changed;
-        for (std::uint32_t s = 0; s < world.samples.size(); s += 5)
-            if (random() % 3 == 0) {
-                world.samples[s].position =
-                    vec3(uniform(random, -1.2f, 1.2f), uniform(random, 0.1f, 3.4f), uniform(random, -1.2f, 1.2f));
-                changed.push_back(s);
-            }
+        const std::vector<std::uint32_t> changed = move_some(world.samples, random);
         for (MoverPlace& place : world.places)
             if (random() % 2 == 0)
                 place.matrix = random_place(random);
@@ -128,12 +148,7 @@ TEST(VisibilityDatabase, FollowsSamplesThatMove) {
         fresh.build(world.registry, world.meshes, world.samples, {});
         fresh.update_movers(world.places, world.meshes);
         expect_equal(database, fresh, world.places);
-        for (const MoverPlace& place : world.places)
-            world.registry.patch<scene::WorldTransform>(place.entity, [&](auto& t) { t.matrix = place.matrix; });
-        ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
-        const Agreement result = compare_with_rays(world, database, 16, 5);
-        EXPECT_EQ(result.wrong_none, 0u);
-        EXPECT_EQ(result.wrong_full, 0u);
+        expect_agreement(world, database);
     }
     EXPECT_GT(changes, 10000u);
 }

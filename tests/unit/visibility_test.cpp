@@ -57,12 +57,19 @@ TEST(Visibility, LightWithinABodyReachesWhatIsWithinIt) {
     EXPECT_FALSE(covers_gate(*floor(0.0, 2.0), body));
 }
 
-TEST(Visibility, ClosedForms) {
-    // A unit patch at the origin facing up, a sample two metres above, a square blocker between.
-    const std::vector<dvec3> patch = {{0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0}};
+// A unit patch at the origin facing up, and a sample two metres above.
+const std::vector<dvec3> unit_patch = {{0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {0, 0, 0}};
+LightSample sample_above() {
     LightSample sample;
     sample.position = vec3(0.5f, 2.0f, 0.5f);
     sample.normal = vec3(0, -1, 0);
+    return sample;
+}
+
+// A square blocker between.
+TEST(Visibility, ClosedForms) {
+    const std::vector<dvec3>& patch = unit_patch;
+    LightSample sample = sample_above();
     const auto pyramid = pyramid_of_patch(sample, patch, dvec3(0, 1, 0));
     ASSERT_TRUE(pyramid);
     const auto square = [](double x0, double x1, double y) {
@@ -76,15 +83,15 @@ TEST(Visibility, ClosedForms) {
     EXPECT_FALSE(pyramid_of_patch(sample, patch, dvec3(0, -1, 0)));
     sample.normal = vec3(0, 1, 0);
     EXPECT_FALSE(pyramid_of_patch(sample, patch, dvec3(0, 1, 0)));
+}
 
-    scene::MeshStore meshes;
+TEST(Visibility, ClosedFormsOfABox) {
     MovingBlocker box(scene::make_box(vec3(0.6f)));
     EXPECT_TRUE(box.convex());
-    sample.normal = vec3(0, -1, 0);
-    const auto again = pyramid_of_patch(sample, patch, dvec3(0, 1, 0));
+    const auto pyramid = pyramid_of_patch(sample_above(), unit_patch, dvec3(0, 1, 0));
     const auto at = [&](float x, float y, float scale) {
         box.place(glm::scale(glm::translate(mat4(1.0f), vec3(x, y, 0.5f)), vec3(scale)));
-        return box.test(*again);
+        return box.test(*pyramid);
     };
     EXPECT_EQ(at(0.5f, 1.0f, 1.0f), Blocking::full);
     EXPECT_EQ(at(0.5f, 1.0f, 0.5f), Blocking::partial);
