@@ -3,6 +3,7 @@
 #include "engine/core/hash.h"
 #include "gi_module/light_sampling/sample_source.h"
 #include "gi_module/transport/clamping.h"
+#include "gi_module/transport/light_plan.h"
 
 #include <algorithm>
 #include <atomic>
@@ -147,7 +148,10 @@ void SampleSet::make_samples(const SampleRequest& request, const raytrace::RaySc
 }
 
 void SampleSet::sort_samples() {
-    const auto key = [](const LightSample& sample) { return std::pair(light_class(sample.kind), sample.dynamic); };
+    // By all that decides which technique lights a sample, so that a technique's samples are few, long runs.
+    const auto key = [](const LightSample& sample) {
+        return std::tuple(light_class(sample.kind), sample.dynamic, path_part(sample.bounce));
+    };
     std::stable_sort(samples_.begin(), samples_.end(),
                      [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
     // Within a class, dynamic samples keep the order of DynamicLights.

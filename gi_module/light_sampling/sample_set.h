@@ -5,9 +5,9 @@
 // A set is a value that owns all it needs: the next one can be prepared from the same registry while another lights,
 // and two systems can light one registry.
 //
-// Samples are sorted by light class, then static before dynamic ones, then direct before reflected; a sample's index is
-// its position in this order, and shadow map, visibility rows and GPU rows follow it. Samples, indices and rows are
-// stable until generation() changes.
+// Samples are sorted by light class, then static before dynamic ones, then by path (direct, first bounce, later
+// bounces). A sample's index is its position in this order; shadow map, visibility rows and GPU rows follow it. Samples,
+// indices and rows are stable until generation() changes.
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
