@@ -1,4 +1,4 @@
-// What experiments share: options, and a scene that renders frame after frame under given settings.
+// Common parts of the experiments: options, and a loaded scene that is measured under given settings.
 #pragma once
 
 #include "editor/command_line/bench_table.h"
@@ -7,12 +7,12 @@ namespace sunfleck::command_line {
 
 struct BenchOptions {
     std::string suite, csv, plot, device, scene;
-    std::string part; // of the thesis; empty: all
+    std::string part; // of the suite thesis; empty: all
     bool as_json = false;
     std::uint32_t repeat = 5;
 };
 
-// A scene loaded and ready to render frame after frame.
+// A loaded scene, ready to be measured.
 struct Bench {
     static Result<std::unique_ptr<Bench>> create(const BenchOptions& options, const std::string& scene,
                                                  const std::string& camera, Size size) {
@@ -29,8 +29,8 @@ struct Bench {
         bench->request.ev100 = viewer::scene_exposure(bench->renderer->registry());
         return bench;
     }
-    // Renders `warmup` frames unmeasured, then `frames` measured ones; movers and camera move on. Measured frames begin
-    // at the camera's own place, however long the warm-up.
+    // Renders `warmup` frames, then measures `frames` frames while movers and camera move. The first measured frame has
+    // the camera at its initial position, however long the warm-up.
     Result<Measurement> measure(const gi::Settings& settings, std::uint32_t warmup, std::uint32_t frames, bool motion) {
         SUNFLECK_TRY(renderer->lighting().set_settings(settings));
         Measurement measurement;
@@ -63,9 +63,20 @@ struct Bench {
     std::uint64_t step = 0;
 };
 
-// The experiments of the thesis's chapter 5 (and fig. 4-11, 4-12), see bench_thesis.cpp.
-// Names of the thesis's experiments, for BenchOptions::part.
-std::vector<std::string> thesis_parts();
+// ns per light and pixel of every shape of the kernel.
+Result<BenchTable> bench_kernel(const BenchOptions& options);
+// Frames and passes for 64, 300 and 1,024 samples at two sizes.
+Result<BenchTable> bench_brute_force(const BenchOptions& options);
+// Microseconds per map and per thousand vertices.
+Result<BenchTable> bench_shadow_maps(const BenchOptions& options);
+// RMSE against the path tracer by number of samples, five seeds each, over the pixels that are farther from other
+// surfaces than 1/sqrt(G_max) at the smallest number.
+Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<PlotSeries>& plot);
+// Speed of the path tracer.
+Result<BenchTable> bench_reference(const BenchOptions& options);
+// The experiments of chapter 5 of the thesis and of its fig. 4-11 and 4-12.
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot);
+// Their names, for BenchOptions::part.
+std::vector<std::string> thesis_parts();
 
 } // namespace sunfleck::command_line

@@ -1,4 +1,4 @@
-// sunfleck compare: how much picture A differs from the reference B.
+// sunfleck compare: error metrics of image A against reference image B.
 #include "editor/command_line/common.h"
 #include "editor/command_line/metrics.h"
 
@@ -16,7 +16,7 @@ Status run(const CompareOptions& options) {
     SUNFLECK_ASSIGN(const io::Picture a, io::read_picture(options.a));
     SUNFLECK_ASSIGN(const io::Picture b, io::read_picture(options.b));
     if (a.width != b.width || a.height != b.height)
-        return Error{"the pictures differ in size: " + std::to_string(a.width) + "x" + std::to_string(a.height) +
+        return Error{"the images differ in size: " + std::to_string(a.width) + "x" + std::to_string(a.height) +
                      " and " + std::to_string(b.width) + "x" + std::to_string(b.height)};
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.b));
     const Metrics m = compare_pictures(a, b, kind == io::PictureKind::exr);
@@ -46,15 +46,16 @@ Status run(const CompareOptions& options) {
 
 Command make_compare_command(CLI::App& program) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* app = program.add_subcommand("compare", "Compares picture A with the reference B of the same size");
-    app->footer("Example: sunfleck compare render.exr reference.exr --json --diff difference.png\n"
-                "EXR is compared scene-linear, PNG as display values. Pixels with alpha 0 in either are left out.\n"
-                "relative_mse: mean of |A-B|^2 / (|B|^2 + 0.01 m^2), m the mean of |B|. ssim and flip of EXR pictures\n"
-                "are taken after x / (x + m). psnr is 999 for equal pictures.");
-    app->add_option("A", options->a, "Picture to judge")->required();
-    app->add_option("B", options->b, "Reference")->required();
-    app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png");
-    app->add_flag("--json", options->as_json, "Print one JSON object");
+    CLI::App* app = program.add_subcommand("compare", "Compares image A with a reference image B of the same size");
+    app->footer(
+        "Example: sunfleck compare render.exr reference.exr --json --diff difference.png\n"
+        "EXR is compared scene-linear, PNG as display values. Pixels with alpha 0 in either image are ignored.\n"
+        "relative_mse: mean of |A-B|^2 / (|B|^2 + 0.01 m^2), m the mean of |B|. ssim and flip of EXR images\n"
+        "are computed after tone mapping by x / (x + m). psnr is 999 for equal images.");
+    app->add_option("A", options->a, "Image to evaluate")->required();
+    app->add_option("B", options->b, "Reference image")->required();
+    app->add_option("--diff", options->difference, "Write the absolute difference, times eight, as .png");
+    app->add_flag("--json", options->as_json, "Print a JSON object");
     return {app, [options] {
                 const Status status = run(*options);
                 return status ? 0 : fail(status.error());
