@@ -7,7 +7,7 @@ namespace {
 
 const vec3 wood(0.56f, 0.40f, 0.24f), white(0.74f), metal(0.35f, 0.37f, 0.40f);
 
-// A table top on four legs, its middle at the origin.
+// A table top on four legs, centred on the origin.
 scene::Mesh make_table(float width, float depth, float height, float leg) {
     scene::Mesh mesh;
     append_box(mesh, vec3(-0.5f * width, height - 0.04f, -0.5f * depth), vec3(0.5f * width, height, 0.5f * depth));
@@ -66,7 +66,7 @@ void make_classroom(SceneBuilder& s) {
             {"lamp " + std::to_string(i), vec2(i ? 2.2f : -2.2f, -1.6f), 1.6f, 0.5f, vec3(14.0f, 13.6f, 12.6f)});
     s.room(vec3(-4.5f, 0.0f, -5.0f), vec3(4.5f, 3.0f, 5.0f), vec3(0.52f, 0.44f, 0.34f), white,
            {vec3(0.66f, 0.68f, 0.58f), vec3(0.66f, 0.68f, 0.58f), white, vec3(0.55f, 0.60f, 0.66f)}, lamps);
-    for (int i = 0; i < 2; ++i) // the other two hang
+    for (int i = 0; i < 2; ++i) // the other two hang from the ceiling
         s.ceiling_light("hanging lamp " + std::to_string(i), vec3(i ? 2.2f : -2.2f, 2.7f, 2.2f), 1.6f, 0.5f,
                         vec3(14.0f, 13.6f, 12.6f));
     const std::uint32_t desk = s.mesh("desk", make_table(1.1f, 0.55f, 0.74f, 0.05f)),

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         assets::SceneBuilder builder(registry, meshes);
         built_in.make(builder);
         const std::filesystem::path path = folder / (std::string(built_in.name) + ".scene.json");
-        std::filesystem::remove(path, code); // saving beside an older file would take another name for the geometry
+        std::filesystem::remove(path, code); // saving over an older file would give the geometry another name
         const Status status = io::save_scene(path, registry, meshes, {});
         if (!status) {
             log_error(status.error().message);

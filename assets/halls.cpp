@@ -1,4 +1,4 @@
-// Arches and pillars under one spot light (Nijasure, fig. 2 to 5), and a large atrium of many materials.
+// Arches and pillars under one spot light (Nijasure, fig. 2 to 5), and a large atrium with many materials.
 #include "assets/mesh_parts.h"
 #include "assets/test_rooms.h"
 
@@ -9,12 +9,11 @@ namespace {
 
 const vec3 plaster(0.72f, 0.69f, 0.63f), stone(0.58f, 0.54f, 0.48f);
 
-void spot(SceneBuilder& s, const std::string& name, vec3 position, vec3 target, vec3 intensity, float inner,
-          float outer) {
+void spot(SceneBuilder& s, const std::string& name, vec3 position, vec3 target, const scene::SpotLight& light) {
     scene::Transform transform;
     transform.position = position;
     transform.rotation = facing(position - target); // shines along its -Z
-    s.spot_light(name, transform, {intensity, inner, outer});
+    s.spot_light(name, transform, light);
 }
 
 void pillar(SceneBuilder& s, const std::string& name, const scene::Mesh& shape, vec3 foot, vec3 colour) {
@@ -52,7 +51,7 @@ void make_hall(SceneBuilder& s) {
         }
     s.add("figure", make_figure(1.8f, 20), diffuse(vec3(0.62f, 0.25f, 0.2f)), placed(vec3(0.9f, 0.0f, -1.2f), 0.5f));
     s.add("ball", scene::make_sphere(0.45f, 32, 16), diffuse(vec3(0.75f)), placed(vec3(-1.0f, 0.45f, 0.4f)));
-    spot(s, "spot", vec3(0.0f, 4.4f, 1.0f), vec3(0.0f, 0.0f, -0.6f), vec3(420.0f, 395.0f, 340.0f), 0.30f, 0.42f);
+    spot(s, "spot", vec3(0.0f, 4.4f, 1.0f), vec3(0.0f, 0.0f, -0.6f), {vec3(420.0f, 395.0f, 340.0f), 0.30f, 0.42f});
     s.camera("view", vec3(0.0f, 1.8f, 6.4f), vec3(0.0f, 1.7f, -1.0f), 60.0f);
     s.camera("bench_1", vec3(0.0f, 1.8f, 6.4f), vec3(0.0f, 1.7f, -1.0f), 60.0f);
     s.camera("bench_2", vec3(-4.4f, 1.7f, 5.5f), vec3(1.5f, 1.6f, -2.5f), 64.0f);
@@ -61,7 +60,7 @@ void make_hall(SceneBuilder& s) {
 
 void make_gallery(SceneBuilder& s) {
     const vec3 lo(-9.0f, 0.0f, -6.0f), hi(9.0f, 4.2f, 6.0f);
-    const vec3 yellow(0.74f, 0.60f, 0.26f); // the floor that colours walls and ceiling
+    const vec3 yellow(0.74f, 0.60f, 0.26f); // the floor's colour bleeds onto walls and ceiling
     s.room(lo, hi, yellow, plaster, {plaster, plaster, plaster, plaster});
     for (int i = 0; i < 2; ++i) { // two dividing walls with an arch each
         scene::Transform turned = placed(vec3(i ? 3.2f : -2.8f, 0.0f, -6.0f), -0.5f * pi);
@@ -89,18 +88,17 @@ void make_gallery(SceneBuilder& s) {
                                          vec3(x + 0.42f, 2.32f, front ? -5.90f : 5.94f), diffuse(tints[i % 6]));
         s.registry().emplace<scene::SurfacePattern>(canvas, {scene::PatternKind::marble, tints[(i + 2) % 6], 0.3f});
     }
-    spot(s, "spot", vec3(0.2f, 4.0f, 0.5f), vec3(0.2f, 0.0f, 0.0f), vec3(420.0f, 400.0f, 350.0f), 0.5f, 0.75f);
+    spot(s, "spot", vec3(0.2f, 4.0f, 0.5f), vec3(0.2f, 0.0f, 0.0f), {vec3(420.0f, 400.0f, 350.0f), 0.5f, 0.75f});
     s.camera("view", vec3(-1.6f, 1.7f, 4.9f), vec3(2.2f, 1.5f, -2.4f), 64.0f);
     s.camera("bench_1", vec3(-1.6f, 1.7f, 4.9f), vec3(2.2f, 1.5f, -2.4f), 64.0f);
     s.camera("bench_2", vec3(8.2f, 1.8f, 4.4f), vec3(1.0f, 1.4f, -1.0f), 62.0f);
     s.exposure(9.4f);
 }
 
-void make_atrium(SceneBuilder& s) {
-    const vec3 lo(-11.0f, 0.0f, -11.0f), hi(11.0f, 13.0f, 11.0f);
-    s.room(lo, hi, vec3(0.6f, 0.55f, 0.5f), plaster, {plaster, plaster, plaster, plaster},
-           {{"skylight", vec2(0.0f), 8.0f, 8.0f, vec3(9.0f, 9.5f, 10.5f)}});
-    // Three galleries of columns, each storey's in colours of its own: 60 materials with the rest.
+namespace {
+
+// Three storeys of columns, each storey in its own colours: together with the rest, 60 materials.
+void add_galleries(SceneBuilder& s) {
     const scene::Mesh column = make_pillar(0.28f, 3.6f, 52);
     int number = 0;
     for (int storey = 0; storey < 3; ++storey)
@@ -131,7 +129,16 @@ void make_atrium(SceneBuilder& s) {
             const vec3 b(across ? 11.0f : sign * 11.0f, y + 0.4f, across ? sign * 11.0f : 7.2f);
             s.box(name, glm::min(a, b), glm::max(a, b), diffuse(vec3(0.62f, 0.58f, 0.52f)));
         }
-    for (int i = 0; i < 4; ++i) // plants of many leaves stand in as finely divided knots
+}
+
+} // namespace
+
+void make_atrium(SceneBuilder& s) {
+    const vec3 lo(-11.0f, 0.0f, -11.0f), hi(11.0f, 13.0f, 11.0f);
+    s.room(lo, hi, vec3(0.6f, 0.55f, 0.5f), plaster, {plaster, plaster, plaster, plaster},
+           {{"skylight", vec2(0.0f), 8.0f, 8.0f, vec3(9.0f, 9.5f, 10.5f)}});
+    add_galleries(s);
+    for (int i = 0; i < 4; ++i) // finely tessellated knots in place of leafy plants
         s.add("ornament " + std::to_string(i), scene::make_knot(1.6f, 330, 32),
               diffuse(vec3(0.25f + 0.1f * float(i), 0.5f, 0.3f)),
               placed(vec3(i & 1 ? 3.5f : -3.5f, 1.7f, i & 2 ? 3.5f : -3.5f), float(i)));

@@ -1,4 +1,4 @@
-// Parts that a house is built of: room shells with doorways and windows, furniture, and things that move.
+// Building blocks of a house: room shells with doorways and windows, furniture, and moving objects.
 #pragma once
 
 #include "assets/scene_builder.h"
@@ -11,7 +11,7 @@ namespace sunfleck::assets {
 using scene::PatternKind;
 
 struct Room {
-    vec3 lowest, highest; // the inside
+    vec3 lowest, highest; // inner bounds
 };
 
 struct Box {
@@ -39,12 +39,12 @@ public:
 
     explicit House(SceneBuilder& builder) : s_(builder) {}
 
-    // Walls in the order west, east, north, south; one mesh each, without the faces that nobody sees.
+    // Walls in the order west, east, north, south; one mesh each, without hidden faces.
     void shell(const std::string& name, const Room& room, const vec3 (&colours)[4],
                const std::map<Wall, std::vector<Opening>>& openings);
     void floor(const std::string& name, const Room& room, const Covering& covering);
     void ceiling(const std::string& name, const Room& room, vec3 colour, const std::vector<SceneBuilder::Lamp>& lamps);
-    // Bars in the opening, and the light of the sky that comes through it.
+    // Glazing bars in the opening, and an area light for the sky behind it.
     void window(const std::string& name, Wall wall, const Room& room, const Opening& opening, vec3 bars, vec3 radiance);
     // A door frame that closes the gap between two rooms.
     void frame(const std::string& name, Wall wall, const Room& room, const Opening& opening, vec3 colour);
@@ -55,15 +55,15 @@ public:
     ecs::Entity boxes(const std::string& name, const std::vector<Box>& parts, vec3 colour);
     void pattern(const std::string& name, const scene::SurfacePattern& pattern);
     void table(const std::string& name, vec3 foot, float height, float radius, vec3 colour);
-    // A flat lamp before a wall, and a globe on a thin stem of 5 cm.
+    // A flat lamp on a wall, and a globe on a thin stem of 5 cm.
     void wall_lamp(const std::string& name, vec3 centre, vec3 facing_to, float width, float height, vec3 radiance);
     void globe_lamp(const std::string& name, vec3 centre, float radius, vec3 radiance, vec3 stem);
     void light_switch(const std::string& name, vec3 centre, vec3 facing, const std::string& lamps);
 
     void sliding_door(const std::string& name, vec3 centre, vec3 size, vec3 travel, vec3 colour);
     void swinging_door(const std::string& name, vec3 centre, vec3 size, vec3 hinge, float angle, vec3 colour);
-    // A box whose top goes from `low` to `high` and back.
-    void lift(const std::string& name, vec3 lowest, vec3 highest, float low, float high, float period, vec3 colour);
+    // A box whose top moves from `low` to `high` and back.
+    void lift(const std::string& name, const Box& platform, float low, float high, float period, vec3 colour);
     void turning_panel(const std::string& name, vec3 centre, vec3 size, float period, vec3 colour);
     void swinging_lamp(const std::string& name, vec3 pivot, float length, vec3 radiance, vec3 colour);
     void mobile(const std::string& name, scene::Mesh mesh, vec3 colour, const std::vector<vec3>& points, float period);

@@ -1,5 +1,5 @@
 // The demo's level: a house of six rooms. A sun room with windows, a white hall, a red, a blue and a tall green room,
-// and an attic that a lift leads to. Metres; +X is east, -Z is north; the hall's middle is the origin.
+// and an attic reached by a lift. Metres; +X is east, -Z is north; the origin is the centre of the hall.
 #include "assets/house_parts.h"
 #include "assets/test_rooms.h"
 
@@ -138,7 +138,7 @@ void furnish_blue_room(House& house) {
 }
 
 void furnish_green_room(House& house) {
-    // The way from the lift to the attic, and its railing.
+    // The walkway from the lift to the attic, and its railing.
     house.boxes("walkway", {{vec3(1.4f, upper_floor - 0.14f, -7.6f), vec3(3.0f, upper_floor, -3.24f)}}, dark_oak);
     std::vector<Box> rail = {{vec3(1.40f, upper_floor + 0.86f, -7.55f), vec3(1.46f, upper_floor + 0.92f, -3.3f)},
                              {vec3(1.40f, upper_floor + 0.42f, -7.55f), vec3(1.43f, upper_floor + 0.46f, -3.3f)}};
@@ -176,8 +176,8 @@ void add_movers(House& house) {
     house.swinging_door("swinging door", vec3(3.12f, 0.5f * door_top - 0.02f, 0.0f),
                         vec3(0.045f, door_top - 0.06f, 0.98f), vec3(3.12f, 0.0f, -0.49f), 1.75f,
                         vec3(0.70f, 0.66f, 0.58f));
-    // A column that rises out of the floor: nobody can be under it.
-    house.lift("lift", vec3(1.4f, 0.0f, -9.15f), vec3(2.95f, 3.4f, -7.62f), 0.12f, upper_floor, 14.0f, stone);
+    // A column that rises out of the floor, so that nobody can get under it.
+    house.lift("lift", {vec3(1.4f, 0.0f, -9.15f), vec3(2.95f, 3.4f, -7.62f)}, 0.12f, upper_floor, 14.0f, stone);
     house.turning_panel("turning panel", vec3(7.9f, 1.56f, 0.0f), vec3(1.5f, 2.0f, 0.07f), 18.0f, cream);
     house.swinging_lamp("swinging lamp", vec3(5.0f, 3.6f, 0.3f), 1.25f, vec3(64.0f, 50.0f, 31.0f), brass);
     house.mobile("mobile", scene::make_torus(0.28f, 0.07f, 36, 14), brass,

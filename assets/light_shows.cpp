@@ -1,4 +1,4 @@
-// Places whose light moves: a level of a game with a moving lamp (splatting paper), and two static scenes under
+// Scenes with moving lights: a game level with a moving lamp (splatting paper), and two static scenes under
 // animated lights (Szecsi et al., fig. 8 to 11).
 #include "assets/mesh_parts.h"
 #include "assets/test_rooms.h"
@@ -39,7 +39,7 @@ void make_arena(SceneBuilder& s) {
     for (const char* wall : {"wall x-", "wall x+", "wall z-", "wall z+"})
         patterned(s, wall, scene::PatternKind::bricks, vec3(0.30f, 0.24f, 0.20f), 0.6f);
     patterned(s, "floor", scene::PatternKind::checker, vec3(0.30f, 0.29f, 0.28f), 1.0f);
-    // A raised walk around, with two ramps, and cover in the middle.
+    // A raised gallery on three sides, a ramp, and cover in the middle.
     s.box("walk north", vec3(-8.0f, 0.0f, -8.0f), vec3(8.0f, 1.6f, -5.4f), diffuse(rock));
     s.box("walk west", vec3(-8.0f, 0.0f, -5.4f), vec3(-5.4f, 1.6f, 4.0f), diffuse(rock));
     s.box("walk east", vec3(5.4f, 0.0f, -5.4f), vec3(8.0f, 1.6f, 0.0f), diffuse(rock));
@@ -104,13 +104,17 @@ void make_chamber(SceneBuilder& s) {
     s.exposure(8.2f);
 }
 
-void make_cave(SceneBuilder& s) {
-    // A closed tube that winds, its wall thrown into bumps; seen from inside.
+namespace {
+
+// The axis of the cave; t from 0 to 1.
+vec3 cave_axis(float t) {
+    return vec3(2.2f * std::sin(1.9f * t), 1.8f + 0.5f * std::sin(2.7f * t), -10.0f + 20.0f * t);
+}
+
+// A closed, winding, bumpy tube, seen from inside.
+scene::Mesh make_cave_walls() {
     scene::Mesh tube;
     constexpr int rings = 120, sides = 64;
-    const auto middle = [](float t) {
-        return vec3(2.2f * std::sin(1.9f * t), 1.8f + 0.5f * std::sin(2.7f * t), -10.0f + 20.0f * t);
-    };
     for (int i = 0; i <= rings; ++i)
         for (int k = 0; k < sides; ++k) {
             const float t = float(i) / rings, angle = 2.0f * pi * float(k) / sides;
@@ -119,7 +123,7 @@ void make_cave(SceneBuilder& s) {
                                0.05f * std::cos(17.0f * angle - 120.0f * t);
             const float closing = std::sqrt(std::max(0.0f, std::sin(pi * std::clamp(t, 0.0005f, 0.9995f))));
             const float radius = (2.1f + bump) * std::min(1.0f, 1.6f * closing);
-            vec3 p = middle(t) + radius * vec3(std::cos(angle), std::sin(angle), 0.0f);
+            vec3 p = cave_axis(t) + radius * vec3(std::cos(angle), std::sin(angle), 0.0f);
             p.y = std::max(p.y, 0.15f * bump); // a floor to stand on
             tube.positions.push_back(p);
         }
@@ -129,31 +133,41 @@ void make_cave(SceneBuilder& s) {
             tube.indices.insert(tube.indices.end(), {a, b, c, b, d, c});
         }
     scene::compute_normals(tube);
-    s.add("walls", std::move(tube), diffuse(rock));
-    patterned(s, "walls", scene::PatternKind::marble, vec3(0.36f, 0.34f, 0.34f), 1.3f);
-    for (int i = 0; i < 14; ++i) { // stalagmites
-        scene::Mesh cone;
-        constexpr int segments = 20;
-        const float height = 0.5f + 0.09f * float(i % 7);
-        for (int k = 0; k <= segments; ++k) {
-            const float angle = 2.0f * pi * float(k) / segments;
-            cone.positions.push_back(vec3(0.22f * std::cos(angle), -0.1f, 0.22f * std::sin(angle)));
-            cone.positions.push_back(vec3(0.02f * std::cos(angle), height, 0.02f * std::sin(angle)));
-        }
-        for (std::uint32_t k = 0; k < segments; ++k)
-            cone.indices.insert(cone.indices.end(), {2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3});
-        scene::compute_normals(cone);
-        const float t = 0.16f + 0.05f * float(i);
-        s.add("stalagmite " + std::to_string(i), std::move(cone), diffuse(rock),
-              placed(vec3(middle(t).x + (i % 2 ? 0.9f : -0.8f), 0.05f, middle(t).z)));
+    return tube;
+}
+
+scene::Mesh make_stalagmite(float height) {
+    scene::Mesh cone;
+    constexpr int segments = 20;
+    for (int k = 0; k <= segments; ++k) {
+        const float angle = 2.0f * pi * float(k) / segments;
+        cone.positions.push_back(vec3(0.22f * std::cos(angle), -0.1f, 0.22f * std::sin(angle)));
+        cone.positions.push_back(vec3(0.02f * std::cos(angle), height, 0.02f * std::sin(angle)));
     }
-    const ecs::Entity torch = s.point_light("torch", middle(0.5f) + vec3(0.0f, 0.1f, 0.0f), vec3(26.0f, 15.0f, 6.5f));
+    for (std::uint32_t k = 0; k < segments; ++k)
+        cone.indices.insert(cone.indices.end(), {2 * k, 2 * k + 1, 2 * k + 2, 2 * k + 2, 2 * k + 1, 2 * k + 3});
+    scene::compute_normals(cone);
+    return cone;
+}
+
+} // namespace
+
+void make_cave(SceneBuilder& s) {
+    s.add("walls", make_cave_walls(), diffuse(rock));
+    patterned(s, "walls", scene::PatternKind::marble, vec3(0.36f, 0.34f, 0.34f), 1.3f);
+    for (int i = 0; i < 14; ++i) {
+        const float t = 0.16f + 0.05f * float(i);
+        s.add("stalagmite " + std::to_string(i), make_stalagmite(0.5f + 0.09f * float(i % 7)), diffuse(rock),
+              placed(vec3(cave_axis(t).x + (i % 2 ? 0.9f : -0.8f), 0.05f, cave_axis(t).z)));
+    }
+    const ecs::Entity torch =
+        s.point_light("torch", cave_axis(0.5f) + vec3(0.0f, 0.1f, 0.0f), vec3(26.0f, 15.0f, 6.5f));
     s.mover(torch, path_line(vec3(0.3f, 0.0f, 4.0f), 14.0f));
     const ecs::Entity crystal =
-        s.point_light("crystal", middle(0.2f) + vec3(0.0f, -0.6f, 0.0f), vec3(2.0f, 5.0f, 9.0f));
-    s.mover(crystal, path_circle(middle(0.2f), 8.0f));
-    s.camera("view", middle(0.82f) + vec3(0.0f, -0.1f, 0.0f), middle(0.45f), 66.0f);
-    s.camera("bench_1", middle(0.82f) + vec3(0.0f, -0.1f, 0.0f), middle(0.45f), 66.0f);
+        s.point_light("crystal", cave_axis(0.2f) + vec3(0.0f, -0.6f, 0.0f), vec3(2.0f, 5.0f, 9.0f));
+    s.mover(crystal, path_circle(cave_axis(0.2f), 8.0f));
+    s.camera("view", cave_axis(0.82f) + vec3(0.0f, -0.1f, 0.0f), cave_axis(0.45f), 66.0f);
+    s.camera("bench_1", cave_axis(0.82f) + vec3(0.0f, -0.1f, 0.0f), cave_axis(0.45f), 66.0f);
     s.exposure(9.2f);
 }
 

@@ -21,7 +21,7 @@ void append_box(scene::Mesh& whole, vec3 lowest, vec3 highest) {
 
 namespace {
 
-// A flat quad with its own vertices; its front is where the corners turn counter-clockwise.
+// A flat quad with its own vertices; corners are counter-clockwise seen from the front.
 void append_quad(scene::Mesh& whole, vec3 a, vec3 b, vec3 c, vec3 d) {
     const std::uint32_t first = std::uint32_t(whole.positions.size());
     const vec3 across = glm::cross(c - a, d - b);
@@ -40,7 +40,7 @@ scene::Mesh make_arch(float width, float height, float depth, float opening, flo
     const float radius = 0.5f * opening, middle = 0.5f * width, side = middle - radius;
     append_box(mesh, vec3(0.0f), vec3(side, springing, depth));
     append_box(mesh, vec3(width - side, 0.0f, 0.0f), vec3(width, springing, depth));
-    // Above: strips from the arch's curve to the top, front and back, and the curve's underside.
+    // Above: strips from the arch to the top, front and back, and the underside of the arch.
     const auto on_curve = [&](int i) {
         const float angle = pi * (1.0f - float(i) / float(segments));
         return vec2(middle + radius * std::cos(angle), springing + radius * std::sin(angle));

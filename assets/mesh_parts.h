@@ -1,17 +1,17 @@
-// Joined and bent meshes that scenes are furnished with.
+// Composite meshes for furnishing scenes.
 #pragma once
 
 #include "assets/scene_builder.h"
 
 namespace sunfleck::assets {
 
-// Adds `part`, transformed, to `whole`.
+// Appends `part`, transformed, to `whole`.
 void append(scene::Mesh& whole, const scene::Mesh& part, const mat4& transform);
-// Adds a box from its lowest to its highest corner.
+// Appends a box given by its lowest and highest corner.
 void append_box(scene::Mesh& whole, vec3 lowest, vec3 highest);
 
 // A wall in the XY plane between x = 0 and `width`, from the ground to `height`, `depth` thick (z from 0), with a
-// round-headed opening in its middle: `opening` wide, its sides `springing` high.
+// round-arched opening in its middle: `opening` wide, with the arch springing at height `springing`.
 scene::Mesh make_arch(float width, float height, float depth, float opening, float springing, int segments);
 
 // A standing figure of spheres and cylinders, `height` tall, its feet at the origin.

@@ -84,7 +84,7 @@ void SceneBuilder::room(vec3 lo, vec3 hi, vec3 floor, vec3 ceiling, const vec3 (
     ceiling_with_lamps(lo, hi, ceiling, lamps);
     quad("wall x-", lo, y, z, diffuse(walls[0]));
     quad("wall x+", vec3(hi.x, lo.y, lo.z), z, y, diffuse(walls[1]));
-    // These two meet the ceiling where it is divided: they reach a little above it, so that no ray slips through.
+    // These two meet the ceiling where it is split: they reach slightly above it, so that no ray slips through.
     const vec3 overlap = y + vec3(0.0f, 0.002f, 0.0f);
     quad("wall z-", lo, x, overlap, diffuse(walls[2]));
     quad("wall z+", vec3(lo.x, lo.y, hi.z), overlap, x, diffuse(walls[3]));
@@ -106,7 +106,7 @@ ecs::Entity SceneBuilder::ceiling_light(const std::string& name, vec3 centre, fl
     light.radiance = radiance;
     scene::Transform transform;
     transform.position = centre;
-    transform.rotation = glm::angleAxis(0.5f * pi, vec3(1.0f, 0.0f, 0.0f)); // +Z turns to -Y
+    transform.rotation = glm::angleAxis(0.5f * pi, vec3(1.0f, 0.0f, 0.0f)); // maps +Z to -Y
     return area_light(name, light, transform);
 }
 

@@ -1,4 +1,4 @@
-// A few verbs to describe a scene in code.
+// Functions to describe a scene in code.
 #pragma once
 
 #include "engine/scene/procedural.h"
@@ -22,16 +22,16 @@ public:
 
     ecs::Entity add(const std::string& name, scene::Mesh mesh, const scene::Material& material,
                     const scene::Transform& transform = {});
-    // A mesh that several entities share, and an entity that has it.
+    // A mesh for several entities, and an entity that uses it.
     std::uint32_t mesh(const std::string& name, scene::Mesh mesh);
     ecs::Entity instance(const std::string& name, std::uint32_t mesh, const scene::Material& material,
                          const scene::Transform& transform);
-    // Box from its lowest to its highest corner.
+    // Box given by its lowest and highest corner.
     ecs::Entity box(const std::string& name, vec3 lowest, vec3 highest, const scene::Material& material);
-    // Rectangle by its corner and two edges; its front is where the edges turn counter-clockwise.
+    // Rectangle given by a corner and two edges; the edges are counter-clockwise seen from the front.
     ecs::Entity quad(const std::string& name, vec3 corner, vec3 u, vec3 v, const scene::Material& material);
     // The inside of a box: floor, ceiling, and walls in the order x-, x+, z-, z+.
-    // The ceiling has openings where `lamps` sit flush in it; lamps are given by rising x and do not overlap in x.
+    // The ceiling has openings in which `lamps` sit flush; lamps are sorted by x and do not overlap in x.
     struct Lamp {
         std::string name;
         vec2 centre; // x, z
@@ -57,7 +57,7 @@ private:
     scene::MeshStore& meshes_;
 };
 
-// Rotation that turns the local Z axis to `direction`.
+// Rotation that maps the local Z axis to `direction`.
 quat facing(vec3 direction);
 
 } // namespace sunfleck::assets

@@ -25,8 +25,8 @@ scene::Transform at(vec3 position, float yaw_degrees = 0.0f) {
 
 } // namespace
 
-// Sizes and blocks after the measured box of the Cornell University Program of Computer Graphics, at ten times its
-// size; the room is mirrored so that the camera looks along -z.
+// Dimensions and blocks follow the measured box of the Cornell University Program of Computer Graphics, at ten times
+// its size; the room is mirrored so that the camera looks along -z.
 void make_cornell(SceneBuilder& s) {
     const vec3 lo(0.0f), hi(5.528f, 5.488f, 5.592f);
     s.quad("floor", lo, vec3(0, 0, hi.z), vec3(hi.x, 0, 0), diffuse(white));
@@ -124,7 +124,7 @@ void make_gap_room(SceneBuilder& s) {
     s.room(vec3(-4.0f, 0.0f, -2.5f), vec3(4.0f, 3.0f, 2.5f), vec3(0.65f), white,
            {vec3(0.7f, 0.5f, 0.2f), white, white, white},
            {{"lamp", vec2(-2.2f, -0.4f), 1.5f, 1.5f, vec3(40.0f, 37.0f, 32.0f)}});
-    // The dividing wall leaves a gap of 25 cm.
+    // The dividing wall leaves a gap 25 cm wide.
     s.box("divider left", vec3(-0.1f, 0.0f, -2.5f), vec3(0.1f, 3.0f, -0.9f), diffuse(white));
     s.box("divider right", vec3(-0.1f, 0.0f, -0.65f), vec3(0.1f, 3.0f, 2.5f), diffuse(white));
     s.box("block", vec3(1.7f, 0.0f, -0.6f), vec3(2.3f, 1.3f, 0.1f), diffuse(grey));
@@ -159,7 +159,7 @@ void make_two_rooms(SceneBuilder& s) {
     const vec3 lo(-5.0f, 0.0f, -2.5f), hi(5.0f, 2.8f, 2.5f);
     s.room(lo, hi, vec3(0.6f, 0.55f, 0.5f), white, {vec3(0.7f, 0.35f, 0.2f), vec3(0.35f, 0.45f, 0.65f), white, white},
            {{"lamp", vec2(-2.6f, 0.0f), 1.4f, 1.4f, vec3(22.0f, 20.0f, 17.0f)}});
-    // The dividing wall, from 20 cm thick down to a sheet, with a doorway of 1 m that a sliding door closes and opens.
+    // The dividing wall, from 20 cm thick down to a single sheet, with a doorway 1 m wide and a sliding door.
     s.box("wall 20 cm", vec3(-0.1f, 0.0f, -2.5f), vec3(0.1f, 2.8f, -1.5f), diffuse(white));
     s.box("wall 5 cm", vec3(-0.025f, 0.0f, -1.5f), vec3(0.025f, 2.8f, -0.5f), diffuse(white));
     s.box("lintel", vec3(-0.05f, 2.1f, -0.5f), vec3(0.05f, 2.8f, 0.5f), diffuse(white));

@@ -6,7 +6,7 @@
 namespace sunfleck::demo {
 namespace {
 
-constexpr float pointer_speed = 22.0f;  // 1e-4 rad a pixel
+constexpr float pointer_speed = 22.0f;  // 1e-4 rad per pixel
 constexpr float stick_speed = 26000.0f; // 1e-4 rad/s at full deflection
 constexpr int pad_a = 0, pad_b = 1, pad_x = 2, pad_y = 3, pad_left_bumper = 4;
 
@@ -42,7 +42,7 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     button(Action::use, simulation::button_use, pad_a);
     button(Action::put_down, simulation::button_put_down, pad_x);
     const float upwards = settings.invert_look ? 1.0f : -1.0f;
-    const float bent = glm::length(input.gamepad.right); // finer near the middle
+    const float bent = glm::length(input.gamepad.right); // finer control near the centre
     look_ += settings.sensitivity * pointer_speed * vec2(-input.mouse_motion.x, upwards * input.mouse_motion.y);
     look_ += settings.sensitivity * stick_speed * float(seconds) * bent *
              vec2(-input.gamepad.right.x, upwards * input.gamepad.right.y);

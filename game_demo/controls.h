@@ -1,4 +1,4 @@
-// From keys, pointer and gamepad to what a person does in a step.
+// Translates keyboard, mouse and gamepad input to the person's input per step.
 #pragma once
 
 #include "engine/simulation/input_recording.h"
@@ -8,17 +8,17 @@ namespace sunfleck::demo {
 
 class Controls {
 public:
-    // Takes in a poll's input; `seconds` since the last one. Without `playing`, everything is let go.
+    // Accumulates a poll's input; `seconds` since the last one. If not `playing`, everything is released.
     void take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing);
-    // What is done in the next step: all of the view's motion so far, and what is held down.
+    // Input of the next step: all accumulated look motion, and the held keys.
     simulation::StepInput next_step();
-    // True once for each time that the action's key or button went down.
+    // True once per press of the action's key or button.
     bool pressed(const app::InputState& input, const DemoSettings& settings, Action action);
 
 private:
-    vec2 look_{0.0f}; // 1e-4 rad not yet handed on: left, up
+    vec2 look_{0.0f}; // 1e-4 rad not yet consumed: left, up
     simulation::StepInput held_;
-    std::uint32_t taps_ = 0; // buttons that went down and up again between steps
+    std::uint32_t taps_ = 0; // buttons pressed and released between steps
     std::uint32_t pad_before_ = 0, pad_now_ = 0;
 };
 

@@ -8,24 +8,24 @@
 namespace sunfleck::demo {
 namespace {
 
-struct ActionWords {
+struct ActionInfo {
     const char* name;
     const char* label;
     app::Key key;
 };
-constexpr ActionWords actions[action_count] = {{"forward", "Walk forward", 'W'},
-                                               {"back", "Walk back", 'S'},
-                                               {"left", "Step left", 'A'},
-                                               {"right", "Step right", 'D'},
-                                               {"run", "Run", app::key_left_shift},
-                                               {"crouch", "Crouch", 'C'},
-                                               {"use", "Use, take", 'E'},
-                                               {"put_down", "Put the lantern down", 'Q'},
-                                               {"indirect_light", "Bounced light on and off", 'L'},
-                                               {"frame_times", "Frame times", 'T'},
-                                               {"screenshot", "Save a picture", 'P'},
-                                               {"help", "Help", 'H'},
-                                               {"full_screen", "Full screen", 'F'}};
+constexpr ActionInfo actions[action_count] = {{"forward", "Walk forward", 'W'},
+                                              {"back", "Walk back", 'S'},
+                                              {"left", "Strafe left", 'A'},
+                                              {"right", "Strafe right", 'D'},
+                                              {"run", "Run", app::key_left_shift},
+                                              {"crouch", "Crouch", 'C'},
+                                              {"use", "Use or take", 'E'},
+                                              {"put_down", "Put down the lantern", 'Q'},
+                                              {"indirect_light", "Toggle indirect light", 'L'},
+                                              {"frame_times", "Show frame times", 'T'},
+                                              {"screenshot", "Take a screenshot", 'P'},
+                                              {"help", "Help", 'H'},
+                                              {"full_screen", "Full screen", 'F'}};
 
 } // namespace
 
@@ -45,26 +45,27 @@ const TypeDescription& DemoSettings::description() {
     static const TypeDescription type{
         "DemoSettings",
         1,
-        "What the player chooses.",
-        {SUNFLECK_CHOICE(DemoSettings, preset, "How much work a frame is; software is for machines without a GPU",
-                         "software", "low", "medium", "high", "ultra", "custom"),
+        "Settings of the demo.",
+        {SUNFLECK_CHOICE(DemoSettings, preset, "Quality preset; software is for machines without a GPU", "software",
+                         "low", "medium", "high", "ultra", "custom"),
          SUNFLECK_FIELD(DemoSettings, render_scale, "", 0.25, 1,
-                        "Rendered size as a share of the window's; smaller is faster and softer"),
-         SUNFLECK_FIELD(DemoSettings, light_samples, "", 50, 4096, "More make smoother light, and cost time"),
+                        "Rendered size relative to the window; lower is faster but blurrier"),
+         SUNFLECK_FIELD(DemoSettings, light_samples, "", 50, 4096,
+                        "Number of virtual point lights; more give smoother lighting but are slower"),
          SUNFLECK_FIELD(DemoSettings, map_budget, "maps", 5, 1000,
-                        "Shadow maps redrawn a frame; fewer is faster, and shadows of moving things lag"),
+                        "Shadow maps redrawn per frame; fewer are faster, but shadows of moving objects lag"),
          SUNFLECK_FIELD(DemoSettings, transfer, "", 0, 1,
-                        "Round things that move are lit by precomputed transfer, also by what they reflect onto "
-                        "themselves; their shadows on themselves are softer, and it costs time"),
-         SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Brighter to the right, darker to the left"),
-         SUNFLECK_FIELD(DemoSettings, field_of_view, "degrees", 40, 110, "Angle of view from bottom to top"),
-         SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "How far the view turns for a motion of the hand"),
-         SUNFLECK_FIELD(DemoSettings, invert_look, "", 0, 1, "Moving the hand forward looks down"),
-         SUNFLECK_FIELD(DemoSettings, frame_cap, "1/s", 10, 1000, "Most pictures a second"),
-         SUNFLECK_FIELD(DemoSettings, vertical_sync, "", 0, 1, "Waits for the screen, so that no picture is torn"),
-         SUNFLECK_FIELD(DemoSettings, full_screen, "", 0, 1, "Fills the monitor"),
-         SUNFLECK_FIELD(DemoSettings, show_times, "", 0, 1, "Shows what each part of a frame takes"),
-         SUNFLECK_FIELD(DemoSettings, letter_scale, "", 0.5, 3, "Size of letters and menus")}};
+                        "Lights complex moving objects by precomputed radiance transfer, with interreflection and "
+                        "soft self-shadowing; slower"),
+         SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Exposure compensation; higher is brighter"),
+         SUNFLECK_FIELD(DemoSettings, field_of_view, "degrees", 40, 110, "Vertical field of view"),
+         SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "Speed at which mouse and stick turn the view"),
+         SUNFLECK_FIELD(DemoSettings, invert_look, "", 0, 1, "Moving the mouse or stick forward looks down"),
+         SUNFLECK_FIELD(DemoSettings, frame_cap, "Hz", 10, 1000, "Maximum frame rate"),
+         SUNFLECK_FIELD(DemoSettings, vertical_sync, "", 0, 1, "Synchronises frames with the display to avoid tearing"),
+         SUNFLECK_FIELD(DemoSettings, full_screen, "", 0, 1, "Uses the whole screen"),
+         SUNFLECK_FIELD(DemoSettings, show_times, "", 0, 1, "Shows the time of each GPU pass and CPU stage"),
+         SUNFLECK_FIELD(DemoSettings, ui_scale, "", 0.5, 3, "Size of text and menus")}};
     return type;
 }
 
@@ -74,6 +75,34 @@ std::filesystem::path settings_path() {
     const char* home = std::getenv("HOME");
     return std::filesystem::path(home != nullptr ? home : "/tmp") / ".config/sunfleck/demo.json";
 }
+
+namespace {
+
+// Finds a field under its present name, or under the name that earlier versions saved it by.
+nlohmann::json::const_iterator find_field(const nlohmann::json& file, std::string_view name) {
+    const auto found = file.find(std::string(name));
+    if (found == file.end() && name == "ui_scale")
+        return file.find("letter_scale");
+    return found;
+}
+
+// Takes all valid bindings; the error names the last unknown key.
+Status read_bindings(const nlohmann::json& bindings, DemoSettings& settings) {
+    Status status;
+    for (std::size_t i = 0; i < action_count; ++i) {
+        const auto value = bindings.find(actions[i].name);
+        if (value == bindings.end() || !value->is_string())
+            continue;
+        const app::Key key = app::key_by_name(value->get<std::string>());
+        if (key == app::no_key)
+            status = Error{"unknown key '" + value->get<std::string>() + "'"};
+        else
+            settings.bindings[i] = key;
+    }
+    return status;
+}
+
+} // namespace
 
 LoadedSettings load_settings(const std::filesystem::path& path) {
     LoadedSettings result;
@@ -85,31 +114,21 @@ LoadedSettings load_settings(const std::filesystem::path& path) {
     const nlohmann::json file =
         text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json(nlohmann::json::value_t::discarded);
     if (file.is_discarded() || !file.is_object()) {
-        result.problem = "'" + path.string() + "' is damaged; the usual settings are used";
+        result.problem = "'" + path.string() + "' is damaged; default settings are used";
         std::filesystem::rename(path, path.string() + ".damaged", code);
         return result;
     }
     for (const Field& field : DemoSettings::description().fields) {
-        const auto value = file.find(std::string(field.name));
+        const auto value = find_field(file, field.name);
         if (value == file.end())
             continue;
-        const std::string words = value->is_string() ? value->get<std::string>() : value->dump();
-        if (const Status status = field_from_text(field, &result.settings, words); !status)
+        const std::string entry = value->is_string() ? value->get<std::string>() : value->dump();
+        if (const Status status = field_from_text(field, &result.settings, entry); !status)
             result.problem = "'" + path.string() + "': " + status.error().message;
     }
-    const auto bindings = file.find("bindings");
-    if (bindings == file.end() || !bindings->is_object())
-        return result;
-    for (std::size_t i = 0; i < action_count; ++i) {
-        const auto value = bindings->find(actions[i].name);
-        if (value == bindings->end() || !value->is_string())
-            continue;
-        const app::Key key = app::key_by_name(value->get<std::string>());
-        if (key == app::no_key)
-            result.problem = "'" + path.string() + "': there is no key called '" + value->get<std::string>() + "'";
-        else
-            result.settings.bindings[i] = key;
-    }
+    if (const auto bindings = file.find("bindings"); bindings != file.end() && bindings->is_object())
+        if (const Status status = read_bindings(*bindings, result.settings); !status)
+            result.problem = "'" + path.string() + "': " + status.error().message;
     return result;
 }
 

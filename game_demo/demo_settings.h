@@ -1,4 +1,4 @@
-// What the player chooses, kept in a file between visits.
+// The player's settings, saved between sessions.
 #pragma once
 
 #include "engine/app/window.h"
@@ -8,7 +8,7 @@
 
 namespace sunfleck::demo {
 
-// How much work a frame is. `software` is for machines without a GPU.
+// Quality presets. `software` is for machines without a GPU.
 enum class Preset : std::uint32_t { software, low, medium, high, ultra, custom };
 
 enum class Action : std::uint32_t {
@@ -28,7 +28,7 @@ enum class Action : std::uint32_t {
     count
 };
 inline constexpr std::size_t action_count = std::size_t(Action::count);
-// In the settings file, and as the player reads it.
+// The key in the settings file, and the label in the menu.
 const char* action_name(Action action);
 const char* action_label(Action action);
 
@@ -46,7 +46,7 @@ struct DemoSettings {
     bool vertical_sync = true;
     bool full_screen = false;
     bool show_times = false;
-    float letter_scale = 1.0f;
+    float ui_scale = 1.0f;
     std::array<app::Key, action_count> bindings{};
 
     DemoSettings();
@@ -59,9 +59,9 @@ std::filesystem::path settings_path();
 struct LoadedSettings {
     DemoSettings settings;
     bool found = false;
-    std::string problem; // what was wrong with the file; the damaged one is kept beside it, with ".damaged" added
+    std::string problem; // what was wrong with the file; a damaged file is renamed with ".damaged" appended
 };
-// Whatever the file says that is valid is taken, the rest stays as it is by default.
+// Valid entries of the file are used; the rest keep their defaults.
 LoadedSettings load_settings(const std::filesystem::path& path);
 Status save_settings(const std::filesystem::path& path, const DemoSettings& settings);
 

@@ -1,4 +1,4 @@
-// Playback without a window: recorded (or the usual) input, one picture after the other, statistics as JSON.
+// Playback without a window: recorded input or the built-in walk, rendered frame by frame, with statistics as JSON.
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 #include "engine/statistics/summary.h"
@@ -63,66 +63,102 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
               {"player_rescued", level.simulation().player().rescued()}}}};
 }
 
+Status write_numbered(const std::string& folder, std::uint32_t frame, const io::Picture& picture) {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05u.png", frame);
+    return io::write_picture(std::filesystem::path(folder) / name, picture);
+}
+
+// Plays a level from a recording, or else from the built-in walk.
+class Playback {
+public:
+    Playback(const Options& options, const DemoSettings& settings, std::vector<simulation::StepInput> recorded)
+        : options_(options), settings_(settings), recorded_(std::move(recorded)),
+          stride_(std::max(1u, options.steps_per_frame)) {
+        constexpr std::uint32_t unlimited = 100000, walk_frames = 1600; // about the length of the built-in walk
+        frames_ = options.frames > 0   ? options.frames
+                  : !recorded_.empty() ? std::uint32_t((recorded_.size() + stride_ - 1) / stride_)
+                                       : unlimited;
+        const std::uint32_t expected = options.frames > 0 || !recorded_.empty() ? frames_ : walk_frames;
+        interval_ = std::max(1u, expected / std::max(1u, options.pictures));
+    }
+
+    Status run(Level& level) {
+        for (std::uint32_t frame = 0; frame < frames_; ++frame) {
+            for (std::uint32_t k = 0; k < stride_; ++k)
+                step(level);
+            viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
+            request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
+            SUNFLECK_TRY(level.renderer().render_and_wait(request));
+            times_.add(level.renderer().statistics());
+            const bool last = frame + 1 == frames_ || (options_.frames == 0 && recorded_.empty() && walk_.finished());
+            if (options_.pictures > 0 && (frame % interval_ == 0 || last)) {
+                SUNFLECK_ASSIGN(const io::Picture picture, level.renderer().read_back());
+                SUNFLECK_TRY(write_numbered(options_.output, frame, picture));
+            }
+            if (frame % 200 == 199)
+                log_information("frame " + std::to_string(frame + 1) +
+                                (options_.frames > 0 ? " of " + std::to_string(frames_) : ""));
+            if (last)
+                break;
+        }
+        return {};
+    }
+
+    const Times& times() const { return times_; }
+    // The input of all steps so far.
+    const std::vector<simulation::StepInput>& played() const { return played_; }
+
+private:
+    void step(Level& level) {
+        simulation::StepInput input;
+        if (recorded_.empty())
+            input = walk_.next(level.simulation());
+        else if (played_.size() < recorded_.size())
+            input = recorded_[played_.size()];
+        level.step(input);
+        played_.push_back(input);
+    }
+
+    const Options& options_;
+    const DemoSettings& settings_;
+    std::vector<simulation::StepInput> recorded_, played_;
+    WalkThrough walk_;
+    Times times_;
+    std::uint32_t stride_, frames_ = 0, interval_ = 1;
+};
+
+Result<std::vector<simulation::StepInput>> recorded_input(const Options& options) {
+    std::vector<simulation::StepInput> recorded;
+    if (options.input.empty())
+        return recorded;
+    SUNFLECK_ASSIGN(recorded, simulation::read_recording(options.input));
+    if (recorded.empty())
+        return Error{"'" + options.input + "' has no steps"};
+    return recorded;
+}
+
 } // namespace
 
 Status run_headless(const Options& options) {
     if (options.output.empty())
-        return Error{"--headless needs a folder for its pictures: -o DIR"};
-    std::vector<simulation::StepInput> recorded;
-    if (!options.input.empty()) {
-        SUNFLECK_ASSIGN(recorded, simulation::read_recording(options.input));
-        if (recorded.empty())
-            return Error{"'" + options.input + "' has no steps"};
-    }
+        return Error{"--headless needs a folder for its images: -o DIR"};
+    SUNFLECK_ASSIGN(auto recorded, recorded_input(options));
     std::error_code code;
     std::filesystem::create_directories(options.output, code);
     if (code)
-        return Error{"cannot make folder '" + options.output + "': " + code.message()};
+        return Error{"cannot create folder '" + options.output + "': " + code.message()};
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, options.validation, {}}));
     DemoSettings settings;
-    settings.preset = options.preset.value_or(usual_preset(device->traits().software));
+    settings.preset = options.preset.value_or(default_preset(device->traits().software));
     apply_preset(settings);
     settings.transfer = options.transfer.value_or(settings.transfer);
     SUNFLECK_ASSIGN(const auto level, Level::load(*device, options.scene, settings, 2));
-    WalkThrough walk;
-    std::vector<simulation::StepInput> done;
-    Times times;
-    const std::uint32_t stride = std::max(1u, options.steps_per_frame);
-    const std::uint32_t frames = options.frames > 0  ? options.frames
-                                 : !recorded.empty() ? std::uint32_t((recorded.size() + stride - 1) / stride)
-                                                     : 100000;
-    const std::uint32_t expected = options.frames > 0 || !recorded.empty() ? frames : 1600; // the usual walk
-    const std::uint32_t interval = std::max(1u, expected / std::max(1u, options.pictures));
-    for (std::uint32_t frame = 0; frame < frames; ++frame) {
-        for (std::uint32_t k = 0; k < stride; ++k) {
-            simulation::StepInput input;
-            if (recorded.empty())
-                input = walk.next(level->simulation());
-            else if (done.size() < recorded.size())
-                input = recorded[done.size()];
-            level->step(input);
-            done.push_back(input);
-        }
-        viewer::FrameRequest request = level->request(settings, options.width, options.height);
-        request.indirect_scale = options.indirect ? 1.0f : 0.0f;
-        SUNFLECK_TRY(level->renderer().render_and_wait(request));
-        times.add(level->renderer().statistics());
-        const bool last = frame + 1 == frames || (options.frames == 0 && recorded.empty() && walk.finished());
-        if (options.pictures > 0 && (frame % interval == 0 || last)) {
-            char name[32];
-            std::snprintf(name, sizeof name, "frame_%05u.png", frame);
-            SUNFLECK_ASSIGN(const io::Picture picture, level->renderer().read_back());
-            SUNFLECK_TRY(io::write_picture(std::filesystem::path(options.output) / name, picture));
-        }
-        if (frame % 200 == 199)
-            log_information("frame " + std::to_string(frame + 1) +
-                            (options.frames > 0 ? " of " + std::to_string(frames) : ""));
-        if (last)
-            break;
-    }
+    Playback playback(options, settings, std::move(recorded));
+    SUNFLECK_TRY(playback.run(*level));
     if (!options.record.empty())
-        SUNFLECK_TRY(simulation::write_recording(options.record, done));
-    const auto statistics = statistics_of(*level, options, settings, times, device->traits().name);
+        SUNFLECK_TRY(simulation::write_recording(options.record, playback.played()));
+    const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);
     SUNFLECK_TRY(write_file(std::filesystem::path(options.output) / "stats.json", statistics.dump(2) + "\n"));
     if (device->validation_messages() > 0)
         return Error{"validation printed messages (see above)"};

@@ -9,7 +9,7 @@
 namespace sunfleck::demo {
 namespace {
 
-constexpr double seconds_a_camera = 9.0;
+constexpr double seconds_per_camera = 9.0;
 
 } // namespace
 
@@ -50,7 +50,7 @@ Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::ui
     request.progress = [&](float share) { return progress(samples_until * share); };
     SUNFLECK_TRY(renderer_->render_and_wait(request));
     request.progress = {};
-    // As many maps at a time as take about as long as a picture.
+    // Adapts the number of maps so that a portion takes about 0.1 s.
     request.map_budget = 4;
     for (bool more = true; more;) {
         SUNFLECK_TRY(renderer_->render_and_wait(request));
@@ -59,7 +59,7 @@ Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::ui
         const float stale =
             float(counters["shadow_maps_stale"]) / float(std::max<std::uint64_t>(counters["light_samples"], 1));
         if (!progress(samples_until + (1.0f - samples_until) * (1.0f - stale)))
-            return Error{"loading was stopped"};
+            return Error{"loading was cancelled"};
         const double milliseconds = renderer_->statistics().frame_ms;
         request.map_budget = milliseconds < 80.0    ? request.map_budget * 2
                              : milliseconds > 160.0 ? std::max(request.map_budget / 2, 1u)
@@ -80,10 +80,10 @@ scene::CameraView Level::view(const DemoSettings& settings) const {
     return view;
 }
 
-scene::CameraView Level::show_round(double seconds) const {
+scene::CameraView Level::title_camera(double seconds) const {
     if (cameras_.empty())
         return view(DemoSettings());
-    const double place = std::max(seconds, 0.0) / seconds_a_camera;
+    const double place = std::max(seconds, 0.0) / seconds_per_camera;
     scene::CameraView view = cameras_[std::size_t(place) % cameras_.size()];
     const float turn = float(place - std::floor(place)) - 0.5f;
     view.target = view.position + glm::angleAxis(0.35f * turn, vec3(0.0f, 1.0f, 0.0f)) * (view.target - view.position);

@@ -1,4 +1,4 @@
-// The level with all that shows it: renderer and simulation of one loaded scene.
+// A loaded level: the renderer and the simulation of one scene.
 #pragma once
 
 #include "engine/simulation/simulation.h"
@@ -7,7 +7,7 @@
 
 namespace sunfleck::demo {
 
-// Where a built-in scene of that name was installed or built.
+// The file of a built-in scene, installed or in the build folder.
 std::filesystem::path built_in_scene(const std::string& name);
 
 class Level {
@@ -17,22 +17,22 @@ public:
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const std::string& scene,
                                                const DemoSettings& settings, std::uint32_t frames_in_flight,
                                                const std::function<bool(float)>& progress = {});
-    // Does what the first picture of a window of this size waits for: samples, visibility, all shadow maps. In
-    // portions, so that other threads' pictures get through. `progress` is told the share that is done; false stops it
-    // with an error.
+    // Does the work that would delay the first frame at this size: samples, visibility, all shadow maps. Works in
+    // small portions, so that other threads can present frames meanwhile. `progress` receives the fraction done and
+    // returns false to cancel with an error.
     Status prepare(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
                    const std::function<bool(float)>& progress);
 
     viewer::SceneRenderer& renderer() { return *renderer_; }
     simulation::Simulation& simulation() { return *simulation_; }
     void step(const simulation::StepInput& input);
-    // What the person sees.
+    // The person's view.
     scene::CameraView view(const DemoSettings& settings) const;
-    // From one of the scene's cameras to the next, slowly turning: behind the title.
-    scene::CameraView show_round(double seconds) const;
-    // Takes over what the player chose.
+    // The view behind the title: the scene's cameras in turn, slowly panning.
+    scene::CameraView title_camera(double seconds) const;
+    // Applies the player's settings.
     Status apply(const DemoSettings& settings);
-    // The frame to render for a window (or picture) of this size.
+    // The frame request for a window or image of this size.
     viewer::FrameRequest request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height);
 
 private:

@@ -5,7 +5,7 @@
 namespace sunfleck::demo {
 namespace {
 
-// Share of the whole at which reading ends; the rest is preparing.
+// Fraction of the progress bar for reading; the rest is preparation.
 constexpr float read_until = 0.3f;
 
 } // namespace

@@ -1,5 +1,4 @@
-// Loads a level on a thread of its own, up to the point where its first picture is quick, so that the window answers
-// meanwhile.
+// Loads and prepares a level on its own thread, so that the window stays responsive.
 #pragma once
 
 #include "game_demo/level.h"
@@ -11,18 +10,18 @@ namespace sunfleck::demo {
 
 class LevelLoader {
 public:
-    // Starts. `width` and `height` of the window.
+    // Starts loading. `width` and `height` are the window's.
     LevelLoader(gpu::Device& device, std::string scene, const DemoSettings& settings, std::uint32_t width,
                 std::uint32_t height);
-    // Stops the work, within a fraction of a second in the long parts of it, and waits for that.
+    // Cancels loading and waits for the thread, which in the long parts takes a fraction of a second.
     ~LevelLoader();
     LevelLoader(const LevelLoader&) = delete;
     LevelLoader& operator=(const LevelLoader&) = delete;
 
     bool finished() const { return finished_; }
-    // What is done, 0 to 1. It never falls.
+    // Fraction done, 0 to 1. Never decreases.
     float share() const { return share_; }
-    // The level, or why there is none. Once, after finished().
+    // The level or the error. Call once, after finished().
     Result<std::unique_ptr<Level>> take();
 
 private:

@@ -49,6 +49,30 @@ const char* verb(simulation::Interaction interaction) {
     return "";
 }
 
+bool choice_box(const Field& field, const char* label, std::uint32_t& value) {
+    if (!ImGui::BeginCombo(label, std::string(field.choices[value]).c_str()))
+        return false;
+    bool changed = false;
+    for (std::uint32_t i = 0; i < field.choices.size(); ++i)
+        if (ImGui::Selectable(std::string(field.choices[i]).c_str(), i == value)) {
+            value = i;
+            changed = true;
+        }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool slider(const Field& field, const char* label, char* place) {
+    const std::string unit_text(field.unit);
+    if (field.kind == FieldKind::unsigned_integer) {
+        const auto low = std::uint32_t(field.minimum), high = std::uint32_t(field.maximum);
+        return ImGui::SliderScalar(label, ImGuiDataType_U32, place, &low, &high, ("%u " + unit_text).c_str(),
+                                   ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+    }
+    return ImGui::SliderFloat(label, reinterpret_cast<float*>(place), float(field.minimum), float(field.maximum),
+                              ("%.2f " + unit_text).c_str(), ImGuiSliderFlags_AlwaysClamp);
+}
+
 std::string key_of(const DemoSettings& settings, Action action) {
     return app::key_name(settings.bindings[std::size_t(action)]);
 }
@@ -81,9 +105,9 @@ void Menu::back() {
     }
 }
 
-Decision Menu::draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed) {
+Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::InputState& input, bool& changed) {
     changed = false;
-    // Until a key or stick has chosen something, enter means the first entry.
+    // Until keyboard or gamepad navigation has selected something, Enter activates the first entry.
     const bool enter = input.hit(app::key_enter) && !ImGui::GetIO().NavVisible;
     Decision decision = Decision::none;
     switch (screen_) {
@@ -100,11 +124,11 @@ Decision Menu::draw(DemoSettings& settings, const Shown& shown, const app::Input
         help_screen(settings);
         break;
     case Screen::playing:
-        prompts(settings, shown);
+        prompts(settings, data);
         break;
     }
     if (settings.show_times)
-        times(shown);
+        times(data);
     message();
     return decision;
 }
@@ -119,7 +143,7 @@ void Menu::settings_and_help_buttons() {
         came_from_ = from;
 }
 
-// A window would take a frame to find its size; there is only one frame.
+// Drawn without a window: ImGui needs a frame to find a window's size, and this may be the only frame.
 void Menu::loading_screen(float share) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList* list = ImGui::GetForegroundDrawList();
@@ -128,13 +152,13 @@ void Menu::loading_screen(float share) {
         list->AddText(ImGui::GetFont(), scale * unit(), ImVec2(0.5f * (size.x - wide), height * size.y), colour, text);
     };
     line("Lantern House", 0.42f, 1.9f, IM_COL32(255, 214, 150, 255));
-    line("sending light through the rooms ...", 0.52f, 1.0f, IM_COL32(220, 210, 195, 255));
+    line("Computing light paths ...", 0.52f, 1.0f, IM_COL32(220, 210, 195, 255));
     const ImVec2 low(0.36f * size.x, 0.6f * size.y), high(0.64f * size.x, low.y + 0.25f * unit());
     list->AddRectFilled(low, high, IM_COL32(56, 46, 36, 255), 0.1f * unit());
     if (share > 0.0f)
         list->AddRectFilled(low, ImVec2(low.x + share * (high.x - low.x), high.y), IM_COL32(234, 158, 61, 255),
                             0.1f * unit());
-    line("Escape ends the game", 0.66f, 0.8f, IM_COL32(150, 142, 130, 255));
+    line("Press Escape to quit", 0.66f, 0.8f, IM_COL32(150, 142, 130, 255));
 }
 
 Decision Menu::title_screen(bool enter) {
@@ -142,9 +166,9 @@ Decision Menu::title_screen(bool enter) {
     place_next(0.08f, 0.5f, 0.0f, 0.5f);
     ImGui::Begin("title", nullptr, plain);
     heading("Lantern House", 1.9f);
-    ImGui::TextUnformatted("a walk in bounced light, by Sunfleck");
+    ImGui::TextUnformatted("A Sunfleck demo of indirect light");
     ImGui::Dummy(ImVec2(0.0f, 0.6f * unit()));
-    if (wide_button("Walk in") || enter)
+    if (wide_button("Start") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
     settings_and_help_buttons();
@@ -159,11 +183,11 @@ Decision Menu::pause_screen(bool enter) {
     place_next(0.5f, 0.5f, 0.5f, 0.5f);
     ImGui::Begin("paused", nullptr, plain);
     heading("Paused", 1.4f);
-    if (wide_button("Go on") || enter)
+    if (wide_button("Resume") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
     settings_and_help_buttons();
-    if (wide_button("Start again"))
+    if (wide_button("Restart"))
         decision = Decision::restart;
     if (wide_button("Quit"))
         decision = Decision::quit;
@@ -171,39 +195,46 @@ Decision Menu::pause_screen(bool enter) {
     return decision;
 }
 
-// One setting, as its description says.
+// The widget of one described field of `settings`; true if the value changed.
 bool Menu::field(DemoSettings& settings, const char* name, const char* label) {
     const Field* described = DemoSettings::description().find(name);
     if (described == nullptr)
         return false;
     char* place = reinterpret_cast<char*>(&settings) + described->offset;
-    const std::string unit_text(described->unit);
-    bool changed = false;
     ImGui::SetNextItemWidth(12.0f * unit());
-    if (described->kind == FieldKind::boolean) {
+    bool changed = false;
+    if (described->kind == FieldKind::boolean)
         changed = ImGui::Checkbox(label, reinterpret_cast<bool*>(place));
-    } else if (described->kind == FieldKind::choice) {
-        auto& value = *reinterpret_cast<std::uint32_t*>(place);
-        if (ImGui::BeginCombo(label, std::string(described->choices[value]).c_str())) {
-            for (std::uint32_t i = 0; i < described->choices.size(); ++i)
-                if (ImGui::Selectable(std::string(described->choices[i]).c_str(), i == value)) {
-                    value = i;
-                    changed = true;
-                }
-            ImGui::EndCombo();
-        }
-    } else if (described->kind == FieldKind::unsigned_integer) {
-        const auto low = std::uint32_t(described->minimum), high = std::uint32_t(described->maximum);
-        changed = ImGui::SliderScalar(label, ImGuiDataType_U32, place, &low, &high, ("%u " + unit_text).c_str(),
-                                      ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
-    } else {
-        changed =
-            ImGui::SliderFloat(label, reinterpret_cast<float*>(place), float(described->minimum),
-                               float(described->maximum), ("%.2f " + unit_text).c_str(), ImGuiSliderFlags_AlwaysClamp);
-    }
+    else if (described->kind == FieldKind::choice)
+        changed = choice_box(*described, label, *reinterpret_cast<std::uint32_t*>(place));
+    else
+        changed = slider(*described, label, place);
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", std::string(described->tooltip).c_str());
     return changed;
+}
+
+void Menu::image_tab(DemoSettings& settings, bool& changed) {
+    if (field(settings, "preset", "Quality")) {
+        apply_preset(settings);
+        changed = true;
+    }
+    const bool custom =
+        field(settings, "render_scale", "Render scale") | field(settings, "light_samples", "Light samples") |
+        field(settings, "map_budget", "Shadow maps") | field(settings, "transfer", "Precomputed radiance transfer");
+    if (custom)
+        settings.preset = Preset::custom;
+    changed |= custom;
+    changed |= field(settings, "exposure", "Exposure");
+    changed |= field(settings, "field_of_view", "Field of view");
+}
+
+void Menu::display_tab(DemoSettings& settings, bool& changed) {
+    for (const auto& [name, label] :
+         {std::pair("full_screen", "Full screen"), std::pair("vertical_sync", "Vertical sync"),
+          std::pair("frame_cap", "Frame limit"), std::pair("show_times", "Frame times"),
+          std::pair("ui_scale", "Text size")})
+        changed |= field(settings, name, label);
 }
 
 void Menu::settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed) {
@@ -211,27 +242,12 @@ void Menu::settings_screen(DemoSettings& settings, const app::InputState& input,
     ImGui::Begin("settings", nullptr, plain);
     heading("Settings", 1.4f);
     if (ImGui::BeginTabBar("tabs")) {
-        if (ImGui::BeginTabItem("Picture")) {
-            if (field(settings, "preset", "Quality")) {
-                apply_preset(settings);
-                changed = true;
-            }
-            const bool own =
-                field(settings, "render_scale", "Rendered size") | field(settings, "light_samples", "Light samples") |
-                field(settings, "map_budget", "Shadow maps") | field(settings, "transfer", "Precomputed light");
-            if (own)
-                settings.preset = Preset::custom;
-            changed |= own;
-            changed |= field(settings, "exposure", "Exposure");
-            changed |= field(settings, "field_of_view", "Angle of view");
+        if (ImGui::BeginTabItem("Image")) {
+            image_tab(settings, changed);
             ImGui::EndTabItem();
         }
-        if (ImGui::BeginTabItem("Screen")) {
-            for (const auto& [name, label] :
-                 {std::pair("full_screen", "Full screen"), std::pair("vertical_sync", "Wait for the screen"),
-                  std::pair("frame_cap", "Most pictures"), std::pair("show_times", "Frame times"),
-                  std::pair("letter_scale", "Letters")})
-                changed |= field(settings, name, label);
+        if (ImGui::BeginTabItem("Display")) {
+            display_tab(settings, changed);
             ImGui::EndTabItem();
         }
         if (ImGui::BeginTabItem("Controls")) {
@@ -243,7 +259,7 @@ void Menu::settings_screen(DemoSettings& settings, const app::InputState& input,
     if (wide_button("Back"))
         back();
     ImGui::SameLine();
-    if (ImGui::Button("As they were at first")) {
+    if (ImGui::Button("Reset to defaults")) {
         const Preset preset = settings.preset;
         settings = DemoSettings();
         settings.preset = preset == Preset::custom ? Preset::software : preset;
@@ -254,12 +270,12 @@ void Menu::settings_screen(DemoSettings& settings, const app::InputState& input,
 }
 
 void Menu::bindings_tab(DemoSettings& settings, const app::InputState& input, bool& changed) {
-    changed |= field(settings, "sensitivity", "Sensitivity");
-    changed |= field(settings, "invert_look", "Turn up and down round");
+    changed |= field(settings, "sensitivity", "Look sensitivity");
+    changed |= field(settings, "invert_look", "Invert vertical look");
     if (rebinding_ >= 0 && !input.went_down.empty() && input.went_down.front() != app::first_mouse_button) {
         const app::Key key = input.went_down.front();
         if (key != app::key_escape) {
-            // A key does one thing: what had it takes over the old one.
+            // Each key has one action: the action that had this key gets the old one.
             for (app::Key& other : settings.bindings)
                 if (other == key)
                     other = settings.bindings[std::size_t(rebinding_)];
@@ -294,29 +310,29 @@ void Menu::help_screen(const DemoSettings& settings) {
     }
     ImGui::TextColored(ImVec4(0.95f, 0.70f, 0.35f, 1.0f), "escape");
     ImGui::SameLine(7.0f * unit());
-    ImGui::TextUnformatted("Pause, and back");
+    ImGui::TextUnformatted("Pause; back");
     ImGui::Dummy(ImVec2(0.0f, 0.4f * unit()));
-    ImGui::TextUnformatted("Gamepad: left stick walks, right stick looks, A uses, B crouches,\n"
-                           "X puts down, Y bounced light, left bumper runs, start pauses.\n\n"
+    ImGui::TextUnformatted("Gamepad: left stick: walk; right stick: look; A: use; B: crouch;\n"
+                           "X: put down; Y: indirect light; left bumper: run; Start: pause.\n\n"
                            "Walk into balls and crates to push them. The lift in the green room\n"
-                           "leads to the attic. Plates beside the doors switch lamps.");
+                           "leads to the attic. Switches beside the doors turn lamps on and off.");
     if (wide_button("Back"))
         back();
     ImGui::SetItemDefaultFocus();
     ImGui::End();
 }
 
-void Menu::prompts(const DemoSettings& settings, const Shown& shown) {
+void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImDrawList* list = ImGui::GetForegroundDrawList();
-    const bool target = shown.interaction != simulation::Interaction::none;
+    const bool target = data.interaction != simulation::Interaction::none;
     list->AddCircleFilled(ImVec2(0.5f * size.x, 0.5f * size.y), target ? 0.22f * unit() : 0.12f * unit(),
                           target ? IM_COL32(255, 196, 110, 220) : IM_COL32(255, 255, 255, 130));
     std::string text;
     if (target)
-        text = key_of(settings, Action::use) + "  " + verb(shown.interaction);
-    else if (shown.carries_lantern)
-        text = key_of(settings, Action::put_down) + "  put the lantern down";
+        text = key_of(settings, Action::use) + "  " + verb(data.interaction);
+    else if (data.carries_lantern)
+        text = key_of(settings, Action::put_down) + "  put down the lantern";
     if (text.empty())
         return;
     place_next(0.5f, 0.94f, 0.5f, 1.0f);
@@ -326,17 +342,16 @@ void Menu::prompts(const DemoSettings& settings, const Shown& shown) {
     ImGui::End();
 }
 
-void Menu::times(const Shown& shown) {
+void Menu::times(const OverlayData& data) {
     place_next(0.99f, 0.02f, 1.0f, 0.0f);
     ImGui::SetNextWindowBgAlpha(0.6f);
     ImGui::Begin("times", nullptr, behind);
-    ImGui::Text("%.0f ms, %.1f pictures a second", shown.frame_ms,
-                shown.frame_ms > 0.0 ? 1000.0 / shown.frame_ms : 0.0);
-    ImGui::Text("%u x %u, %llu light samples", shown.rendered_width, shown.rendered_height,
-                static_cast<unsigned long long>(shown.light_samples));
-    ImGui::TextDisabled("%s", shown.device.c_str());
+    ImGui::Text("%.0f ms, %.1f frames per second", data.frame_ms, data.frame_ms > 0.0 ? 1000.0 / data.frame_ms : 0.0);
+    ImGui::Text("%u x %u, %llu light samples", data.rendered_width, data.rendered_height,
+                static_cast<unsigned long long>(data.light_samples));
+    ImGui::TextDisabled("%s", data.device.c_str());
     double longest = 1e-6;
-    for (const auto* group : {&shown.gpu_ms, &shown.cpu_ms})
+    for (const auto* group : {&data.gpu_ms, &data.cpu_ms})
         for (const auto& [name, time] : *group)
             longest = std::max(longest, time);
     const auto rows = [&](const char* title, const std::map<std::string, double>& group) {
@@ -351,8 +366,8 @@ void Menu::times(const Shown& shown) {
             ImGui::TextUnformatted(name.c_str());
         }
     };
-    rows("GPU passes", shown.gpu_ms);
-    rows("CPU stages", shown.cpu_ms);
+    rows("GPU passes", data.gpu_ms);
+    rows("CPU stages", data.cpu_ms);
     ImGui::End();
 }
 

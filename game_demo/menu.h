@@ -1,5 +1,5 @@
-// What is written over the picture: title, pause, settings, help, prompts, frame times. Dear ImGui's functions are
-// called between Gui::begin_frame and end_frame; what the player decides comes back as a Decision.
+// The user interface: title, pause, settings, help, prompts, frame times. Calls Dear ImGui between Gui::begin_frame and
+// end_frame; the player's choice is returned as a Decision.
 #pragma once
 
 #include "engine/simulation/simulation.h"
@@ -12,8 +12,8 @@ namespace sunfleck::demo {
 enum class Screen { title, playing, paused, settings, help };
 enum class Decision { none, play, restart, quit };
 
-// What the overlays show.
-struct Shown {
+// Data for the overlays.
+struct OverlayData {
     simulation::Interaction interaction = simulation::Interaction::none;
     bool carries_lantern = false, indirect_light = true;
     double frame_ms = 0.0;
@@ -27,14 +27,13 @@ class Menu {
 public:
     Screen screen() const { return screen_; }
     void show(Screen screen) { screen_ = screen; }
-    // Escape, or the gamepad's start button.
+    // Escape or the gamepad's start button.
     void back();
-    // Draws; changes `settings` at once. `changed`: something was changed.
-    Decision draw(DemoSettings& settings, const Shown& shown, const app::InputState& input, bool& changed);
-    // In place of draw, while a level loads.
-    // `share`: what is done, 0 to 1.
+    // Draws and applies changes to `settings` immediately. `changed`: at least one setting changed.
+    Decision draw(DemoSettings& settings, const OverlayData& data, const app::InputState& input, bool& changed);
+    // Replaces draw while a level loads. `share`: fraction done, 0 to 1.
     static void loading_screen(float share);
-    // A line at the top for a few seconds.
+    // Shows a message at the top for a few seconds.
     void say(std::string message, double seconds = 3.5);
 
 private:
@@ -43,14 +42,16 @@ private:
     void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void help_screen(const DemoSettings& settings);
-    void prompts(const DemoSettings& settings, const Shown& shown);
-    void times(const Shown& shown);
+    void prompts(const DemoSettings& settings, const OverlayData& data);
+    void times(const OverlayData& data);
     void message();
     bool field(DemoSettings& settings, const char* name, const char* label);
+    void image_tab(DemoSettings& settings, bool& changed);
+    void display_tab(DemoSettings& settings, bool& changed);
     void bindings_tab(DemoSettings& settings, const app::InputState& input, bool& changed);
 
     Screen screen_ = Screen::title, came_from_ = Screen::title;
-    int rebinding_ = -1; // action that waits for a key
+    int rebinding_ = -1; // action that is waiting for a key
     std::string message_;
     double message_seconds_ = 0.0;
 };

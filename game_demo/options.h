@@ -1,4 +1,4 @@
-// What the command line asks for.
+// Options of the command line.
 #pragma once
 
 #include "game_demo/demo_settings.h"
@@ -10,14 +10,14 @@ namespace sunfleck::demo {
 struct Options {
     bool headless = false, validation = false;
     std::uint32_t frames = 0;          // 0: until the window is closed, or the input ends
-    std::uint32_t pictures = 8;        // written by a headless run, evenly spread
+    std::uint32_t pictures = 8;        // written by a headless run, evenly spaced
     std::uint32_t steps_per_frame = 2; // of a headless run
     std::string output, device, scene = "lantern_house", input, record;
     std::optional<Preset> preset;
-    std::optional<bool> transfer; // in place of the preset's
+    std::optional<bool> transfer; // overrides the preset
     std::uint32_t width = 1280, height = 720;
     bool indirect = true;
-    std::string settings_file; // empty: the usual one
+    std::string settings_file; // empty: the default one
 };
 
 Status run_window(const Options& options);

@@ -16,8 +16,8 @@ constexpr Quality qualities[] = {
     {1.0f, 1500, 300, true}, // ultra
 };
 
-// The nearest preset that does as much work.
-Preset like(const DemoSettings& settings) {
+// The nearest preset of similar cost.
+Preset equivalent_preset(const DemoSettings& settings) {
     if (settings.preset != Preset::custom)
         return settings.preset;
     return settings.light_samples <= 250   ? Preset::software
@@ -38,7 +38,7 @@ void apply_preset(DemoSettings& settings) {
 }
 
 gi::Settings lighting_of(const DemoSettings& settings) {
-    const Preset preset = like(settings);
+    const Preset preset = equivalent_preset(settings);
     gi::Settings result;
     result.lights = settings.light_samples;
     result.map_budget = settings.map_budget;
@@ -53,7 +53,7 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     return result;
 }
 
-Preset usual_preset(bool software_device) {
+Preset default_preset(bool software_device) {
     return software_device ? Preset::software : Preset::high;
 }
 

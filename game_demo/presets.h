@@ -1,4 +1,4 @@
-// What the quality presets stand for.
+// Definition of the quality presets.
 #pragma once
 
 #include "game_demo/demo_settings.h"
@@ -6,11 +6,11 @@
 
 namespace sunfleck::demo {
 
-// Sets what the preset decides; `custom` changes nothing.
+// Sets the fields that the preset determines; `custom` changes nothing.
 void apply_preset(DemoSettings& settings);
-// The lighting of these settings.
+// The lighting settings that correspond to `settings`.
 gi::Settings lighting_of(const DemoSettings& settings);
 // `software` on a CPU, `high` on a GPU.
-Preset usual_preset(bool software_device);
+Preset default_preset(bool software_device);
 
 } // namespace sunfleck::demo

@@ -1,5 +1,5 @@
-// The recorded walk through the house, as its author thinks of it: where to go and where to look. A bot turns it into
-// steps of input by watching the simulation; what it did can be recorded and replayed without it.
+// The built-in walk through the house, as a list of places to go to and to look at. A bot turns it into step inputs by
+// watching the simulation; its input can be recorded and replayed without the bot.
 #pragma once
 
 #include "engine/simulation/simulation.h"
@@ -9,27 +9,25 @@ namespace sunfleck::demo {
 class WalkThrough {
 public:
     WalkThrough();
-    // The next step's input; standing still at the end.
+    // The next step's input; empty at the end.
     simulation::StepInput next(const simulation::Simulation& simulation);
     bool finished() const { return place_ >= tasks_.size(); }
 
-private:
     struct Task {
         enum Kind { walk, look, wait, press, ride } kind;
         vec3 target{0.0f};
-        std::uint32_t steps = 0; // wait; walk: gives up after so many
+        std::uint32_t steps = 0; // duration of wait; limit of the others
         std::uint32_t buttons = 0;
     };
-    void walk(float x, float z, std::uint32_t buttons = 0);
-    void look(float x, float y, float z);
-    void wait(std::uint32_t steps);
-    void press(std::uint32_t button);
-    void ride(float height);
+
+private:
+    // The input of the current step; true if the task is done.
+    bool perform(const Task& task, const simulation::Simulation& simulation, simulation::StepInput& input) const;
     simulation::StepInput turn_to(const simulation::Character& person, vec3 target, float& off) const;
 
     std::vector<Task> tasks_;
     std::size_t place_ = 0;
-    std::uint32_t spent_ = 0; // steps on this task
+    std::uint32_t spent_ = 0; // steps spent on this task
 };
 
 } // namespace sunfleck::demo

@@ -17,15 +17,15 @@ namespace sunfleck::demo {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double longest_leap = 0.2; // s: a longer stall does not make the world leap
+constexpr double max_catch_up = 0.2; // s: after a longer stall, the simulation does not catch up
 constexpr int pad_start = 7;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The first free name in the current folder.
-std::filesystem::path free_picture_name() {
+// The first unused name in the current folder.
+std::filesystem::path free_screenshot_name() {
     std::error_code code;
     for (int number = 1; number < 10000; ++number) {
         char name[40];
@@ -71,7 +71,7 @@ private:
                         gpu::Device::create({options_.device, options_.validation, window_->instance_extensions()}));
         SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
         if (options_.preset || !loaded.found)
-            settings_.preset = options_.preset.value_or(usual_preset(device_->traits().software));
+            settings_.preset = options_.preset.value_or(default_preset(device_->traits().software));
         apply_preset(settings_);
         if (options_.transfer && *options_.transfer != settings_.transfer) {
             settings_.transfer = *options_.transfer;
@@ -97,7 +97,8 @@ private:
         loader_ = std::make_unique<LevelLoader>(*device_, options_.scene, settings_, width, height);
     }
 
-    // One picture of the loading screen. The device is idle when the level takes over: serials begin anew.
+    // One frame of the loading screen. The device is idle when the level takes over, because submission serials
+    // restart.
     Status loading_frame() {
         const app::InputState& input = window_->poll();
         if (input.hit(app::key_escape))
@@ -107,7 +108,7 @@ private:
             loader_.reset();
             SUNFLECK_TRY(device_->wait_idle());
             blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
-            unsimulated_ = 0.0;
+            accumulator_ = 0.0;
             inputs_.clear();
             window_->set_title("Lantern House");
             last_ = Clock::now();
@@ -119,7 +120,7 @@ private:
             return {};
         }
         const VkExtent2D extent = swapchain_->extent();
-        screen_->gui().begin_frame(input, extent.width, extent.height, 1.0 / 30.0, letter_scale(extent));
+        screen_->gui().begin_frame(input, extent.width, extent.height, 1.0 / 30.0, ui_scale(extent));
         Menu::loading_screen(loader_->share());
         screen_->gui().end_frame();
         return screen_->present();
@@ -138,13 +139,13 @@ private:
         return swapchain_->present();
     }
 
-    // False: nothing can be shown now.
+    // False: the window cannot be presented to at the moment.
     Result<bool> frame_once() {
         const app::InputState& input = window_->poll();
         const double seconds = std::min(seconds_since(last_), 1.0);
         last_ = Clock::now();
         swapchain_->set_vertical_sync(settings_.vertical_sync);
-        SUNFLECK_TRY(keys(input));
+        SUNFLECK_TRY(handle_keys(input));
         const bool playing = menu_.screen() == Screen::playing && input.focused;
         window_->capture_pointer(playing);
         controls_.take(input, settings_, seconds, playing);
@@ -158,7 +159,7 @@ private:
         return true;
     }
 
-    Status keys(const app::InputState& input) {
+    Status handle_keys(const app::InputState& input) {
         const bool start_button = input.gamepad.pressed(pad_start);
         if (input.hit(app::key_escape) || (start_button && !start_before_) ||
             (!input.focused && menu_.screen() == Screen::playing))
@@ -169,12 +170,12 @@ private:
         const auto pressed = [&](Action action) { return controls_.pressed(input, settings_, action); };
         if (pressed(Action::indirect_light)) {
             indirect_ = !indirect_;
-            menu_.say(indirect_ ? "Bounced light on" : "Bounced light off: only what lamps light directly", 2.5);
+            menu_.say(indirect_ ? "Indirect light on" : "Indirect light off: direct light only", 2.5);
         }
         if (pressed(Action::frame_times))
             settings_.show_times = !settings_.show_times;
         if (pressed(Action::screenshot))
-            wants_picture_ = true;
+            wants_screenshot_ = true;
         if (pressed(Action::help))
             menu_.show(Screen::help);
         if (pressed(Action::full_screen)) {
@@ -184,15 +185,15 @@ private:
         return {};
     }
 
-    // The world goes on behind the title, and stands still while paused.
+    // The simulation runs behind the title and stops while paused.
     void simulate(double seconds) {
         const Screen screen = menu_.screen();
         title_seconds_ += seconds;
         if (screen == Screen::paused || (started_ && screen != Screen::playing))
             return;
-        unsimulated_ += std::min(seconds, longest_leap);
-        while (unsimulated_ >= simulation::step_seconds) {
-            unsimulated_ -= simulation::step_seconds;
+        accumulator_ += std::min(seconds, max_catch_up);
+        while (accumulator_ >= simulation::step_seconds) {
+            accumulator_ -= simulation::step_seconds;
             const simulation::StepInput step = controls_.next_step();
             level_->step(step);
             if (started_ && !options_.record.empty())
@@ -205,13 +206,13 @@ private:
         viewer::SceneRenderer& renderer = level_->renderer();
         viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height);
         if (!started_)
-            request.camera = level_->show_round(title_seconds_);
+            request.camera = level_->title_camera(title_seconds_);
         fade_ += (float(indirect_) - fade_) * float(std::min(1.0, 12.0 * seconds));
         request.indirect_scale = std::abs(fade_ - float(indirect_)) < 0.02f ? float(indirect_) : fade_;
         renderer.collect_statistics();
-        screen_->gui().begin_frame(input, extent.width, extent.height, seconds, letter_scale(extent));
+        screen_->gui().begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
         bool changed = false;
-        const Decision decision = menu_.draw(settings_, shown(request, seconds), input, changed);
+        const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
         screen_->gui().end_frame();
         SUNFLECK_TRY(renderer.update(request));
         SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
@@ -219,21 +220,21 @@ private:
         blit_resources_->begin_frame(renderer.submission().serial(), completed);
         SUNFLECK_TRY(renderer.record(commands, request, overlay()));
         SUNFLECK_TRY(present(commands));
-        if (wants_picture_)
-            save_picture();
+        if (wants_screenshot_)
+            save_screenshot();
         if (changed) {
             SUNFLECK_TRY(level_->apply(settings_));
             window_->set_full_screen(settings_.full_screen);
-            keep_settings();
+            store_settings();
         }
         decide(decision);
         return {};
     }
 
-    Shown shown(const viewer::FrameRequest& request, double seconds) {
+    OverlayData overlay_data(const viewer::FrameRequest& request, double seconds) {
         const viewer::FrameStatistics& statistics = level_->renderer().statistics();
         smooth_ms_ = smooth_ms_ <= 0.0 ? seconds * 1e3 : smooth_ms_ + 0.1 * (seconds * 1e3 - smooth_ms_);
-        Shown result;
+        OverlayData result;
         result.interaction = level_->simulation().possible_interaction(level_->renderer().registry());
         result.carries_lantern = level_->simulation().carries_lantern();
         result.indirect_light = indirect_;
@@ -247,8 +248,8 @@ private:
         return result;
     }
 
-    float letter_scale(VkExtent2D extent) const {
-        return settings_.letter_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
+    float ui_scale(VkExtent2D extent) const {
+        return settings_.ui_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
     }
 
     void decide(Decision decision) {
@@ -258,7 +259,7 @@ private:
         case Decision::play:
             menu_.show(Screen::playing);
             if (!started_)
-                start_loading(); // the world as it was at first
+                start_loading(); // reset the world
             started_ = true;
             break;
         case Decision::restart:
@@ -271,10 +272,10 @@ private:
         }
     }
 
-    // A failure to save is said, and the game goes on.
-    void save_picture() {
-        wants_picture_ = false;
-        const std::filesystem::path path = free_picture_name();
+    // A failure to save is reported, and the game continues.
+    void save_screenshot() {
+        wants_screenshot_ = false;
+        const std::filesystem::path path = free_screenshot_name();
         Status status = Status();
         if (auto picture = level_->renderer().read_back())
             status = io::write_picture(path, *picture);
@@ -283,15 +284,15 @@ private:
         menu_.say(status ? "Saved " + path.string() : status.error().message);
     }
 
-    void keep_settings() {
+    void store_settings() {
         if (const Status status = save_settings(settings_path_, settings_); !status)
-            menu_.say("The settings could not be kept: " + status.error().message, 6.0);
+            menu_.say("Cannot save the settings: " + status.error().message, 6.0);
     }
 
     Status finish() {
         loader_.reset();
         SUNFLECK_TRY(device_->wait_idle());
-        keep_settings();
+        store_settings();
         if (!options_.record.empty())
             SUNFLECK_TRY(simulation::write_recording(options_.record, inputs_));
         if (device_->validation_messages() > 0)
@@ -312,8 +313,8 @@ private:
     Menu menu_;
     Controls controls_;
     Clock::time_point last_;
-    double unsimulated_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
-    bool started_ = false, indirect_ = true, wants_picture_ = false, start_before_ = false;
+    double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
+    bool started_ = false, indirect_ = true, wants_screenshot_ = false, start_before_ = false;
     float fade_ = 1.0f;
     std::vector<simulation::StepInput> inputs_;
 };

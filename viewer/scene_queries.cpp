@@ -46,7 +46,7 @@ bool parse_explicit(const std::string& text, float (&numbers)[7]) {
     return place == end;
 }
 
-// The point that an orbiting camera turns about: where its axis passes nearest to the scene's centre.
+// The centre of an orbit: the point on the camera's axis nearest to the scene's centre.
 scene::CameraView with_target(scene::CameraView view, const Bounds& bounds) {
     if (bounds.empty())
         return view;
@@ -67,7 +67,7 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
         view.vertical_field_of_view = glm::radians(numbers[6]);
         if (glm::length(view.target - view.position) < 1e-6f || numbers[6] < 1.0f || numbers[6] > 175.0f)
             return Error{"--camera '" + wanted +
-                         "': target and position must differ, and the angle be 1 to 175 degrees"};
+                         "': target and position must differ, and the field of view must be 1 to 175 degrees"};
         return view;
     }
     const std::vector<NamedCamera> cameras = list_cameras(registry);
@@ -84,8 +84,8 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
             return with_target(scene::camera_view(registry, cameras[i].entity), bounds);
         names += (i > 0 ? ", " : "") + std::to_string(i) + " '" + cameras[i].name + "'";
     }
-    return Error{"--camera '" + wanted + "' is none of the scene's cameras (" +
-                 (names.empty() ? "it has none" : names) + "), nor 'px,py,pz,tx,ty,tz,fov'"};
+    return Error{"--camera '" + wanted + "' is not one of the scene's cameras (" +
+                 (names.empty() ? "it has none" : names) + ") and not of the form 'px,py,pz,tx,ty,tz,fov'"};
 }
 
 float scene_exposure(ecs::Registry& registry) {
@@ -106,7 +106,7 @@ Bounds scene_bounds(ecs::Registry& registry, const scene::MeshStore& meshes) {
 }
 
 bool add_default_light(ecs::Registry& registry) {
-    // What glows no more than this (W/(sr m2)) is a label or an ornament, not the light of a scene.
+    // Emission up to this radiance (W/(sr m2)) is a glowing label or ornament, not the light of a scene.
     constexpr float faint_glow = 0.75f;
     bool lit = registry.count<scene::AreaLight>() + registry.count<scene::PointLight>() +
                    registry.count<scene::SpotLight>() + registry.count<scene::DirectionalLight>() +

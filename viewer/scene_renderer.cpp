@@ -60,12 +60,12 @@ SceneRenderer::~SceneRenderer() {
 }
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
-                                             const std::function<Status(ecs::Registry&)>& amend) {
+                                             const std::function<Status(ecs::Registry&)>& modify) {
     SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
-    if (amend)
-        SUNFLECK_TRY(amend(registry_));
+    if (modify)
+        SUNFLECK_TRY(modify(registry_));
     if (add_default_light(registry_))
-        report.notes.push_back("the scene names no light: the default sky and sun light it");
+        report.notes.push_back("the scene has no lights: lit by the default sky and sun");
     SUNFLECK_TRY(upload_meshes());
     return report;
 }
@@ -264,7 +264,7 @@ Status SceneRenderer::replace_shader(const std::string& path, std::vector<std::u
     std::vector<std::uint32_t> old(before.begin(), before.end());
     SUNFLECK_TRY(shaders_->replace(path, std::move(words)));
     Status status = pipelines_->refresh();
-    if (!status) // the pipelines are as they were; so shall the library be
+    if (!status) // the old pipelines are kept; keep the old shader, too
         SUNFLECK_TRY(shaders_->replace(path, std::move(old)));
     return status;
 }

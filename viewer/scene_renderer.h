@@ -1,4 +1,4 @@
-// One path from scene to picture: simulation step, world transforms, ray scene, lighting, G-buffer, composition.
+// The pipeline from scene to image: simulation step, world transforms, ray scene, lighting, G-buffer, composition.
 #pragma once
 
 #include "engine/gpu/submission.h"
@@ -17,23 +17,23 @@ namespace sunfleck::viewer {
 struct FrameRequest {
     scene::CameraView camera;
     std::uint32_t width = 640, height = 360;
-    // Of output(), if they differ from the size that is rendered: the picture is enlarged (tone-mapped pictures only).
+    // Size of output() if it differs from the rendered size: the image is upscaled (tone-mapped images only).
     std::uint32_t screen_width = 0, screen_height = 0;
-    bool simulate = true; // false: the caller has moved everything
+    bool simulate = true; // false: the caller has moved everything already
     std::uint32_t view = shared::view_final;
     bool tone_map = true;      // false: scene-linear floats, for EXR
     std::string lighting_view; // debug view of the lighting by name (gi::debug_views()), in place of irradiance
     bool show_samples = false; // debug lines at the light samples
     float ev100 = 8.0f;
-    std::uint64_t step = 0; // simulation step that the movers show
+    std::uint64_t step = 0; // simulation step of the movers
     std::uint32_t map_budget = 0xffffffffu;
-    float indirect_scale = 1.0f; // of reflected light
+    float indirect_scale = 1.0f; // scales indirect light
     // gi::FrameInput::progress
     std::function<bool(float)> progress;
 };
 
 struct FrameStatistics {
-    double frame_ms = 0; // from the start of simulation to the end of the GPU's work; only of render_and_wait
+    double frame_ms = 0; // from the start of simulation to the end of GPU work; only set by render_and_wait
     std::map<std::string, double> cpu_ms, gpu_ms;
     gi::Report counters;
 };
@@ -54,31 +54,31 @@ public:
     gpu::PipelineStore& pipelines() { return *pipelines_; }
     const scene::GpuScene& gpu_scene() const { return *gpu_scene_; }
 
-    // Loads a scene into the (empty) registry. A scene without any light gets the default light: a sky of
-    // 0.3 W/(sr m2) and a sun of 2 W/m2 from above. `amend` may change it before that.
+    // Loads a scene into the (empty) registry. A scene without any light gets the default lighting: a sky of
+    // 0.3 W/(sr m2) and a sun of 2 W/m2 from above. `modify` may change the scene before that.
     Result<io::ImportReport> load(const std::filesystem::path& path, const io::ImportOptions& options = {},
-                                  const std::function<Status(ecs::Registry&)>& amend = {});
-    // Uploads meshes and textures that were added to the store. Waits for the GPU.
+                                  const std::function<Status(ecs::Registry&)>& modify = {});
+    // Uploads meshes and textures that were added to the stores. Waits for the GPU.
     Status upload_meshes();
 
-    // Brings movers, transforms, rays and lighting to `request.step` (CPU work of a frame).
+    // Updates movers, transforms, ray scene and lighting to `request.step` (a frame's CPU work).
     Status update(const FrameRequest& request);
-    // Records the frame into `commands`, after update. The picture is output() afterwards, in the state that a copy
-    // reads from. `overlay` may add passes that draw over it.
+    // Records the frame into `commands`, after update. The result is output(), in copy-source state. `overlay` may add
+    // passes that draw over it.
     using Overlay = std::function<Status(gpu::FrameGraph&, gpu::ResourceId target, gpu::FrameResources&)>;
     Status record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay = {});
     const gpu::Image& output() const { return output_; }
 
-    // update, record, submit and wait; fills statistics.
+    // update, record, submit and wait; fills the statistics.
     Status render_and_wait(const FrameRequest& request);
     Result<io::Picture> read_back();
     const FrameStatistics& statistics() const { return statistics_; }
-    // The frame graph of the last frame, as text.
+    // The last frame's graph as text.
     std::string print_graph() const { return graph_->print(); }
-    // After a submission that was not waited for: the statistics of the newest frame that is complete.
+    // Without waiting: the statistics of the newest completed frame.
     void collect_statistics();
 
-    // Takes newer SPIR-V for one shader. On failure everything stays as it was.
+    // Replaces one shader's SPIR-V. On failure nothing changes.
     Status replace_shader(const std::string& path, std::vector<std::uint32_t> words);
 
 private:
@@ -110,11 +110,11 @@ private:
     FrameStatistics statistics_;
 };
 
-// Named camera, its number, or "px,py,pz,tx,ty,tz,fov" with the field of view in degrees; empty: the camera called
+// A camera by name or number, or "px,py,pz,tx,ty,tz,fov" with the field of view in degrees; empty: the camera called
 // "view", else the first, else one that sees the whole scene.
 Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bounds, const std::string& wanted);
 
-// EV100 of the scene, or a default.
+// EV100 of the scene, or the default.
 float scene_exposure(ecs::Registry& registry);
 
 // Bounds of all mesh instances in world space.

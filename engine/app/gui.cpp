@@ -12,8 +12,8 @@ std::span<const EmbeddedShader> sunfleck_app_shaders();
 namespace sunfleck::app {
 namespace {
 
-constexpr float letter_size = 16.0f; // pixels at scale 1
-constexpr float atlas_scale = 2.0f;  // letters are stored so much larger, for screens with many pixels
+constexpr float font_size = 16.0f;  // pixels at scale 1
+constexpr float atlas_scale = 2.0f; // the font atlas is rasterised at this scale, for high-DPI screens
 constexpr const char* font_file = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 
 struct Constants {
@@ -33,7 +33,7 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr; // what is remembered is in the program's own settings
+    io.IniFilename = nullptr; // the program keeps its own settings
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavEnableGamepad;
     const std::pair<ImGuiKey, Key> keys[] = {
         {ImGuiKey_Tab, key_tab},     {ImGuiKey_LeftArrow, key_left}, {ImGuiKey_RightArrow, key_right},
@@ -42,8 +42,20 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
         {ImGuiKey_Delete, 261},      {ImGuiKey_Home, 268},           {ImGuiKey_End, 269}};
     for (const auto& [meaning, key] : keys)
         io.KeyMap[meaning] = key;
+    SUNFLECK_TRY(gui->make_atlas(device));
+    gpu::GraphicsDescription description;
+    description.vertex_shader = "engine/app/gui.vert";
+    description.fragment_shader = "engine/app/gui.frag";
+    description.colour_formats = {target_format};
+    description.blend = true;
+    SUNFLECK_ASSIGN(gui->pipeline_, pipelines.graphics(description));
+    return gui;
+}
+
+Status Gui::make_atlas(gpu::Device& device) {
+    ImGuiIO& io = ImGui::GetIO();
     std::error_code code;
-    const float pixels = letter_size * atlas_scale;
+    const float pixels = font_size * atlas_scale;
     if (!std::filesystem::exists(font_file, code) || io.Fonts->AddFontFromFileTTF(font_file, pixels) == nullptr) {
         ImFontConfig config;
         config.SizePixels = pixels;
@@ -53,18 +65,12 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsAlpha8(&coverage, &width, &height);
     const std::size_t bytes = (std::size_t(width) * std::size_t(height) + 3) / 4 * 4;
-    SUNFLECK_ASSIGN(gui->atlas_, gpu::Buffer::create(device, {"letters", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                                              gpu::MemoryUse::upload, VK_FORMAT_UNDEFINED}));
-    std::memcpy(gui->atlas_.mapped(), coverage, std::size_t(width) * std::size_t(height));
-    gui->atlas_width_ = std::uint32_t(width);
-    gui->atlas_height_ = std::uint32_t(height);
-    gpu::GraphicsDescription description;
-    description.vertex_shader = "engine/app/gui.vert";
-    description.fragment_shader = "engine/app/gui.frag";
-    description.colour_formats = {target_format};
-    description.blend = true;
-    SUNFLECK_ASSIGN(gui->pipeline_, pipelines.graphics(description));
-    return gui;
+    SUNFLECK_ASSIGN(atlas_, gpu::Buffer::create(device, {"font atlas", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                         gpu::MemoryUse::upload, VK_FORMAT_UNDEFINED}));
+    std::memcpy(atlas_.mapped(), coverage, std::size_t(width) * std::size_t(height));
+    atlas_width_ = std::uint32_t(width);
+    atlas_height_ = std::uint32_t(height);
+    return {};
 }
 
 Gui::~Gui() {
@@ -102,7 +108,7 @@ void Gui::make_style(float scale) {
 void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_t height, double seconds, float scale) {
     make_style(scale);
     ImGuiIO& io = ImGui::GetIO();
-    // What went down and up again between two slow frames was down.
+    // A key that was pressed and released between two frames still counts as pressed.
     const auto seen = [&](Key key) { return input.down(key) || input.hit(key); };
     io.DisplaySize = ImVec2(float(width), float(height));
     io.DeltaTime = float(std::max(seconds, 1e-4));
@@ -113,7 +119,7 @@ void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_
     for (const std::uint32_t letter : input.text)
         io.AddInputCharacter(letter);
     for (Key key = 0; key < first_mouse_button; ++key)
-        io.KeysDown[key] = !input.captured && seen(key) && key != key_escape; // escape is the menu's own
+        io.KeysDown[key] = !input.captured && seen(key) && key != key_escape; // the menu handles escape itself
     io.KeyCtrl = input.down(key_left_control);
     io.KeyShift = input.down(key_left_shift);
     std::memset(io.NavInputs, 0, sizeof io.NavInputs);
@@ -132,70 +138,93 @@ void Gui::end_frame() {
     ImGui::Render();
 }
 
+struct Gui::Draw {
+    VkRect2D scissor;
+    std::uint32_t first_index, first_vertex, count;
+};
+
+// One frame's draws, as its pass needs them.
+struct Gui::Frame {
+    std::vector<Draw> draws;
+    vec2 size{0.0f}, white{0.0f};
+    gpu::UploadSlice vertices, indices;
+};
+
+// All of ImGui's draw lists, joined.
+struct Gui::Geometry {
+    std::vector<ImDrawVert> vertices;
+    std::vector<std::uint32_t> indices;
+    std::vector<Draw> draws;
+};
+
+Gui::Geometry Gui::collect(const ImDrawData& data) {
+    static_assert(sizeof(ImDrawVert) == 20);
+    Geometry result;
+    for (int list = 0; list < data.CmdListsCount; ++list) {
+        const ImDrawList& commands = *data.CmdLists[list];
+        const auto first_vertex = std::uint32_t(result.vertices.size());
+        const auto first_index = std::uint32_t(result.indices.size());
+        result.vertices.insert(result.vertices.end(), commands.VtxBuffer.begin(), commands.VtxBuffer.end());
+        result.indices.insert(result.indices.end(), commands.IdxBuffer.begin(), commands.IdxBuffer.end());
+        for (const ImDrawCmd& command : commands.CmdBuffer) {
+            const float left = std::max(command.ClipRect.x, 0.0f), top = std::max(command.ClipRect.y, 0.0f);
+            const float right = std::min(command.ClipRect.z, data.DisplaySize.x);
+            const float bottom = std::min(command.ClipRect.w, data.DisplaySize.y);
+            if (right <= left || bottom <= top || command.UserCallback != nullptr)
+                continue;
+            result.draws.push_back({{{int(left), int(top)}, {std::uint32_t(right - left), std::uint32_t(bottom - top)}},
+                                    first_index + command.IdxOffset,
+                                    first_vertex + command.VtxOffset,
+                                    command.ElemCount});
+        }
+    }
+    return result;
+}
+
 Status Gui::add_pass(gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
     const ImDrawData* data = ImGui::GetDrawData();
     if (data == nullptr || data->TotalIdxCount == 0)
         return {};
-    static_assert(sizeof(ImDrawVert) == 20);
-    std::vector<ImDrawVert> vertices;
-    std::vector<std::uint32_t> indices;
-    struct Draw {
-        VkRect2D scissor;
-        std::uint32_t first_index, first_vertex, count;
-    };
-    std::vector<Draw> draws;
-    const float width = data->DisplaySize.x, height = data->DisplaySize.y;
-    for (int list = 0; list < data->CmdListsCount; ++list) {
-        const ImDrawList& commands = *data->CmdLists[list];
-        const auto first_vertex = std::uint32_t(vertices.size()), first_index = std::uint32_t(indices.size());
-        vertices.insert(vertices.end(), commands.VtxBuffer.begin(), commands.VtxBuffer.end());
-        indices.insert(indices.end(), commands.IdxBuffer.begin(), commands.IdxBuffer.end());
-        for (const ImDrawCmd& command : commands.CmdBuffer) {
-            const float left = std::max(command.ClipRect.x, 0.0f), top = std::max(command.ClipRect.y, 0.0f);
-            const float right = std::min(command.ClipRect.z, width), bottom = std::min(command.ClipRect.w, height);
-            if (right <= left || bottom <= top || command.UserCallback != nullptr)
-                continue;
-            draws.push_back({{{int(left), int(top)}, {std::uint32_t(right - left), std::uint32_t(bottom - top)}},
-                             first_index + command.IdxOffset,
-                             first_vertex + command.VtxOffset,
-                             command.ElemCount});
-        }
-    }
-    SUNFLECK_ASSIGN(const gpu::UploadSlice vertex_slice, resources.upload(std::span<const ImDrawVert>(vertices)));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice index_slice, resources.upload(std::span<const std::uint32_t>(indices)));
-    const ImVec2 white = ImGui::GetIO().Fonts->TexUvWhitePixel;
+    const Geometry geometry = collect(*data);
+    Frame frame;
+    frame.draws = geometry.draws;
+    frame.size = vec2(data->DisplaySize.x, data->DisplaySize.y);
+    frame.white = vec2(ImGui::GetIO().Fonts->TexUvWhitePixel.x, ImGui::GetIO().Fonts->TexUvWhitePixel.y);
+    SUNFLECK_ASSIGN(frame.vertices, resources.upload(std::span<const ImDrawVert>(geometry.vertices)));
+    SUNFLECK_ASSIGN(frame.indices, resources.upload(std::span<const std::uint32_t>(geometry.indices)));
     graph.add_pass("gui")
         .write(target, gpu::Usage::colour_attachment)
-        .execute([this, target, draws, vertex_slice, index_slice, width, height,
-                  white](gpu::PassContext& context) -> Status {
-            const auto colour =
-                gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, true);
-            VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-            rendering.renderArea.extent = {std::uint32_t(width), std::uint32_t(height)};
-            rendering.layerCount = 1;
-            rendering.colorAttachmentCount = 1;
-            rendering.pColorAttachments = &colour;
-            const VolkDeviceTable& vk = context.device.vk;
-            vk.vkCmdBeginRendering(context.commands, &rendering);
-            const VkViewport viewport{0, 0, width, height, 0, 1};
-            vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
-            const gpu::Binding bindings[] = {gpu::Binding::storage(vertex_slice), gpu::Binding::storage(index_slice),
-                                             gpu::Binding::storage(atlas_)};
-            Status status = context.resources.bind(context.commands, *pipeline_, bindings);
-            for (const Draw& draw : draws) {
-                vk.vkCmdSetScissor(context.commands, 0, 1, &draw.scissor);
-                const Constants constants{vec2(2.0f / width, 2.0f / height), vec2(white.x, white.y),
-                                          glm::uvec2(atlas_width_, atlas_height_), draw.first_index, draw.first_vertex};
-                if (status)
-                    status = context.resources.push(context.commands, *pipeline_, constants);
-                if (!status)
-                    break;
-                vk.vkCmdDraw(context.commands, draw.count, 1, 0, 0);
-            }
-            vk.vkCmdEndRendering(context.commands);
-            return status;
-        });
+        .execute([this, target, frame](gpu::PassContext& context) { return draw(context, target, frame); });
     return {};
+}
+
+Status Gui::draw(gpu::PassContext& context, gpu::ResourceId target, const Frame& frame) const {
+    const auto colour =
+        gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, true);
+    VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    rendering.renderArea.extent = {std::uint32_t(frame.size.x), std::uint32_t(frame.size.y)};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachments = &colour;
+    const VolkDeviceTable& vk = context.device.vk;
+    vk.vkCmdBeginRendering(context.commands, &rendering);
+    const VkViewport viewport{0, 0, frame.size.x, frame.size.y, 0, 1};
+    vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);
+    const gpu::Binding bindings[] = {gpu::Binding::storage(frame.vertices), gpu::Binding::storage(frame.indices),
+                                     gpu::Binding::storage(atlas_)};
+    Status status = context.resources.bind(context.commands, *pipeline_, bindings);
+    for (const Draw& draw : frame.draws) {
+        vk.vkCmdSetScissor(context.commands, 0, 1, &draw.scissor);
+        const Constants constants{2.0f / frame.size, frame.white, glm::uvec2(atlas_width_, atlas_height_),
+                                  draw.first_index, draw.first_vertex};
+        if (status)
+            status = context.resources.push(context.commands, *pipeline_, constants);
+        if (!status)
+            break;
+        vk.vkCmdDraw(context.commands, draw.count, 1, 0, 0);
+    }
+    vk.vkCmdEndRendering(context.commands);
+    return status;
 }
 
 } // namespace sunfleck::app

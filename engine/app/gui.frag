@@ -1,5 +1,5 @@
 #version 460
-layout(set = 0, binding = 2) readonly buffer Atlas { uint texels[]; }; // coverage, a byte a texel
+layout(set = 0, binding = 2) readonly buffer Atlas { uint texels[]; }; // coverage, one byte per texel
 layout(push_constant) uniform Constants {
     vec2 scale;
     vec2 white;

@@ -1,5 +1,5 @@
-// A window's picture with nothing but the GUI on a dark ground: what is shown while a level loads. It has a submission
-// of its own, so that another thread may use the device meanwhile.
+// Draws only the GUI on a dark background, for loading screens. Has its own submission, so that another thread may use
+// the device meanwhile.
 #pragma once
 
 #include "engine/app/gui.h"
@@ -13,11 +13,11 @@ public:
     static Result<std::unique_ptr<GuiScreen>> create(gpu::Device& device, Swapchain& swapchain);
     ~GuiScreen();
 
-    // Draws on anything of this screen's format, in other pictures too.
+    // Also usable over other images of the same format.
     Gui& gui() { return *gui_; }
-    // The serial to acquire the swapchain's image with.
+    // Pass this serial when acquiring the swapchain's image.
     std::uint64_t serial() const { return submission_->serial(); }
-    // Shows what was drawn between the GUI's begin_frame and end_frame on the swapchain's acquired image.
+    // Renders the GUI's current frame to the swapchain's acquired image and presents it.
     Status present();
 
 private:

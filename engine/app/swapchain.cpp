@@ -34,12 +34,12 @@ Status Swapchain::make_surface() {
         vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
     surface_ = VK_NULL_HANDLE;
     SUNFLECK_VK(glfwCreateWindowSurface(device_.instance(), window_.handle(), nullptr, &surface_),
-                "making the window's surface");
+                "creating the window's surface");
     VkBool32 supported = VK_FALSE;
     vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical_device(), device_.queue_family(), surface_, &supported);
     if (!supported)
         return Error{"device '" + device_.traits().name +
-                     "' cannot show pictures in this window; choose another with --device, or run with --headless"};
+                     "' cannot present to this window; choose another with --device, or run with --headless"};
     surface_lost_ = false;
     return {};
 }
@@ -58,7 +58,7 @@ VkPresentModeKHR Swapchain::present_mode() const {
         for (const VkPresentModeKHR mode : {VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR})
             if (std::find(modes.begin(), modes.end(), mode) != modes.end())
                 return mode;
-    return VK_PRESENT_MODE_FIFO_KHR; // every device has it
+    return VK_PRESENT_MODE_FIFO_KHR; // always supported
 }
 
 void Swapchain::destroy_chain() {
@@ -70,6 +70,20 @@ void Swapchain::destroy_chain() {
     chain_ = VK_NULL_HANDLE;
 }
 
+Result<VkSurfaceFormatKHR> Swapchain::choose_format() const {
+    std::uint32_t count = 0;
+    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, nullptr);
+    std::vector<VkSurfaceFormatKHR> formats(count);
+    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, formats.data());
+    if (formats.empty())
+        return Error{"the window's surface offers no image format"};
+    // The image is already sRGB-encoded: a UNORM format passes it on unchanged.
+    for (const VkSurfaceFormatKHR& format : formats)
+        if (format.format == VK_FORMAT_B8G8R8A8_UNORM || format.format == VK_FORMAT_R8G8B8A8_UNORM)
+            return format;
+    return formats[0];
+}
+
 Status Swapchain::rebuild() {
     SUNFLECK_TRY(device_.wait_idle());
     destroy_chain();
@@ -77,7 +91,7 @@ Status Swapchain::rebuild() {
         SUNFLECK_TRY(make_surface());
     VkSurfaceCapabilitiesKHR capabilities;
     SUNFLECK_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical_device(), surface_, &capabilities),
-                "asking what the window can show");
+                "querying the window's surface");
     std::uint32_t width = 0, height = 0;
     window_.size(width, height);
     extent_ = capabilities.currentExtent;
@@ -86,35 +100,8 @@ Status Swapchain::rebuild() {
                    std::clamp(height, capabilities.minImageExtent.height, capabilities.maxImageExtent.height)};
     if (extent_.width == 0 || extent_.height == 0)
         return {}; // minimised
+    SUNFLECK_TRY(create_chain(capabilities));
     std::uint32_t count = 0;
-    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, nullptr);
-    std::vector<VkSurfaceFormatKHR> formats(count);
-    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, formats.data());
-    if (formats.empty())
-        return Error{"the window offers no picture format"};
-    // The picture is already sRGB encoded: a plain format passes it on unchanged.
-    VkSurfaceFormatKHR chosen = formats[0];
-    for (const VkSurfaceFormatKHR& format : formats)
-        if (format.format == VK_FORMAT_B8G8R8A8_UNORM || format.format == VK_FORMAT_R8G8B8A8_UNORM) {
-            chosen = format;
-            break;
-        }
-    format_ = chosen.format;
-    VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
-    info.surface = surface_;
-    info.minImageCount = std::max(capabilities.minImageCount, 3u);
-    if (capabilities.maxImageCount > 0)
-        info.minImageCount = std::min(info.minImageCount, capabilities.maxImageCount);
-    info.imageFormat = chosen.format;
-    info.imageColorSpace = chosen.colorSpace;
-    info.imageExtent = extent_;
-    info.imageArrayLayers = 1;
-    info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    info.preTransform = capabilities.currentTransform;
-    info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
-    info.presentMode = present_mode();
-    info.clipped = VK_TRUE;
-    SUNFLECK_VK(device_.vk.vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &chain_), "making the swapchain");
     device_.vk.vkGetSwapchainImagesKHR(device_.handle(), chain_, &count, nullptr);
     images_.resize(count);
     device_.vk.vkGetSwapchainImagesKHR(device_.handle(), chain_, &count, images_.data());
@@ -124,6 +111,27 @@ Status Swapchain::rebuild() {
         SUNFLECK_VK(device_.vk.vkCreateSemaphore(device_.handle(), &semaphore, nullptr, &rendered),
                     "creating a semaphore");
     stale_ = false;
+    return {};
+}
+
+Status Swapchain::create_chain(const VkSurfaceCapabilitiesKHR& capabilities) {
+    SUNFLECK_ASSIGN(const VkSurfaceFormatKHR format, choose_format());
+    format_ = format.format;
+    VkSwapchainCreateInfoKHR info{VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
+    info.surface = surface_;
+    info.minImageCount = std::max(capabilities.minImageCount, 3u);
+    if (capabilities.maxImageCount > 0)
+        info.minImageCount = std::min(info.minImageCount, capabilities.maxImageCount);
+    info.imageFormat = format.format;
+    info.imageColorSpace = format.colorSpace;
+    info.imageExtent = extent_;
+    info.imageArrayLayers = 1;
+    info.imageUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.preTransform = capabilities.currentTransform;
+    info.compositeAlpha = VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR;
+    info.presentMode = present_mode();
+    info.clipped = VK_TRUE;
+    SUNFLECK_VK(device_.vk.vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &chain_), "creating the swapchain");
     return {};
 }
 
@@ -144,10 +152,10 @@ Result<bool> Swapchain::acquire(std::uint64_t serial) {
         surface_lost_ = result == VK_ERROR_SURFACE_LOST_KHR;
         return false;
     }
-    if (result == VK_SUBOPTIMAL_KHR) // still shown; made anew next time
+    if (result == VK_SUBOPTIMAL_KHR) // still presentable; recreated next time
         stale_ = true;
     else
-        SUNFLECK_VK(result, "getting the window's next image");
+        SUNFLECK_VK(result, "acquiring the window's next image");
     current_.rendered = rendered_[image_];
     return true;
 }
@@ -159,7 +167,7 @@ Status Swapchain::record_blit(VkCommandBuffer commands, gpu::FrameResources& res
     target.name = "window image";
     target.image = images_[image_];
     target.description.format = format_;
-    // The acquire semaphore is waited for by all commands; this orders the change of layout after it.
+    // All commands wait for the acquire semaphore; this orders the layout transition after it.
     target.entry.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     target.has_exit = true;
     target.exit = gpu::Usage::present;
@@ -197,7 +205,7 @@ Status Swapchain::present() {
         surface_lost_ = surface_lost_ || result == VK_ERROR_SURFACE_LOST_KHR;
         return {};
     }
-    SUNFLECK_VK(result, "showing the picture");
+    SUNFLECK_VK(result, "presenting the image");
     return {};
 }
 

@@ -81,7 +81,7 @@ bool InputState::hit(Key key) const {
     return std::find(went_down.begin(), went_down.end(), key) != went_down.end();
 }
 
-// What the window system calls.
+// Callbacks of the window system.
 struct WindowEvents {
     static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
     static void set(Window& window, Key key, bool down) {
@@ -115,7 +115,7 @@ struct WindowEvents {
         Window& window = of(handle);
         window.pending_.focused = focused == GLFW_TRUE;
         window.skip_motion_ = true;
-        if (!focused) { // releases that happen elsewhere are never heard of
+        if (!focused) { // key releases outside the window are not reported
             window.pending_.keys.fill(false);
             window.pending_.mouse_buttons.fill(false);
         }
@@ -127,7 +127,7 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
         return Error{"no window system was found (is DISPLAY set?); run with --headless, or under xvfb-run"};
     std::unique_ptr<Window> window(new Window());
     if (!glfwVulkanSupported())
-        return Error{"the window system cannot show Vulkan pictures; run with --headless"};
+        return Error{"the window system does not support Vulkan; run with --headless"};
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window->handle_ = glfwCreateWindow(int(width), int(height), title.c_str(), nullptr, nullptr);
     if (window->handle_ == nullptr)
@@ -141,7 +141,7 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
     glfwSetCursorPosCallback(handle, WindowEvents::pointer);
     glfwSetScrollCallback(handle, WindowEvents::scroll);
     glfwSetWindowFocusCallback(handle, WindowEvents::focus);
-    window->pending_.focused = true; // where there is no window manager, nobody says so
+    window->pending_.focused = true; // without a window manager, no focus event arrives
     return window;
 }
 
@@ -168,7 +168,7 @@ const InputState& Window::poll() {
     return input_;
 }
 
-// The first one that the mapping database knows; it may come and go.
+// The first one in the mapping database; gamepads may come and go.
 void Window::read_gamepad() {
     Gamepad& pad = pending_.gamepad;
     pad = {};

@@ -14,26 +14,26 @@ struct GLFWwindow;
 
 namespace sunfleck::app {
 
-// Keys by the window system's numbers (those of GLFW); mouse buttons follow them, so that both can be bound to actions.
+// GLFW key codes, followed by mouse buttons, so that both can be bound to actions.
 using Key = int;
 inline constexpr Key no_key = -1, key_space = 32, key_escape = 256, key_enter = 257, key_tab = 258, key_right = 262,
                      key_left = 263, key_down = 264, key_up = 265, key_f1 = 290, key_left_shift = 340,
                      key_left_control = 341, first_mouse_button = 400, key_count = 408;
 // "W", "space", "left shift", "mouse 2".
 std::string key_name(Key key);
-// The other way round; no_key if there is none of that name.
+// The inverse; no_key if there is no key of that name.
 Key key_by_name(const std::string& name);
 
 struct Gamepad {
     bool present = false;
-    vec2 left{0.0f}, right{0.0f};                    // sticks, -1 to 1, without their dead zone; y downwards
+    vec2 left{0.0f}, right{0.0f};                    // sticks, -1 to 1 with the dead zone removed; y downwards
     float left_trigger = 0.0f, right_trigger = 0.0f; // 0 to 1
     std::uint32_t buttons = 0; // bits in GLFW's order: A, B, X, Y, bumpers, back, start, guide, thumbs, d-pad
     bool pressed(int button) const { return (buttons >> button & 1u) != 0; }
     std::string name;
 };
 
-// What happened up to a poll.
+// Input state at a poll.
 struct InputState {
     std::array<bool, key_count> keys{};
     std::vector<Key> went_down; // since the last poll, in order
@@ -43,7 +43,7 @@ struct InputState {
     std::array<bool, 3> mouse_buttons{};
     float scroll = 0.0f;
     bool focused = true;
-    bool captured = false; // the pointer is hidden and moves the view
+    bool captured = false; // the pointer is hidden and controls the view
     Gamepad gamepad;
 
     bool down(Key key) const { return key >= 0 && key < key_count && keys[std::size_t(key)]; }
@@ -60,10 +60,10 @@ public:
 
     // Instance extensions that the device must be created with.
     std::vector<const char*> instance_extensions() const;
-    // Handles pending events. All keys are up while the window is not focused.
+    // Handles pending events. All keys count as released while the window is not focused.
     const InputState& poll();
     const InputState& input() const { return input_; }
-    // Sleeps until something happens, at most this long; for minimised windows.
+    // Sleeps until an event arrives, at most this long; for minimised windows.
     void wait(double seconds);
     void capture_pointer(bool capture);
     bool should_close() const;
@@ -87,7 +87,7 @@ private:
     bool skip_motion_ = true; // the pointer has just been captured
 };
 
-// The window's images. Made anew when the window changes size, and with a new surface when that is lost.
+// The window's images. Recreated when the window is resized, and with a new surface when that is lost.
 class Swapchain {
 public:
     static Result<std::unique_ptr<Swapchain>> create(gpu::Device& device, Window& window,
@@ -96,13 +96,14 @@ public:
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
 
-    // Waits for the screen (no torn pictures), or shows pictures as soon as they are there, where the device can.
+    // Vertical synchronisation (no tearing), or presentation without waiting where the device supports it.
     void set_vertical_sync(bool wait);
-    // Gets the next image. False: there is none now (minimised, or the swapchain was remade); try again next time.
+    // Acquires the next image. False: none is available (minimised, or the swapchain was recreated); try again next
+    // frame.
     Result<bool> acquire(std::uint64_t serial);
-    // Of the acquired image.
+    // View of the acquired image.
     VkExtent2D extent() const { return extent_; }
-    // Adds a pass that scales `source` (in the state that a copy reads from) onto the acquired image.
+    // Adds a pass that scales `source` (in copy-source state) onto the acquired image.
     Status record_blit(VkCommandBuffer commands, gpu::FrameResources& resources, const gpu::Image& source);
     const gpu::PresentSemaphores& semaphores() const { return current_; }
     Status present();
@@ -111,6 +112,8 @@ private:
     Swapchain(gpu::Device& device, Window& window) : device_(device), window_(window) {}
     Status make_surface();
     Status rebuild();
+    Result<VkSurfaceFormatKHR> choose_format() const;
+    Status create_chain(const VkSurfaceCapabilitiesKHR& capabilities);
     VkPresentModeKHR present_mode() const;
     void destroy_chain();
 
@@ -121,8 +124,8 @@ private:
     VkFormat format_ = VK_FORMAT_UNDEFINED;
     VkExtent2D extent_{};
     std::vector<VkImage> images_;
-    std::vector<VkSemaphore> acquired_; // by frame in flight
-    std::vector<VkSemaphore> rendered_; // by image
+    std::vector<VkSemaphore> acquired_; // per frame in flight
+    std::vector<VkSemaphore> rendered_; // per image
     gpu::PresentSemaphores current_;
     std::uint32_t image_ = 0;
     bool stale_ = true, surface_lost_ = false, vertical_sync_ = true;

@@ -15,14 +15,14 @@
 
 namespace sunfleck {
 
-// Entity handles, as fields see them: index in the low half, generation in the high half.
+// An entity handle as a field stores it: index in the low half, generation in the high half.
 using EntityBits = std::uint64_t;
 
 enum class FieldKind { boolean, integer, unsigned_integer, real, vector3, quaternion, text, entity, choice };
 
 struct Field {
     std::string_view name;
-    std::string_view unit; // SI symbol, "" for a pure number
+    std::string_view unit; // SI symbol; "" if dimensionless
     std::string_view tooltip;
     FieldKind kind;
     std::size_t offset;
@@ -52,7 +52,7 @@ struct Field {
 
 struct TypeDescription {
     std::string_view name;
-    std::uint32_t version = 1; // raised when a field changes its meaning; saved with the data
+    std::uint32_t version = 1; // incremented when a field changes meaning; saved with the data
     std::string_view tooltip;
     std::vector<Field> fields;
 
@@ -106,11 +106,11 @@ constexpr FieldKind field_kind() {
         }                                                                                                              \
     }
 
-// Text form of one field of `object`: numbers as written in C, vectors as "x,y,z", choices by name.
+// Text form of one field of `object`: numbers as in C, vectors as "x,y,z", choices by name.
 std::string field_to_text(const Field& field, const void* object);
 
-// Parses `text` into the field. Rejects what is not finite, out of range, or not one of the choices, with a message
-// that names field, range and unit; the object is unchanged then.
+// Parses `text` into the field. Values that are not finite, out of range or not among the choices are rejected with a
+// message that names field, range and unit, and leave the object unchanged.
 Status field_from_text(const Field& field, void* object, std::string_view text);
 
 // Checks every number of `object` against its range and allowed values, and that it is finite; choices against their

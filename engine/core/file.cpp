@@ -26,7 +26,7 @@ Status write_all(int file, std::string_view content, const std::filesystem::path
     return {};
 }
 
-// Data may reach the disk only at fsync or close, so both are where a full disk shows.
+// Data may reach the disk only at fsync or close, so a full disk may only be reported there.
 Status flush_to_disk(const std::filesystem::path& path) {
     const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (file < 0)

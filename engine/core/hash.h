@@ -1,4 +1,4 @@
-// FNV-1a, 64 bits: tells contents apart and damage, not forgery.
+// FNV-1a, 64 bits: detects different or damaged content, not tampering.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@ namespace sunfleck {
 
 inline constexpr std::uint64_t hash_start = 0xcbf29ce484222325ull;
 
-// Goes on from `hash` with more bytes.
+// Continues `hash` with more bytes.
 inline std::uint64_t hash_bytes(std::uint64_t hash, const void* data, std::size_t size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; ++i)

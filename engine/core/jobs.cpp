@@ -15,8 +15,8 @@ namespace sunfleck {
 
 #if defined(__SANITIZE_THREAD__)
 
-// TBB is not instrumented, so the thread sanitizer does not see that its loops wait for their workers and reports races
-// that are none. Under it chunks run on plain threads, and what it reports are races between chunks.
+// TBB is not instrumented: the thread sanitizer does not see that a loop joins its workers and reports false races.
+// Under the sanitizer chunks therefore run on plain threads, so that it reports only races between chunks.
 void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
                          const std::function<void(std::size_t, std::size_t)>& body) {
     std::atomic<std::size_t> next{0};

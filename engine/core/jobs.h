@@ -1,5 +1,5 @@
-// Parallel loops on TBB. Chunks are fixed by their size, never by the number of threads, so that a result that depends
-// on the chunking (a sum, say) is the same on every machine.
+// Parallel loops on TBB. Chunks have a fixed size that does not depend on the number of threads, so that results that
+// depend on the chunking (such as a sum) are the same on every machine.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,12 @@
 
 namespace sunfleck {
 
-// Calls body(begin, end) for consecutive chunks of [0, count), each of chunk_size elements but for the last. Chunks run
-// in any order and at the same time; body must not touch what another chunk writes.
+// Calls body(begin, end) for consecutive chunks of [0, count), each of chunk_size elements except the last. Chunks run
+// concurrently in any order; body must not touch what another chunk writes.
 void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
                          const std::function<void(std::size_t begin, std::size_t end)>& body);
 
-// Limits the worker threads of this process while the object lives; 0 means as many as the machine has.
+// Limits the worker threads of this process during the object's lifetime; 0 means one per hardware thread.
 class ThreadLimit {
 public:
     explicit ThreadLimit(std::size_t threads);

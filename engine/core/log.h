@@ -1,4 +1,4 @@
-// Log messages go to one sink that the program installs; without one they go to standard error.
+// Log messages go to the sink that the program installs, or to standard error if there is none.
 #pragma once
 
 #include <functional>
@@ -10,10 +10,10 @@ enum class LogLevel { debug, information, warning, error };
 
 using LogSink = std::function<void(LogLevel, std::string_view)>;
 
-// Installs the sink of the whole process. Not thread safe: call it before other threads log.
+// Installs the process-wide sink. Not thread-safe: call it before other threads log.
 void set_log_sink(LogSink sink);
 
-// Thread safe as far as the sink is; the default sink is.
+// Thread-safe if the sink is; the default sink is.
 void log_message(LogLevel level, std::string_view message);
 
 inline void log_information(std::string_view message) {

@@ -43,7 +43,7 @@ struct Bounds {
     vec3 extent() const { return empty() ? vec3(0.0f) : maximum - minimum; }
 };
 
-// The box that holds the transformed corners of `bounds`.
+// The bounding box of the transformed corners of `bounds`.
 inline Bounds transform_bounds(const mat4& matrix, const Bounds& bounds) {
     Bounds result;
     if (bounds.empty())
@@ -57,16 +57,16 @@ inline Bounds transform_bounds(const mat4& matrix, const Bounds& bounds) {
     return result;
 }
 
-// What normals are multiplied by: the transposed inverse up to a positive factor. Cofactors, so that singular matrices
-// work too; mirroring ones keep normals on their side.
+// The matrix for normals: the inverse transpose up to a positive factor. Made of cofactors, so that singular matrices
+// work too; under mirroring matrices normals keep their side.
 inline mat3 normal_matrix(const mat4& matrix) {
     const mat3 m(matrix);
     const mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
     return glm::determinant(m) < 0.0f ? -cofactors : cofactors;
 }
 
-// Two unit vectors across the unit vector `n`, right-handed with it. T. Duff et al., "Building an Orthonormal Basis,
-// Revisited", JCGT 2017.
+// Two unit vectors orthogonal to the unit vector `n`, right-handed with it. T. Duff et al., "Building an Orthonormal
+// Basis, Revisited", JCGT 2017.
 inline void orthonormal_basis(vec3 n, vec3& tangent, vec3& bitangent) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;

@@ -1,4 +1,4 @@
-// Unit vectors in two numbers: the octahedral map of Q. Meyer et al., "On Floating-Point Normal Vectors", 2010.
+// Unit vectors as two numbers: the octahedral map of Q. Meyer et al., "On Floating-Point Normal Vectors", 2010.
 #ifndef SUNFLECK_ENGINE_CORE_OCTAHEDRAL_H
 #define SUNFLECK_ENGINE_CORE_OCTAHEDRAL_H
 #include "engine/core/shader_language.h"
@@ -21,7 +21,7 @@ SHARED_FUNCTION vec3 octahedral_decode(vec2 p) {
     return normalize(n);
 }
 
-// 16 bits a component: half a step of 1/32767 in both, times sqrt(3/2) along z, over the octahedron's least radius
+// 16 bits per component: half a step of 1/32767 in both, times sqrt(3/2) along z, over the octahedron's inradius
 // sqrt(1/3): the direction is off by less than 7e-5 rad.
 SHARED_FUNCTION uint pack_normal(vec3 n) {
     return packSnorm2x16(octahedral_encode(n));

@@ -57,7 +57,7 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(laine_karras_permutation(reverse_bits(x), seed));
 }
 
-// Exclusive-or of the direction numbers of the index's set bits, a byte at a time.
+// XOR of the direction numbers of the index's set bits, a byte at a time.
 using ByteTables = std::array<std::array<std::array<std::uint32_t, 256>, 4>, 4>;
 
 constexpr ByteTables make_byte_tables() {

@@ -21,9 +21,9 @@ constexpr float to_unit_float(std::uint32_t bits) {
     return float(bits >> 8) * 0x1p-24f;
 }
 
-// Four dimensions of the Owen-scrambled Sobol point `index`. Any number of dimensions comes in groups of four, the
-// first four Sobol dimensions each; groups are padded by shuffling the index with a nested uniform scramble, which
-// keeps each group a net of its own. B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
+// Four dimensions of the Owen-scrambled Sobol point `index`. Higher dimensions are padded: each group of four reuses
+// the first four Sobol dimensions with the index shuffled by a nested uniform scramble, so that each group stays a
+// digital net by itself. B. Burley, "Practical Hash-based Owen Scrambling", JCGT 2020.
 class SobolGroup {
 public:
     SobolGroup() = default;
@@ -37,7 +37,7 @@ private:
 
 enum class SequenceKind { pseudo_random, sobol };
 
-// One stream of numbers: element `index` of the sequence, dimension after dimension.
+// The coordinates of point `index` of the sequence, one dimension after another.
 class RandomSequence {
 public:
     RandomSequence(SequenceKind kind, std::uint32_t seed, std::uint32_t index)
@@ -45,7 +45,7 @@ public:
 
     float next() { return at(dimension_++); }
     float at(std::uint32_t dimension) const;
-    // Jumps to a dimension, so that a walk's bounces use the same dimensions whatever came before.
+    // Jumps to a dimension, so that a path's bounce always uses the same dimensions, whatever came before.
     void seek(std::uint32_t dimension) { dimension_ = dimension; }
 
 private:
@@ -53,7 +53,7 @@ private:
     std::uint32_t seed_;
     std::uint32_t index_;
     std::uint32_t dimension_ = 0;
-    // The group of four dimensions that was asked for last: its shuffle is shared by the four.
+    // The group of four dimensions that was requested last; its four share one shuffle.
     mutable std::uint32_t group_number_ = 0xffffffffu;
     mutable SobolGroup group_;
 };

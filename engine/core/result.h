@@ -1,4 +1,5 @@
-// A value or a message. Recoverable failure (bad files, missing features, no memory) travels as Result; misuse asserts.
+// A value or an error message. Recoverable failures (bad files, missing features, out of memory) are returned as
+// Result; misuse asserts.
 #pragma once
 
 #include <cassert>

@@ -1,5 +1,5 @@
 // Lets one header be both GLSL and C++. A shared header includes this first and puts everything between
-// SHARED_BEGIN and SHARED_END; inside, vec3 and friends mean the same in both languages.
+// SHARED_BEGIN and SHARED_END; inside, vec3 and the like mean the same in both languages.
 #ifndef SUNFLECK_ENGINE_CORE_SHADER_LANGUAGE_H
 #define SUNFLECK_ENGINE_CORE_SHADER_LANGUAGE_H
 

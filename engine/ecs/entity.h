@@ -22,7 +22,7 @@ static_assert(sizeof(Entity) == sizeof(EntityBits));
 
 inline constexpr Entity null_entity{};
 
-// Counts the states of a registry; each change is stamped with the tick it happened in.
+// Counts the versions of a registry; each change is stamped with the tick in which it happened.
 using Tick = std::uint64_t;
 
 } // namespace sunfleck::ecs

@@ -17,7 +17,7 @@ struct Removal {
     Tick tick;
 };
 
-// Listeners to one kind of event, called in the order in which they connected. A listener must not add or remove
+// Listeners to one kind of event, called in order of connection. A listener must not add or remove
 // components of the pool that calls it; defer such changes.
 class Signal {
 public:
@@ -40,7 +40,7 @@ private:
     std::uint32_t last_id_ = 0;
 };
 
-// What every pool shares, whatever its type: the sparse set of entities and the bookkeeping of changes.
+// The type-independent part of a pool: the sparse set of entities and change tracking.
 class PoolBase {
 public:
     static constexpr std::uint32_t absent = 0xffffffffu;
@@ -53,7 +53,7 @@ public:
         const std::uint32_t position = position_of(entity.index);
         return position != absent && entities_[position] == entity;
     }
-    // Place in the dense arrays, or `absent`. Does not check the generation.
+    // Index in the dense arrays, or `absent`. Does not check the generation.
     std::uint32_t position_of(std::uint32_t index) const { return index < sparse_.size() ? sparse_[index] : absent; }
 
     Tick added_tick(std::size_t position) const { return added_[position]; }
@@ -63,7 +63,7 @@ public:
         std::erase_if(removals_, [tick](const Removal& removal) { return removal.tick <= tick; });
     }
 
-    // For snapshots: null where the component is not described, and then it is not saved.
+    // For snapshots: null if the component has no description; it is not saved then.
     virtual const TypeDescription* description() const = 0;
     virtual const void* address(std::size_t position) const = 0;
     virtual void* emplace_default(Entity entity, Tick tick) = 0;
@@ -97,7 +97,7 @@ public:
     void stamp(Entity entity, Tick tick) { changed_[sparse_[entity.index]] = tick; }
 
     Signal added, changed, removed;
-    // Set by the group that owns the order of this pool.
+    // Set by the group that owns this pool's order.
     void* owner = nullptr;
 
 protected:

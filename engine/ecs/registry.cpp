@@ -64,7 +64,7 @@ void Registry::defer(std::function<void(Registry&)> change) {
 }
 
 void Registry::run_deferred() {
-    // A change may itself loop and defer more: its own run when its loop ends, before the rest of this list.
+    // A deferred change may itself loop and defer more: those run when its loop ends, before the rest of this list.
     const std::vector<std::function<void(Registry&)>> changes = std::exchange(deferred_, {});
     for (const auto& change : changes)
         change(*this);

@@ -1,9 +1,9 @@
 // The world: entities and their components.
 //
-// Verbs differ by contract: `get` needs the component, `try_get` may return null, `emplace` needs its absence. Reading
-// is const everywhere; writing goes through `patch`, `replace` or `emplace`, which stamp the current tick, so that a
-// consumer can ask what was added, changed or removed since it last looked. Order of iteration depends only on the
-// sequence of calls. Not thread safe for writing; any number of threads may read between writes.
+// Names tell the contract: `get` requires the component, `try_get` may return null, `emplace` requires that it is
+// absent. Reading is const everywhere; writing goes through `patch`, `replace` or `emplace`, which stamp the current
+// tick, so that a consumer can ask what was added, changed or removed since it last looked. Iteration order depends
+// only on the sequence of calls. Writing is not thread-safe; any number of threads may read between writes.
 #pragma once
 
 #include "engine/ecs/view.h"
@@ -27,7 +27,7 @@ public:
                living_[entity.index];
     }
     std::size_t entity_count() const { return generations_.size() - free_.size(); }
-    // Living entities by rising index.
+    // Living entities in order of index.
     std::vector<Entity> entities() const;
 
     template <typename T>
@@ -35,7 +35,7 @@ public:
         assert(alive(entity) && "emplace on a dead entity");
         assert(iterating_ == 0 && "defer structural changes while iterating");
         Pool<T>& target = pool<T>();
-        assert(!target.contains(entity) && "the entity has this component already");
+        assert(!target.contains(entity) && "the entity already has this component");
         target.emplace(entity, std::move(value), tick_);
         after_gain(target, entity);
         return target.value(target.position_of(entity.index));
@@ -69,7 +69,7 @@ public:
     const T* try_get(Entity entity) const {
         return has<T>(entity) ? &get<T>(entity) : nullptr;
     }
-    // change(T&) edits in place; the element counts as changed whether or not anything differs.
+    // change(T&) edits in place; the element counts as changed even if its value stays the same.
     template <typename T, typename Change>
     void patch(Entity entity, Change&& change) {
         Pool<T>& target = pool<T>();
@@ -89,7 +89,7 @@ public:
         const Pool<T>* source = find_pool<T>();
         return source == nullptr ? 0 : source->size();
     }
-    // Declares that Ts are iterated together often; call it once early, or any time (it sorts what is there).
+    // Declares that Ts are often iterated together. Best called early; later calls sort the existing elements.
     template <typename... Ts>
     Group<Ts...> group() {
         const std::vector<PoolBase*> members{&pool<Ts>()...};
@@ -99,7 +99,7 @@ public:
 
     // --- Changes -------------------------------------------------------------------------------------------------
     Tick tick() const { return tick_; }
-    // Ends the current tick and returns it: whatever is stamped later is "since" the returned value.
+    // Ends the current tick and returns it: all later changes count as "since" the returned value.
     Tick advance_tick() { return tick_++; }
     // body(Entity, const T&) for elements stamped after `since`, in pool order. Additions count as changes.
     template <typename T, typename Body>
@@ -138,10 +138,10 @@ public:
                 return true;
         return !source->removals().empty() && source->removals().back().tick > since;
     }
-    // Drops the log of removals that every consumer has seen.
+    // Drops removals that every consumer has seen from the log.
     void forget_removals_until(Tick tick);
 
-    // --- Signals: added (after), changed (after), removed (before the value goes) ---------------------------------
+    // --- Signals: added (after), changed (after), removed (before destruction) -- ---------------------------------
     template <typename T>
     Signal& on_added() {
         return pool<T>().added;
@@ -155,18 +155,18 @@ public:
         return pool<T>().removed;
     }
 
-    // Runs `change` now, or when the outermost running loop has ended, in the order of the calls.
+    // Runs `change` now, or, inside a loop, when the outermost loop has ended, in call order.
     void defer(std::function<void(Registry&)> change);
 
     // --- For snapshots -------------------------------------------------------------------------------------------
-    // Makes the pool of T known, so that a snapshot that holds T can be restored into an empty registry.
+    // Creates the pool of T, so that a snapshot that holds T can be restored into an empty registry.
     template <typename T>
     void register_component() {
         pool<T>();
     }
-    // Every pool, by name of its description; undescribed ones are left out.
+    // All pools of described components, by name.
     std::vector<PoolBase*> described_pools();
-    // Adds a default element for `entity` and returns its address; for restoring.
+    // Adds a default element for `entity` and returns its address; used when restoring.
     void* emplace_default(PoolBase& target, Entity entity);
     void finish_default(PoolBase& target, Entity entity) { after_gain(target, entity); }
 

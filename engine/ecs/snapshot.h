@@ -1,4 +1,4 @@
-// Saves the described components of a registry to bytes and brings them back.
+// Serialises the described components of a registry and restores them.
 #pragma once
 
 #include "engine/core/result.h"
@@ -9,15 +9,15 @@
 
 namespace sunfleck::ecs {
 
-// Old handle (as saved) to the entity that now stands for it.
+// Maps each saved handle to the restored entity.
 using EntityMap = std::unordered_map<EntityBits, Entity>;
 
-// All living entities and their described components, fields by name, in the order of their pools.
+// All living entities and their described components, fields by name, in pool order.
 std::string save_snapshot(Registry& registry);
 
-// Adds the snapshot's entities to `registry` as new ones; fields that hold entities are mapped to the new handles (to
-// null where they point outside the snapshot). Component types must be registered; a type or field that this build does
-// not know, another version, or damaged bytes are an error, and then the registry is as it was.
+// Adds the snapshot's entities to `registry` as new ones; fields that hold entities are remapped to the new handles (to
+// null where they point outside the snapshot). Component types must be registered. Unknown types or fields, other
+// versions and damaged data are errors that leave the registry unchanged.
 Result<EntityMap> restore_snapshot(Registry& registry, std::string_view bytes);
 
 } // namespace sunfleck::ecs

@@ -1,4 +1,4 @@
-// Loops over the entities that have all of some components.
+// Loops over the entities that have all of several components.
 #pragma once
 
 #include "engine/ecs/pool.h"
@@ -7,7 +7,7 @@
 
 namespace sunfleck::ecs {
 
-// Counts running loops of a registry; structural changes wait until the outermost one has ended (Registry::defer).
+// Counts the active loops of a registry; deferred changes wait until the outermost one has ended (Registry::defer).
 class IterationScope {
 public:
     explicit IterationScope(Registry& registry);
@@ -19,9 +19,9 @@ private:
     Registry& registry_;
 };
 
-// Read-only loop over Ts. Order: that of the smallest pool (the first of equals), so it is the same in every run.
-// Pools filled side by side are walked in step: an element's place in one pool predicts its place in the next, and the
-// sparse look-up is needed only where the prediction fails.
+// Read-only loop over Ts, in the order of the smallest pool (the first of equals), which makes it deterministic. Pools
+// filled side by side are walked in step: an element's index in one pool predicts its index in the next, and the sparse
+// look-up is needed only where the prediction fails.
 template <typename... Ts>
 class View {
 public:
@@ -81,13 +81,13 @@ private:
     std::tuple<const Pool<Ts>*...> pools_;
 };
 
-// A declared group: the pools of Ts keep the entities that have all of them at their front, in one order, so that a
-// loop is a loop over plain arrays. A pool belongs to at most one group. Made by Registry::group.
+// An owning group: the pools of Ts keep the entities that have all of them at the front, in the same order, so that a
+// loop runs over plain arrays. A pool belongs to at most one group. Created by Registry::group.
 class GroupBase {
 public:
     explicit GroupBase(std::vector<PoolBase*> pools) : pools_(std::move(pools)) {
         for (PoolBase* pool : pools_) {
-            assert(pool->owner == nullptr && "a pool belongs to one group at most");
+            assert(pool->owner == nullptr && "a pool belongs to at most one group");
             pool->owner = this;
         }
         const std::vector<Entity> entities = pools_.front()->entities();
@@ -106,7 +106,7 @@ public:
             pool->swap_positions(pool->position_of(entity.index), std::uint32_t(size_));
         ++size_;
     }
-    // Called before the component goes.
+    // Called before the component is removed.
     void entity_losing(Entity entity) {
         if (pools_.front()->position_of(entity.index) >= size_)
             return;

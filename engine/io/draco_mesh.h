@@ -1,6 +1,6 @@
-// Draco's compressed meshes, by libdraco. A library of its own: Debian's libdraco exports another version of tinygltf,
-// whose functions would take the place of the real ones in any program that links both in the wrong order. Behind this
-// library it comes last.
+// Draco-compressed meshes, by libdraco. A shared library of its own: Debian's libdraco also exports an old version of
+// tinygltf, which would replace the real one in any program that links both in the wrong order. Behind this library it
+// comes last in the symbol search.
 #pragma once
 
 #include "engine/core/result.h"
@@ -16,13 +16,13 @@ namespace sunfleck::io {
 struct DracoMesh {
     struct Attribute {
         std::vector<float> values;
-        std::size_t width = 1; // numbers a vertex
+        std::size_t width = 1; // components per vertex
     };
-    std::map<std::string, Attribute> attributes; // by the names asked for
-    std::vector<std::uint32_t> indices;          // three a triangle
+    std::map<std::string, Attribute> attributes; // by requested name
+    std::vector<std::uint32_t> indices;          // three per triangle
 };
 
-// `attributes`: names, and the ids under which the data holds them. Everything is finite and in range.
+// `attributes`: requested names and their ids in the data. All results are finite and in range.
 Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attributes);
 
 } // namespace sunfleck::io

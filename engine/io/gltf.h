@@ -1,5 +1,5 @@
 // glTF 2.0 both ways: geometry, materials and textures, cameras, punctual lights, the node hierarchy, skins, morph
-// targets and node animations. Imported files may be anything at all: what is not valid gives one message.
+// targets and node animations. Imported files are not trusted: whatever is invalid gives one message.
 #pragma once
 
 #include "engine/core/result.h"
@@ -18,38 +18,38 @@ namespace sunfleck::io {
 // glTF's photometric units (candela, lux, nit) over ours, lm/W. Used both ways, here alone.
 inline constexpr float luminous_efficacy = 683.0f;
 
-// Radiance, W/(sr m2), that emission 1 without KHR_materials_emissive_strength is taken for: by glTF's text it would be
-// a nit, which nobody sees beside a lamp, and what its authors mean is a glow.
+// Radiance, W/(sr m2), of emission 1 without KHR_materials_emissive_strength. By the specification it would be one
+// nit, invisible next to a lamp; authors mean a visible glow.
 inline constexpr float emission_without_unit = 0.5f;
 
 struct ImportOptions {
     int scene = -1;      // -1: the file's default, else its first, else all nodes without a parent
     std::string variant; // of KHR_materials_variants, by name; empty: the file's own materials
-    int animation = 0;   // which one plays; -1: none
-    // Called now and then with the share that is done, from any thread but by one at a time; returning false stops the
+    int animation = 0;   // which one is played; -1: none
+    // Called occasionally with the fraction done, from any thread but never concurrently; returning false cancels the
     // import with an error.
     std::function<bool(float)> progress;
 };
 
 struct ImportReport {
-    std::vector<std::string> notes;              // what the file has and this import leaves out or changes
-    std::vector<std::string> scenes, animations; // names, by number
+    std::vector<std::string> notes;              // what the import ignored or changed
+    std::vector<std::string> scenes, animations; // names, by index
     std::vector<std::string> variants;
     std::map<std::string, std::uint64_t> counts;       // "nodes", "meshes", "triangles", "materials", "textures", ...
     std::map<std::string, std::uint64_t> memory_bytes; // "vertices", "indices", "textures"
-    std::map<std::string, std::string> settings;       // of the lighting, from a scene file
+    std::map<std::string, std::string> settings;       // lighting settings of a scene file
 };
 
-// Adds a scene of the file to `registry`. Names of entities differ: later ones of the same name get a number. Files
-// outside the glTF file's folder are not read. On failure nothing has been added.
+// Adds a scene of the file to `registry`. Names of entities are made unique by appending a number. Files
+// outside the glTF file's folder are not read. On failure nothing is added.
 Result<ImportReport> import_gltf(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
                                  scene::TextureStore& textures, const ImportOptions& options = {});
 // The same from memory, without any other files.
 Result<ImportReport> import_gltf_bytes(std::string bytes, ecs::Registry& registry, scene::MeshStore& meshes,
                                        scene::TextureStore& textures, const ImportOptions& options = {});
 
-// Writes entities with a Name as nodes of a .glb file. What glTF has no words for (AreaLight, Mover, Exposure,
-// Environment) is left to the scene file. Deforming meshes are written as they stand.
+// Writes entities with a Name as nodes of a .glb file. What glTF cannot express (AreaLight, Mover, Exposure,
+// Environment) is left to the scene file. Deforming meshes are written in their current pose.
 Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
                    const scene::TextureStore& textures);
 

@@ -11,7 +11,7 @@ Error accessor_error(int accessor, const std::string& why) {
     return Error{"accessor " + std::to_string(accessor) + " " + why};
 }
 
-// Whether `count` elements of `element` bytes, `stride` apart, fit into `bytes` from `offset` on. Without overflow.
+// Whether `count` elements of `element` bytes, `stride` apart, fit into `bytes` from `offset` on. Overflow-safe.
 bool fits(std::size_t bytes, std::size_t offset, std::size_t count, std::size_t element, std::size_t stride) {
     if (count == 0)
         return offset <= bytes;
@@ -20,7 +20,7 @@ bool fits(std::size_t bytes, std::size_t offset, std::size_t count, std::size_t 
     return stride == 0 || (count - 1) <= (bytes - offset - element) / stride;
 }
 
-// glTF 2.0, sec. 3.11: normalised integers stand for -1 to 1, or 0 to 1.
+// glTF 2.0, sec. 3.11: normalised integers represent -1 to 1, or 0 to 1.
 float component_value(const unsigned char* address, int type, bool normalized) {
     const auto scaled = [&](float value, float most) { return normalized ? std::max(value / most, -1.0f) : value; };
     switch (type) {
@@ -61,7 +61,7 @@ bool contains(const std::vector<int>& list, int value) {
     return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-// Where an element's components lie: columns of small matrices start at multiples of four bytes.
+// Layout of an element's components: columns of small matrices start at multiples of four bytes.
 std::vector<std::size_t> component_offsets(int type, std::size_t component) {
     std::size_t rows = std::size_t(tinygltf::GetNumComponentsInType(std::uint32_t(type))), columns = 1;
     if (type == TINYGLTF_TYPE_MAT2 || type == TINYGLTF_TYPE_MAT3 || type == TINYGLTF_TYPE_MAT4) {
@@ -76,56 +76,73 @@ std::vector<std::size_t> component_offsets(int type, std::size_t component) {
     return offsets;
 }
 
-// Calls read(element, address) for the elements of one range of a view.
+// A run of elements in a buffer view.
+struct Elements {
+    int view;
+    std::size_t offset, count;
+    std::size_t component, size; // bytes of a component and of an element
+    bool strided;                // elements lie the view's stride apart
+};
+
+// Calls read(element, address) for the elements; `accessor` is for messages.
 template <typename Read>
-Status each_in_view(const tinygltf::Model& model, int accessor, int view, std::size_t offset, std::size_t count,
-                    std::size_t component, std::size_t element, bool strided, const Read& read) {
-    SUNFLECK_ASSIGN(const std::span<const unsigned char> bytes, view_bytes(model, view));
-    const tinygltf::BufferView& source = model.bufferViews[std::size_t(view)];
-    const std::size_t stride = strided && source.byteStride > 0 ? source.byteStride : element;
-    if (stride < element || (strided && source.byteStride > 0 && source.byteStride % component != 0))
+Status each_in_view(const tinygltf::Model& model, int accessor, const Elements& elements, const Read& read) {
+    SUNFLECK_ASSIGN(const std::span<const unsigned char> bytes, view_bytes(model, elements.view));
+    const tinygltf::BufferView& source = model.bufferViews[std::size_t(elements.view)];
+    const bool strided = elements.strided && source.byteStride > 0;
+    const std::size_t stride = strided ? source.byteStride : elements.size, component = elements.component;
+    if (stride < elements.size || (strided && source.byteStride % component != 0))
         return accessor_error(accessor, "has an invalid stride of " + std::to_string(stride) + " bytes");
-    if ((source.byteOffset + offset) % component != 0)
+    if ((source.byteOffset + elements.offset) % component != 0)
         return accessor_error(accessor, "is not aligned to its components of " + std::to_string(component) + " bytes");
-    if (!fits(bytes.size(), offset, count, element, stride))
+    if (!fits(bytes.size(), elements.offset, elements.count, elements.size, stride))
         return accessor_error(accessor, "reaches outside its buffer view");
-    for (std::size_t i = 0; i < count; ++i)
-        read(i, bytes.data() + offset + i * stride);
+    for (std::size_t i = 0; i < elements.count; ++i)
+        read(i, bytes.data() + elements.offset + i * stride);
     return {};
 }
 
-// Calls read(element, address) for all elements, then for those that the sparse part replaces.
+// The elements that sparse storage replaces, in ascending order.
+Result<std::vector<std::size_t>> sparse_indices(const tinygltf::Model& model, int index) {
+    const tinygltf::Accessor& accessor = model.accessors[std::size_t(index)];
+    const auto& sparse = accessor.sparse;
+    const int type = sparse.indices.componentType;
+    if (!contains({TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                   TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
+                  type) ||
+        sparse.count < 1 || std::size_t(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
+        sparse.values.byteOffset < 0)
+        return accessor_error(index, "has an invalid sparse part");
+    const std::size_t size = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(type)));
+    std::vector<std::size_t> places;
+    SUNFLECK_TRY(each_in_view(
+        model, index,
+        {sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), std::size_t(sparse.count), size, size,
+         false},
+        [&](std::size_t, const unsigned char* address) { places.push_back(integer_value(address, type)); }));
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (places[i] >= accessor.count || (i > 0 && places[i] <= places[i - 1]))
+            return accessor_error(index, "has sparse indices that do not increase or point past its end");
+    return places;
+}
+
+// Calls read(element, address) for all elements, then for those that sparse storage replaces.
 template <typename Read>
 Status each_element(const tinygltf::Model& model, int index, const Read& read) {
     const tinygltf::Accessor& accessor = model.accessors[std::size_t(index)];
     const std::size_t component = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType)));
-    const std::size_t element = component_offsets(accessor.type, component).back() + component;
+    const std::size_t size = component_offsets(accessor.type, component).back() + component;
     if (accessor.bufferView >= 0)
-        SUNFLECK_TRY(each_in_view(model, index, accessor.bufferView, accessor.byteOffset, accessor.count, component,
-                                  element, true, read));
+        SUNFLECK_TRY(each_in_view(
+            model, index, {accessor.bufferView, accessor.byteOffset, accessor.count, component, size, true}, read));
     else if (accessor.byteOffset != 0)
         return accessor_error(index, "has an offset but no buffer view");
     if (!accessor.sparse.isSparse)
         return {};
-    const auto& sparse = accessor.sparse;
-    const int index_type = sparse.indices.componentType;
-    if (!contains({TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                   TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
-                  index_type) ||
-        sparse.count < 1 || std::size_t(sparse.count) > accessor.count || sparse.indices.byteOffset < 0 ||
-        sparse.values.byteOffset < 0)
-        return accessor_error(index, "has an invalid sparse part");
-    const std::size_t index_size = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(index_type)));
-    std::vector<std::size_t> places;
-    SUNFLECK_TRY(each_in_view(
-        model, index, sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), std::size_t(sparse.count),
-        index_size, index_size, false,
-        [&](std::size_t, const unsigned char* address) { places.push_back(integer_value(address, index_type)); }));
-    for (std::size_t i = 0; i < places.size(); ++i)
-        if (places[i] >= accessor.count || (i > 0 && places[i] <= places[i - 1]))
-            return accessor_error(index, "has sparse indices that do not rise or point past its end");
-    return each_in_view(model, index, sparse.values.bufferView, std::size_t(sparse.values.byteOffset), places.size(),
-                        component, element, false,
+    SUNFLECK_ASSIGN(const std::vector<std::size_t> places, sparse_indices(model, index));
+    const auto& values = accessor.sparse.values;
+    return each_in_view(model, index,
+                        {values.bufferView, std::size_t(values.byteOffset), places.size(), component, size, false},
                         [&](std::size_t i, const unsigned char* address) { read(places[i], address); });
 }
 
@@ -135,10 +152,10 @@ Result<const tinygltf::Accessor*> find_accessor(const tinygltf::Model& model, in
         return Error{"accessor " + std::to_string(index) + " does not exist"};
     const tinygltf::Accessor& accessor = model.accessors[std::size_t(index)];
     if (!contains(types, accessor.type) || !contains(components, accessor.componentType))
-        return accessor_error(index, "has a type that its use does not admit");
+        return accessor_error(index, "has a type that is not allowed here");
     if (accessor.count < 1 || accessor.count > element_limit)
         return accessor_error(index, "has " + std::to_string(accessor.count) + " elements; 1 to " +
-                                         std::to_string(element_limit) + " are possible");
+                                         std::to_string(element_limit) + " are supported");
     if (accessor.bufferView < 0 && !accessor.sparse.isSparse && accessor.count > (1u << 20))
         return accessor_error(index, "has no data");
     return &accessor;

@@ -1,4 +1,4 @@
-// Reading glTF accessors without trusting a number in them: glTF 2.0, sec. 3.6.2.
+// Reads glTF accessors (glTF 2.0, sec. 3.6.2) without trusting any number in them.
 #pragma once
 
 #include "engine/core/result.h"
@@ -11,23 +11,23 @@
 
 namespace sunfleck::io {
 
-inline constexpr std::size_t element_limit = 50u << 20; // of one accessor
+inline constexpr std::size_t element_limit = 50u << 20; // per accessor
 
 template <typename T>
 bool in_range(int index, const std::vector<T>& list) {
     return index >= 0 && std::size_t(index) < list.size();
 }
 
-// What a use of an accessor admits.
+// What an accessor may contain in a given use.
 struct AccessorUse {
     std::vector<int> types;      // TINYGLTF_TYPE_...
     std::vector<int> components; // TINYGLTF_COMPONENT_TYPE_...
-    // Whole numbers of KHR_mesh_quantization need no `normalized`: they stand for themselves.
+    // Integers of KHR_mesh_quantization need not be `normalized`: they are used as they are.
     bool plain_integers = false;
 };
 
-// Elements as floats, component after component; `width` of them an element. Normalised integers become numbers from -1
-// or 0 to 1 (sec. 3.11 there). Everything is finite.
+// Elements as floats, `width` per element. Normalised integers are converted to [-1, 1] or [0, 1] (sec. 3.11). All
+// values are finite.
 struct FloatElements {
     std::vector<float> values;
     std::size_t width = 1;
@@ -35,10 +35,10 @@ struct FloatElements {
     const float* operator[](std::size_t i) const { return &values[i * width]; }
 };
 
-// Interleaved, sparse and empty (all zero) accessors alike. Errors name the accessor and what is wrong with it.
+// Accepts interleaved, sparse and empty (all zero) accessors. Errors name the accessor and the fault.
 Result<FloatElements> read_floats(const tinygltf::Model& model, int accessor, const AccessorUse& use);
 
-// Unsigned whole numbers: indices, joints.
+// Unsigned integers: indices, joints.
 Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, int accessor, int type,
                                                  const std::vector<int>& components);
 

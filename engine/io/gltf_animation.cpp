@@ -15,7 +15,7 @@ Result<std::vector<float>> read_times(const tinygltf::Model& model, int accessor
     const std::vector<float>& times = elements.values;
     for (std::size_t i = 0; i < times.size(); ++i)
         if (times[i] < 0.0f || (i > 0 && times[i] < times[i - 1]))
-            return Error{"key times must rise from 0"};
+            return Error{"key times must increase from 0"};
     return times;
 }
 
@@ -37,7 +37,7 @@ Status read_values(const tinygltf::Model& model, int accessor, scene::AnimationC
                                  rotation ? packed_types : std::vector<int>{type_float}}));
     const bool cubic = curve.interpolation == scene::AnimationInterpolation::cubic_spline;
     if (elements.count() != curve.times.size() * (cubic ? 3 : 1))
-        return Error{"it has not one value for each key"};
+        return Error{"it does not have one value per key"};
     for (std::size_t i = 0; i < elements.count(); ++i) {
         vec4 value(0.0f);
         for (std::size_t c = 0; c < elements.width; ++c)
@@ -59,7 +59,7 @@ Status read_weights(const tinygltf::Model& model, int accessor, scene::WeightCur
     const std::size_t sets =
         curve.times.size() * (curve.interpolation == scene::AnimationInterpolation::cubic_spline ? 3 : 1);
     if (elements.count() % sets != 0)
-        return Error{"it has not the same number of weights for each key"};
+        return Error{"it does not have the same number of weights for each key"};
     curve.width = std::uint32_t(elements.count() / sets);
     curve.values = std::move(elements.values);
     return {};
@@ -82,7 +82,7 @@ Status read_channel(const tinygltf::Model& model, const tinygltf::AnimationChann
     else if (channel.target_path == "scale")
         curve.target = scene::AnimationTarget::scale;
     else if (channel.target_path != "translation")
-        return Error{"it moves '" + channel.target_path + "', which glTF does not know"};
+        return Error{"it moves '" + channel.target_path + "', which is not a glTF animation target"};
     SUNFLECK_TRY(read_values(model, sampler.output, curve));
     animation.curves.push_back(std::move(curve));
     return {};

@@ -19,7 +19,7 @@ constexpr std::array known_extensions = {
     std::string_view("EXT_mesh_gpu_instancing"),   std::string_view("EXT_meshopt_compression"),
     std::string_view("KHR_draco_mesh_compression")};
 
-// "section[].key" holds a number (or numbers) of elements of another section.
+// "section[].key" holds the index (or indices) of elements of another section.
 struct Reference {
     std::string_view section;
     std::vector<std::string_view> path; // "[]" steps into all elements of an array or object
@@ -58,7 +58,7 @@ const std::vector<Reference>& references() {
     return list;
 }
 
-// A property whose type tinygltf would not check. `kinds`: n number, s string, b boolean, a list of numbers, o object.
+// A property whose type tinygltf does not check. `kinds`: n number, s string, b boolean, a list of numbers, o object.
 struct Property {
     std::string_view section;
     std::vector<std::string_view> path;
@@ -199,7 +199,7 @@ Status check_sections(const json& file) {
     return {};
 }
 
-// A node has one parent at most, so nodes form trees unless they form a ring.
+// A node has at most one parent, so the nodes form trees unless there is a cycle.
 Status check_nodes(const json& file) {
     const auto nodes = file.find("nodes");
     if (nodes == file.end())
@@ -223,35 +223,40 @@ Status check_nodes(const json& file) {
     return {};
 }
 
-// Views of one buffer may be equal or lie within each other, but one must not begin within another and end outside.
+struct ViewRange {
+    std::int64_t buffer, begin, end;
+    std::size_t view;
+};
+
+Result<ViewRange> view_range(const json& view, std::size_t index) {
+    const auto number = [&](const char* key, std::int64_t fallback) -> std::int64_t {
+        const auto found = view.find(key);
+        return found == view.end() ? fallback : found->is_number_integer() ? found->get<std::int64_t>() : -1;
+    };
+    const std::int64_t buffer = number("buffer", -1), begin = number("byteOffset", 0),
+                       length = number("byteLength", -1);
+    constexpr std::int64_t limit = std::int64_t(1) << 40;
+    if (buffer < 0 || begin < 0 || length < 1 || begin > limit || length > limit)
+        return Error{"buffer view " + std::to_string(index) + " has no valid buffer, offset or length"};
+    return ViewRange{buffer, begin, begin + length, index};
+}
+
+// Views of a buffer may be equal or nested, but must not overlap partially.
 Status check_views(const json& file) {
     const auto views = file.find("bufferViews");
     if (views == file.end())
         return {};
-    struct Range {
-        std::int64_t buffer, begin, end;
-        std::size_t view;
-    };
-    std::vector<Range> ranges;
+    std::vector<ViewRange> ranges;
     for (std::size_t i = 0; i < views->size(); ++i) {
-        const json& view = (*views)[i];
-        const auto number = [&](const char* key, std::int64_t fallback) -> std::int64_t {
-            const auto found = view.find(key);
-            return found == view.end() ? fallback : found->is_number_integer() ? found->get<std::int64_t>() : -1;
-        };
-        const std::int64_t buffer = number("buffer", -1), begin = number("byteOffset", 0),
-                           length = number("byteLength", -1);
-        constexpr std::int64_t most = std::int64_t(1) << 40;
-        if (buffer < 0 || begin < 0 || length < 1 || begin > most || length > most)
-            return Error{"buffer view " + std::to_string(i) + " has no valid buffer, offset or length"};
-        if (!view.contains("extensions")) // compressed views are read by others
-            ranges.push_back({buffer, begin, begin + length, i});
+        SUNFLECK_ASSIGN(const ViewRange range, view_range((*views)[i], i));
+        if (!(*views)[i].contains("extensions")) // compressed views are checked elsewhere
+            ranges.push_back(range);
     }
-    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+    std::sort(ranges.begin(), ranges.end(), [](const ViewRange& a, const ViewRange& b) {
         return std::tie(a.buffer, a.begin, b.end) < std::tie(b.buffer, b.begin, a.end);
     });
-    std::vector<Range> open;
-    for (const Range& range : ranges) {
+    std::vector<ViewRange> open;
+    for (const ViewRange& range : ranges) {
         while (!open.empty() && (open.back().buffer != range.buffer || open.back().end <= range.begin))
             open.pop_back();
         if (!open.empty() && range.end > open.back().end)

@@ -1,4 +1,4 @@
-// Checks of a glTF file's JSON before anything else reads it.
+// Checks a glTF file's JSON before anything else reads it.
 #pragma once
 
 #include "engine/core/result.h"
@@ -10,14 +10,14 @@ namespace sunfleck::io {
 
 inline constexpr std::size_t nesting_limit = 256; // of JSON, and of the node hierarchy
 
-// False: recursive parsers would run out of stack.
+// False if recursive parsers would overflow the stack.
 bool nesting_is_sane(std::string_view json);
 
 // Version, types of sections, references between them, the node graph (a forest: each node has at most one parent),
-// overlapping buffer views, extensions that are required. The message names the place.
+// overlapping buffer views, required extensions. The message names the place.
 Status check_gltf_json(const nlohmann::json& file);
 
-// Extensions that the import understands.
+// Extensions that the import supports.
 bool is_known_extension(std::string_view name);
 
 } // namespace sunfleck::io

@@ -38,8 +38,8 @@ Result<Chunks> split_chunks(std::string bytes) {
         return Error{"it is not a GLB file of version 2"};
     const std::size_t end = word_at(bytes, 8);
     if (end > bytes.size())
-        return Error{"it is cut off: " + std::to_string(end) + " bytes are announced, " + std::to_string(bytes.size()) +
-                     " are there"};
+        return Error{"it is truncated: " + std::to_string(end) + " bytes are declared, " +
+                     std::to_string(bytes.size()) + " are there"};
     for (std::size_t at = 12; at + 8 <= end;) {
         const std::size_t length = word_at(bytes, at);
         const std::uint32_t type = word_at(bytes, at + 4);
@@ -57,7 +57,7 @@ Result<Chunks> split_chunks(std::string bytes) {
     return chunks;
 }
 
-// Bytes of a buffer: a URI's, the binary chunk's, or none where compressed views stand in for it.
+// Bytes of a buffer: from its URI or the binary chunk; none for the fallback buffer of compressed views.
 Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& chunks,
                                  const std::filesystem::path& folder) {
     const std::string place = "buffer " + std::to_string(index);
@@ -75,7 +75,7 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
             return Error{place + ": " + read.error().message};
         bytes = std::move(*read);
     } else if (buffer.contains("extensions") && buffer["extensions"].contains("EXT_meshopt_compression")) {
-        return std::string(); // a stand-in for programs that cannot decompress
+        return std::string(); // the fallback for programs that cannot decompress
     } else if (index == 0 && chunks.is_binary) {
         bytes = std::move(chunks.binary);
     } else {
@@ -83,12 +83,12 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
     }
     if (bytes.size() < length)
         return Error{place + " has " + std::to_string(bytes.size()) + " bytes; " + std::to_string(length) +
-                     " are announced"};
+                     " are declared"};
     bytes.resize(length);
     return bytes;
 }
 
-// Takes out of the JSON what tinygltf shall not touch: where bytes come from, and what it would refuse.
+// Removes from the JSON what tinygltf must not handle: sources of bytes, and what it would reject.
 json for_tinygltf(const json& file) {
     json reduced = file;
     reduced.erase("images");
@@ -113,7 +113,32 @@ std::string text_of(const tinygltf::Value& object, const char* key) {
     return object.Has(key) && object.Get(key).IsString() ? object.Get(key).Get<std::string>() : std::string();
 }
 
-// EXT_meshopt_compression: the view's bytes come from another buffer, compressed.
+// EXT_meshopt_compression's modes and filters: decompresses `count` elements into `plain`.
+bool decode_meshopt(const tinygltf::Value& source, std::span<const unsigned char> bytes, std::size_t count,
+                    std::vector<unsigned char>& plain) {
+    const std::size_t size = plain.size() / count;
+    const std::string mode = text_of(source, "mode"), filter = text_of(source, "filter");
+    int failed = 1;
+    if (mode == "ATTRIBUTES" && size % 4 == 0)
+        failed = meshopt_decodeVertexBuffer(plain.data(), count, size, bytes.data(), bytes.size());
+    else if (mode == "TRIANGLES" && count % 3 == 0 && (size == 2 || size == 4))
+        failed = meshopt_decodeIndexBuffer(plain.data(), count, size, bytes.data(), bytes.size());
+    else if (mode == "INDICES" && (size == 2 || size == 4))
+        failed = meshopt_decodeIndexSequence(plain.data(), count, size, bytes.data(), bytes.size());
+    if (failed != 0)
+        return false;
+    if (filter == "OCTAHEDRAL" && (size == 4 || size == 8))
+        meshopt_decodeFilterOct(plain.data(), count, size);
+    else if (filter == "QUATERNION" && size == 8)
+        meshopt_decodeFilterQuat(plain.data(), count, size);
+    else if (filter == "EXPONENTIAL" && size % 4 == 0)
+        meshopt_decodeFilterExp(plain.data(), count, size);
+    else if (!filter.empty() && filter != "NONE")
+        return false;
+    return true;
+}
+
+// EXT_meshopt_compression: the view's bytes are stored compressed in another buffer.
 Status decompress_view(tinygltf::Model& model, std::size_t index) {
     tinygltf::BufferView& view = model.bufferViews[index];
     const tinygltf::Value& source = view.extensions.at("EXT_meshopt_compression");
@@ -127,29 +152,12 @@ Status decompress_view(tinygltf::Model& model, std::size_t index) {
     const std::vector<unsigned char>& data = model.buffers[std::size_t(buffer)].data;
     if (std::size_t(offset) > data.size() || std::size_t(length) > data.size() - std::size_t(offset))
         return invalid;
-    // Each block of 16 elements has a header of its own: more elements than this cannot come from so few bytes.
+    // Each block of 16 elements has its own header: so few bytes cannot hold more elements than this.
     if (std::size_t(count) > std::size_t(length) * 256)
         return invalid;
-    const unsigned char* bytes = data.data() + offset;
-    const std::size_t elements = std::size_t(count), size = std::size_t(stride);
-    std::vector<unsigned char> plain(elements * size);
-    const std::string mode = text_of(source, "mode"), filter = text_of(source, "filter");
-    int failed = 1;
-    if (mode == "ATTRIBUTES" && size % 4 == 0)
-        failed = meshopt_decodeVertexBuffer(plain.data(), elements, size, bytes, std::size_t(length));
-    else if (mode == "TRIANGLES" && elements % 3 == 0 && (size == 2 || size == 4))
-        failed = meshopt_decodeIndexBuffer(plain.data(), elements, size, bytes, std::size_t(length));
-    else if (mode == "INDICES" && (size == 2 || size == 4))
-        failed = meshopt_decodeIndexSequence(plain.data(), elements, size, bytes, std::size_t(length));
-    if (failed != 0)
-        return invalid;
-    if (filter == "OCTAHEDRAL" && (size == 4 || size == 8))
-        meshopt_decodeFilterOct(plain.data(), elements, size);
-    else if (filter == "QUATERNION" && size == 8)
-        meshopt_decodeFilterQuat(plain.data(), elements, size);
-    else if (filter == "EXPONENTIAL" && size % 4 == 0)
-        meshopt_decodeFilterExp(plain.data(), elements, size);
-    else if (!filter.empty() && filter != "NONE")
+    std::vector<unsigned char> plain(std::size_t(count) * std::size_t(stride));
+    if (!decode_meshopt(source, std::span(data).subspan(std::size_t(offset), std::size_t(length)), std::size_t(count),
+                        plain))
         return invalid;
     tinygltf::Buffer fresh;
     fresh.data = std::move(plain);

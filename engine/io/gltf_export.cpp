@@ -61,7 +61,7 @@ private:
         return int(model_.bufferViews.size() - 1);
     }
 
-    // Every texture of the store, with a sampler of its own, under its number.
+    // Every texture of the store with its own sampler, under its own index.
     Status add_textures() {
         for (std::uint32_t i = 0; i < textures_.size(); ++i) {
             const scene::Texture& source = textures_[i];
@@ -260,7 +260,7 @@ private:
             target.type = "perspective";
             target.perspective.yfov = double(camera->vertical_field_of_view);
             target.perspective.znear = 0.01;
-            target.perspective.zfar = 1000.0; // glTF allows none, but tinygltf writes one always
+            target.perspective.zfar = 1000.0; // optional in glTF, but tinygltf always writes one
             model_.cameras.push_back(target);
             node.camera = int(model_.cameras.size() - 1);
         }

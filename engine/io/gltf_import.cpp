@@ -1,4 +1,4 @@
-// From a checked document to entities. Everything that can fail is read first; then the registry is filled.
+// From a checked document to entities. Everything that can fail comes first; then the registry is filled.
 #include "engine/core/file.h"
 #include "engine/io/gltf.h"
 #include "engine/io/gltf_animation.h"
@@ -70,14 +70,14 @@ Status read_meshes(const tinygltf::Model& model, GltfContent& content, ImportRep
             primitive->mesh.rest.name = mesh.name.empty() ? "mesh " + std::to_string(m) : mesh.name;
             if (!primitive->drawn)
                 report.notes.push_back("mesh '" + primitive->mesh.rest.name +
-                                       "': has more points or lines than are drawn");
+                                       "': has too many points or lines and is not drawn");
             content.meshes.back().push_back(std::move(*primitive));
         }
     }
     return {};
 }
 
-// Weights beyond the joints of the skin would read past its end.
+// Joint indices beyond the skin would read past its end.
 Status check_skinned_nodes(const tinygltf::Model& model, const GltfContent& content) {
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         const tinygltf::Node& node = model.nodes[i];
@@ -128,14 +128,14 @@ Result<int> choose_scene(const tinygltf::Model& model, const ImportOptions& opti
     if (model.defaultScene >= 0 && !in_range(model.defaultScene, model.scenes))
         return Error{"its default scene " + std::to_string(model.defaultScene) + " does not exist"};
     if (model.scenes.empty())
-        report.notes.push_back("it has no scene: all its nodes are shown");
+        report.notes.push_back("it has no scene: all its nodes are imported");
     return model.defaultScene >= 0 ? model.defaultScene : 0;
 }
 
 void note_extensions(const tinygltf::Model& model, ImportReport& report) {
     for (const std::string& name : model.extensionsUsed)
         if (!is_known_extension(name))
-            report.notes.push_back("extension " + name + " is left out");
+            report.notes.push_back("extension " + name + " is ignored");
     bool relative = false;
     for (const tinygltf::Material& material : model.materials) {
         const auto& factor = material.emissiveFactor;
@@ -144,7 +144,7 @@ void note_extensions(const tinygltf::Model& model, ImportReport& report) {
     }
     if (relative)
         report.notes.push_back(
-            "emission without KHR_materials_emissive_strength has no unit: 1 is taken as 0.5 W/(sr m2)");
+            "emission without KHR_materials_emissive_strength has no unit: 1 is read as 0.5 W/(sr m2)");
 }
 
 void count_content(const GltfContent& content, const scene::TextureStore& textures, std::uint32_t first_texture,
@@ -202,11 +202,11 @@ Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& r
     count_content(nodes.content(), textures, first_texture, report);
     if (model.animations.size() > 1 && options.animation >= 0)
         report.notes.push_back("of " + std::to_string(model.animations.size()) + " animations, '" +
-                               report.animations[std::size_t(options.animation)] + "' plays");
+                               report.animations[std::size_t(options.animation)] + "' is played");
     return report;
 }
 
-// One line of bounded length, whatever libraries put into their messages.
+// Libraries' messages, reduced to one line of bounded length.
 std::string one_line(std::string message) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
         message.pop_back();
@@ -218,12 +218,12 @@ std::string one_line(std::string message) {
 
 template <typename Import>
 Result<ImportReport> guarded(const std::string& what, const Import& import) {
-    // tinygltf, Draco and the containers throw; no exception leaves this function.
+    // tinygltf, Draco and containers throw; no exception leaves this function.
     try {
         auto report = import();
         return report ? std::move(report) : Error{"cannot import " + what + ": " + one_line(report.error().message)};
     } catch (const std::bad_alloc&) {
-        return Error{"cannot import " + what + ": there is not enough memory for it"};
+        return Error{"cannot import " + what + ": out of memory"};
     } catch (const std::exception& exception) {
         return Error{"cannot import " + what + ": it is not valid glTF (" + exception.what() + ")"};
     }

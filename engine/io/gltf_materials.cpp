@@ -47,7 +47,7 @@ scene::TextureWrap wrap_mode(int mode) {
                                                            : scene::TextureWrap::repeat;
 }
 
-// Turns the file's texture numbers into numbers of different pictures as samplers read them.
+// Maps the file's texture indices to distinct textures as samplers read them.
 class TextureTable {
 public:
     explicit TextureTable(const tinygltf::Model& model) : model_(model) {}
@@ -89,7 +89,7 @@ public:
         return use(info.index, info.texCoord, srgb, extension_of(info.extensions, "KHR_texture_transform"));
     }
 
-    // A texture that an extension names.
+    // A texture referenced by an extension.
     scene::TextureUse use(const tinygltf::Value* object, const char* key, bool srgb) {
         if (object == nullptr || !object->Has(key) || !object->Get(key).IsObject())
             return {};
@@ -110,7 +110,7 @@ private:
 };
 
 float clamped(double value, double low, double high) {
-    return float(std::min(std::max(value, low), high)); // also of what is not a number
+    return float(std::min(std::max(value, low), high)); // also handles NaN
 }
 
 ImportedMaterial read_material(const tinygltf::Material& source, TextureTable& table) {
@@ -155,7 +155,7 @@ ImportedMaterial read_material(const tinygltf::Material& source, TextureTable& t
     return result;
 }
 
-// Every image once, however many textures read it.
+// Each image once, however many textures use it.
 Result<std::vector<BytePicture>> decode_images(const GltfDocument& document, const std::vector<bool>& wanted,
                                                const std::function<bool(float)>& progress) {
     std::vector<BytePicture> pictures(document.images.size());
@@ -197,7 +197,7 @@ Result<MaterialImport> MaterialImport::read(const GltfDocument& document, const 
         occlusion = occlusion || source.occlusionTexture.index >= 0;
     }
     if (occlusion)
-        result.notes.push_back("occlusion textures are left out: the lighting computes what they stand for");
+        result.notes.push_back("occlusion textures are ignored: the lighting computes occlusion itself");
     result.fallback_.material.base_colour = vec3(1.0f);
     result.fallback_.material.metallic = 1.0f;
     result.fallback_.material.specular = true;

@@ -15,16 +15,16 @@ struct ImportedMaterial {
     bool has_textures = false;
 };
 
-// Decoded textures and materials, by the file's numbers.
+// Decoded textures and materials, by their index in the file.
 class MaterialImport {
 public:
-    // Decodes the images that materials use, on all cores. `progress` is called now and then with the share that is
-    // done and returns false to stop; it may be called by any thread, one at a time.
+    // Decodes the images that materials use, on all cores. `progress` is called occasionally with the fraction done,
+    // from any thread but never concurrently, and returns false to cancel.
     static Result<MaterialImport> read(const GltfDocument& document, const std::function<bool(float)>& progress);
 
-    // glTF's default material for -1.
+    // -1: glTF's default material.
     const ImportedMaterial& material(int index) const;
-    // Moves the textures to the store; the textures of materials then are the store's.
+    // Moves the textures to the store; materials then refer to the store's textures.
     void add_textures(scene::TextureStore& store);
 
     std::vector<std::string> notes;

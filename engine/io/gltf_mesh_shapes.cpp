@@ -8,8 +8,8 @@
 namespace sunfleck::io {
 namespace {
 
-constexpr std::size_t most_thin_bodies = 500000;               // a primitive
-constexpr float relative_radius = 1e-3f, least_radius = 1e-4f; // of the mesh's diagonal; m
+constexpr std::size_t max_thin_bodies = 500000;              // a primitive
+constexpr float relative_radius = 1e-3f, min_radius = 1e-4f; // of the mesh's diagonal; m
 constexpr int mode_points = 0, mode_lines = 1, mode_line_loop = 2;
 
 template <typename T>
@@ -24,7 +24,7 @@ void gather(std::vector<T>& values, const std::vector<std::uint32_t>& order, std
     values = std::move(result);
 }
 
-// Every vertex of the result is the one that `order` names, with all that belongs to it but normals.
+// Gathers vertices in the given order, with all attributes except normals.
 void gather_vertices(scene::DeformableMesh& mesh, const std::vector<std::uint32_t> order) {
     gather(mesh.rest.positions, order);
     gather(mesh.rest.texture_coordinates, order);
@@ -48,7 +48,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> segments_of(const std::vect
     return segments;
 }
 
-// The vertices of all bodies: which of the mesh's, and which way from there.
+// The vertices of all bodies: a vertex of the mesh and an offset direction each.
 struct Bodies {
     std::vector<std::uint32_t> order, triangles;
     std::vector<vec3> directions;
@@ -100,7 +100,7 @@ void make_flat(scene::DeformableMesh& mesh) {
 
 bool make_solid(scene::DeformableMesh& mesh, const std::vector<std::uint32_t>& indices, int mode) {
     mesh.rest.indices.clear();
-    if (indices.size() > most_thin_bodies)
+    if (indices.size() > max_thin_bodies)
         return false;
     Bodies bodies;
     if (mode == mode_points)
@@ -109,7 +109,7 @@ bool make_solid(scene::DeformableMesh& mesh, const std::vector<std::uint32_t>& i
     else
         for (const auto& [a, b] : segments_of(indices, mode))
             bodies.add_segment(a, b, mesh.rest.positions[b] - mesh.rest.positions[a]);
-    const float radius = std::max(relative_radius * glm::length(mesh.rest.bounds().extent()), least_radius);
+    const float radius = std::max(relative_radius * glm::length(mesh.rest.bounds().extent()), min_radius);
     gather_vertices(mesh, bodies.order);
     for (std::size_t i = 0; i < bodies.directions.size(); ++i)
         mesh.rest.positions[i] += radius * bodies.directions[i];

@@ -29,7 +29,7 @@ vec3 vector_at(const FloatElements& elements, std::size_t i) {
     return {elements[i][0], elements[i][1], elements[i][2]};
 }
 
-// Attributes of one primitive, from accessors or from Draco's data.
+// Attributes of one primitive, from accessors or Draco data.
 class Attributes {
 public:
     Attributes(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
@@ -90,7 +90,7 @@ private:
     bool compressed_ = false;
 };
 
-// Strips and fans as separate triangles, with the winding that glTF 2.0, sec. 3.7.2.1 gives them.
+// Strips and fans as separate triangles, with the winding of glTF 2.0, sec. 3.7.2.1.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& indices, int mode) {
     std::vector<std::uint32_t> result;
     if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
@@ -104,7 +104,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& indice
     return result;
 }
 
-// Unit length; those that have none take that of the faces around.
+// Normalises; zero normals are replaced by the average of the adjacent faces.
 void repair_normals(scene::Mesh& mesh) {
     scene::Mesh smooth;
     for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
@@ -196,7 +196,7 @@ Status read_targets(const tinygltf::Model& model, const tinygltf::Primitive& pri
     return {};
 }
 
-// JOINTS_n and WEIGHTS_n, four influences a set; weights are made to sum up to 1.
+// JOINTS_n and WEIGHTS_n, four influences per set; weights are normalised to sum to 1.
 Status read_influences(const tinygltf::Model& model, const tinygltf::Primitive& primitive, const Attributes& attributes,
                        scene::DeformableMesh& mesh) {
     const std::size_t vertices = mesh.rest.positions.size();
@@ -314,7 +314,7 @@ void generate_tangents(scene::Mesh& mesh, int set) {
             tangent /= length;
         else
             orthonormal_basis(normal, tangent, other);
-        // Normal maps point up where v runs down: the bitangent is along falling v.
+        // Normal maps have Y up while v runs down: the bitangent is along decreasing v.
         const float handedness = glm::dot(glm::cross(normal, tangent), across[i]) > 0.0f ? -1.0f : 1.0f;
         mesh.tangents[i] = vec4(tangent, handedness);
     }

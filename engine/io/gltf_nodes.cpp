@@ -17,7 +17,7 @@ vec3 vector_of(const std::vector<double>& values, vec3 fallback) {
     return values.size() == 3 ? vec3(float(values[0]), float(values[1]), float(values[2])) : fallback;
 }
 
-// A matrix as translation, rotation and scale; `exact` is false if it also shears.
+// Decomposes a matrix into translation, rotation and scale; `exact` is false if it also shears.
 scene::Transform decompose(const std::vector<double>& values, bool& exact) {
     mat4 m;
     for (int i = 0; i < 16; ++i)
@@ -31,7 +31,7 @@ scene::Transform decompose(const std::vector<double>& values, bool& exact) {
     for (int i = 0; i < 3; ++i)
         if (transform.scale[i] != 0.0f)
             r[i] = vec3(m[i]) / transform.scale[i];
-    // Columns without length leave room: what is across the others.
+    // Zero columns are replaced by a direction orthogonal to the others.
     for (int i = 0; i < 3; ++i)
         if (transform.scale[i] == 0.0f)
             r[i] = glm::cross(r[(i + 1) % 3], r[(i + 2) % 3]);
@@ -70,7 +70,7 @@ Status NodeImport::read_node(std::size_t index) {
         bool exact = true;
         transform = decompose(node.matrix, exact);
         if (!exact)
-            notes.push_back(place + ": its matrix shears; the nearest matrix that does not is used");
+            notes.push_back(place + ": its matrix contains shear, which is removed");
     } else {
         transform.position = vector_of(node.translation, vec3(0.0f));
         transform.scale = vector_of(node.scale, vec3(1.0f));
@@ -79,7 +79,7 @@ Status NodeImport::read_node(std::size_t index) {
                                       float(node.rotation[2]));
             const float length = glm::length(transform.rotation);
             if (!(length > 1e-6f))
-                return Error{place + " has a rotation that is zero"};
+                return Error{place + " has a zero rotation quaternion"};
             if (std::abs(length - 1.0f) > 1e-5f)
                 transform.rotation /= length;
         }
@@ -106,9 +106,9 @@ Status NodeImport::read_instances(std::size_t index) {
         if (type == TINYGLTF_TYPE_VEC4)
             components = {TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_SHORT};
         SUNFLECK_ASSIGN(const FloatElements elements, read_floats(*model_, accessor, {{type}, components}));
-        constexpr std::size_t most_instances = 100000;
-        if (elements.count() > most_instances)
-            return Error{"more than " + std::to_string(most_instances) + " instances"};
+        constexpr std::size_t max_instances = 100000;
+        if (elements.count() > max_instances)
+            return Error{"more than " + std::to_string(max_instances) + " instances"};
         if (!list.empty() && list.size() != elements.count())
             return Error{"its instance attributes differ in length"};
         list.resize(elements.count());
@@ -210,7 +210,7 @@ void NodeImport::add_mesh(int index, ecs::Entity entity) {
             continue;
         const bool skinned = node.skin >= 0 && primitives[p].mesh.influences > 0;
         ecs::Entity owner = entity;
-        // Further primitives become children: an entity has one material. Skinned ones are in world space.
+        // Further primitives become children, because an entity has one material. Skinned ones are in world space.
         if (taken || skinned)
             owner = child_of(skinned ? ecs::null_entity : entity,
                              registry_->get<scene::Name>(entity).name + " part " + std::to_string(p + 1), {});
@@ -243,7 +243,7 @@ void NodeImport::add_primitive(int node, const ImportedPrimitive& primitive, ecs
     registry_->emplace<scene::MeshInstance>(entity, {place->second});
 }
 
-// A mesh of its own. What nothing bends while the program runs is bent once, and is static geometry then.
+// A mesh of its own. A mesh whose pose never changes at run time is deformed once and is then static geometry.
 void NodeImport::deform(int node, const ImportedPrimitive& primitive, ecs::Entity entity) {
     const tinygltf::Node& source = model_->nodes[std::size_t(node)];
     const bool skinned = source.skin >= 0 && primitive.mesh.influences > 0;
@@ -283,12 +283,13 @@ void NodeImport::add_camera(const tinygltf::Camera& camera, ecs::Entity entity, 
         registry_->emplace<scene::Camera>(entity, {angle > 0.01f && angle < 3.1f ? angle : 0.9f});
         return;
     }
-    // An orthographic camera is one far away that sees a small angle.
+    // An orthographic camera is approximated by a distant one with a narrow field of view.
     constexpr float angle = 0.035f;
     scene::Transform back;
     back.position.z = std::max(float(camera.orthographic.ymag), 1e-3f) / std::tan(0.5f * angle);
     registry_->emplace<scene::Camera>(child_of(entity, name + " orthographic", back), {angle});
-    notes.push_back("camera of node '" + name + "' is orthographic; a narrow one far away stands for it");
+    notes.push_back("camera of node '" + name +
+                    "' is orthographic; it is approximated by a distant camera with a narrow field of view");
 }
 
 void NodeImport::add_light(const tinygltf::Light& light, ecs::Entity entity) {

@@ -15,7 +15,7 @@ struct ImportedSkin {
     std::vector<mat4> inverse_bind_matrices;
 };
 
-// What has been read of a file, by its numbers.
+// The content of a file that has been read, by index.
 struct GltfContent {
     MaterialImport materials;
     std::vector<std::vector<ImportedPrimitive>> meshes;
@@ -26,7 +26,7 @@ struct GltfContent {
 
 class NodeImport {
 public:
-    // Checks all nodes; nothing can fail afterwards.
+    // Checks all nodes; later steps cannot fail.
     static Result<NodeImport> read(const tinygltf::Model& model, GltfContent content);
     // Adds the trees under `roots`.
     void add_to(ecs::Registry& registry, scene::MeshStore& meshes, scene::TextureStore& textures,
@@ -53,7 +53,7 @@ private:
     GltfContent content_;
     std::vector<scene::Transform> transforms_;
     std::map<int, std::vector<scene::Transform>> instances_; // EXT_mesh_gpu_instancing, by node
-    // While adding.
+    // State while adding.
     ecs::Registry* registry_ = nullptr;
     scene::MeshStore* meshes_ = nullptr;
     std::vector<ecs::Entity> entities_; // by node

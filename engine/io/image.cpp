@@ -20,13 +20,13 @@ std::vector<unsigned char> to_bytes(const Picture& picture) {
     return bytes;
 }
 
-// Pictures are read and written side by side, each by one thread. Pools of threads of OpenImageIO's and OpenEXR's own
-// would end after main, in the order in which static objects happen to.
+// Images are read and written in parallel, one thread each. OpenImageIO's and OpenEXR's own thread pools would be
+// destroyed after main, in the undefined order of static objects.
 void use_no_pools() {
     [[maybe_unused]] static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
 }
 
-// Encoded in memory: the encoders do not report every failed write, our own file writing does.
+// Encoded in memory: the encoders do not report every failed write, but write_file does.
 Result<std::string> encode(const std::filesystem::path& path, const Picture& picture, PictureKind kind) {
     const auto failure = [&](const std::string& why) { return Error{"cannot write '" + path.string() + "': " + why}; };
     use_no_pools();
@@ -36,7 +36,7 @@ Result<std::string> encode(const std::filesystem::path& path, const Picture& pic
         return failure(OIIO::geterror());
     OIIO::ImageSpec spec(int(picture.width), int(picture.height), kind == PictureKind::png ? 3 : 4,
                          kind == PictureKind::png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-    spec.attribute("DateTime", "1970:01:01 00:00:00"); // the same picture is the same file
+    spec.attribute("DateTime", "1970:01:01 00:00:00"); // equal images give equal files
     if (kind == PictureKind::exr)
         spec.attribute("compression", "zip");
     std::vector<unsigned char> bytes;
@@ -63,7 +63,7 @@ const char* format_name(PictureKind kind) {
     }
 }
 
-// A decoder that has read the header, and found a size that can be decoded.
+// A decoder that has read the header and checked the size.
 struct OpenPicture {
     OIIO::Filesystem::IOMemReader memory;
     std::unique_ptr<OIIO::ImageInput> input;
@@ -74,11 +74,11 @@ struct OpenPicture {
 
 Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes) {
     if (bytes.empty())
-        return Error{"the picture is empty"};
+        return Error{"the image is empty"};
     use_no_pools();
     const std::optional<PictureKind> kind = sniff_picture(bytes);
     if (!kind)
-        return Error{"it is not a PNG, JPEG, EXR or HDR picture"};
+        return Error{"it is not a PNG, JPEG, EXR or HDR image"};
     auto open = std::make_unique<OpenPicture>(bytes, *kind);
     open->input = OIIO::ImageInput::create(format_name(*kind));
     if (!open->input || !open->input->supports("ioproxy") || !open->input->set_ioproxy(&open->memory))
@@ -93,11 +93,11 @@ Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes) {
         spec.depth > 1)
         return Error{"it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels with " +
                      std::to_string(spec.nchannels) + " channels; at most " + std::to_string(limit) +
-                     " a side and 2^26 altogether are read"};
+                     " per side and 2^26 in total are supported"};
     return open;
 }
 
-// Reads all pixels in the type of `values`, and spreads the channels to RGBA.
+// Reads all pixels as the type of `values` and expands the channels to RGBA.
 template <typename T>
 Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, std::vector<T>& rgba) {
     const OIIO::ImageSpec& spec = open.input->spec();

@@ -1,4 +1,4 @@
-// Pictures in files: PNG and JPEG (display values), EXR and HDR (scene-linear), by OpenImageIO.
+// Image files: PNG and JPEG (display values), EXR and HDR (scene-linear), by OpenImageIO.
 #pragma once
 
 #include "engine/core/maths.h"
@@ -19,30 +19,30 @@ struct Picture {
 
 enum class PictureKind { png, exr, jpeg, hdr };
 
-// What the bytes are, told by the first of them, whatever the file is called.
+// The format of the bytes by their signature, whatever the file is called.
 std::optional<PictureKind> sniff_picture(std::string_view bytes);
 
 // By the file's extension, for writing: PNG or EXR.
 Result<PictureKind> picture_kind(const std::filesystem::path& path);
 
-// Replaces `path` whole or not at all. PNG has 8 bits a channel and no alpha; EXR has 32-bit floats and alpha.
+// Replaces `path` atomically. PNG has 8 bits per channel and no alpha; EXR has 32-bit floats and alpha.
 Status write_picture(const std::filesystem::path& path, const Picture& picture);
 
-// Any of the four kinds, told by the first bytes. Missing alpha reads as 1.
+// Any of the four formats, by signature. Missing alpha reads as 1.
 Result<Picture> read_picture(const std::filesystem::path& path);
-// At most `side` pixels in each direction: what is larger is refused before it is decoded.
+// At most `side` pixels in each direction: larger images are refused before decoding.
 inline constexpr std::uint32_t picture_side_limit = 16384;
 Result<Picture> decode_picture(std::string_view bytes);
 
-// Eight bits a channel, RGBA, rows from the top; what textures are made from.
+// RGBA with 8 bits per channel, rows from the top: the source of textures.
 struct BytePicture {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> pixels;
-    bool linear = false; // EXR and HDR: values are not display values (and are cut off at 1)
+    bool linear = false; // from EXR or HDR: values are linear (and clamped to 1)
 };
 Result<BytePicture> decode_bytes(std::string_view bytes);
 
-// RGBA with 8 bits a channel as PNG.
+// RGBA with 8 bits per channel as PNG.
 Result<std::string> encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& pixels);
 
 } // namespace sunfleck::io

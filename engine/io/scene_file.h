@@ -1,5 +1,5 @@
-// Scene files (.scene.json): a glTF file plus what glTF has no words for, by node name. Versioned; a checksum tells
-// damage. docs/scene.schema.json describes them.
+// Scene files (.scene.json): a glTF file plus what glTF cannot express, by node name. Versioned, with a checksum
+// against damage. docs/scene.schema.json describes them.
 //
 //     { "sunfleck_scene": 2, "gltf": "room.glb",
 //       "entities": { "lamp": { "AreaLight": { "shape": "rectangle", "width": 1, ... } } },
@@ -12,24 +12,24 @@
 namespace sunfleck::io {
 
 // Loads a .gltf, .glb or .scene.json file into an empty registry and brings world transforms and deformed meshes up to
-// date. On failure nothing has been added.
+// date. On failure nothing is added.
 Result<ImportReport> load_scene(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
                                 scene::TextureStore& textures, const ImportOptions& options = {});
 
 struct SaveOptions {
-    // Names a glTF file (relative to the scene file) that holds the geometry and is left as it is; transforms,
-    // materials, cameras and lights, which may differ from it, go into the scene file. Empty: a .glb file is written.
+    // A glTF file (relative to the scene file) that holds the geometry and stays unchanged; transforms, materials,
+    // cameras and lights, which may differ from it, go into the scene file. Empty: a .glb file is written.
     std::string gltf_reference;
-    std::map<std::string, std::string> settings; // of the lighting, by name
+    std::map<std::string, std::string> settings; // lighting settings by name
 };
 
 // Writes `path` (.scene.json) and, without a reference, a .glb file of the same name (or with `.2`, so that the files
-// of the last save are whole until the new ones are). Names of entities must differ. At any moment, even if the process
-// is killed or the disk is full, the old scene or the new one can be loaded.
+// of the last save stay valid until the new ones are complete). Names of entities must be unique. At any moment, even
+// if the process is killed or the disk is full, either the old or the new scene can be loaded.
 Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore& textures, const SaveOptions& options = {});
 
-// Scene-linear for EXR and HDR; PNG and JPEG are taken for sRGB and made linear.
+// Scene-linear for EXR and HDR; PNG and JPEG are assumed to be sRGB and linearised.
 Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path);
 
 // JSON schema of scene files, from the descriptions of components.

@@ -81,10 +81,10 @@ Result<std::string> read_uri(std::string_view uri, const fs::path& folder) {
     }
     const std::size_t colon = uri.find(':');
     if (colon != std::string_view::npos && uri.find('/') > colon)
-        return Error{"'" + shortened(uri) + "' is not read: only files beside the glTF file are"};
+        return Error{"'" + shortened(uri) + "' is not allowed: only relative paths and data URIs are"};
     SUNFLECK_ASSIGN(const std::string name, percent_decoded(uri));
     if (folder.empty() || name.empty())
-        return Error{"'" + shortened(uri) + "' names no file that could be read"};
+        return Error{"'" + shortened(uri) + "' names no readable file"};
     std::error_code code;
     const fs::path base = fs::weakly_canonical(folder, code);
     const fs::path target = code ? fs::path() : fs::weakly_canonical(folder / name, code);
@@ -92,7 +92,7 @@ Result<std::string> read_uri(std::string_view uri, const fs::path& folder) {
         return Error{"'" + shortened(uri) + "' is not a path: " + code.message()};
     const auto [end, unused] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
     if (end != base.end() || fs::path(name).is_absolute())
-        return Error{"'" + shortened(uri) + "' is not read: it lies outside the folder of the glTF file"};
+        return Error{"'" + shortened(uri) + "' is not allowed: it lies outside the folder of the glTF file"};
     return read_file(target);
 }
 

@@ -1,4 +1,4 @@
-// What a URI in a glTF file stands for: bytes in the URI itself, or a file beside the glTF file.
+// Resolves URIs in glTF files: data in the URI itself, or a file in the glTF file's folder.
 #pragma once
 
 #include "engine/core/result.h"
@@ -12,7 +12,7 @@ namespace sunfleck::io {
 // else (other schemes, absolute paths, paths that leave the folder, directories, pipes) is an error that names it.
 Result<std::string> read_uri(std::string_view uri, const std::filesystem::path& folder);
 
-// A URI as it may stand in a message: one line, not too long.
+// A URI shortened to one line for messages.
 std::string shortened(std::string_view uri);
 
 } // namespace sunfleck::io

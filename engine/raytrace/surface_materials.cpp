@@ -8,7 +8,7 @@
 namespace sunfleck::raytrace {
 namespace {
 
-// White where there is no such texture.
+// White if there is no such texture.
 vec4 look_up(const scene::TextureStore* textures, const scene::TextureUse& use, const TrianglePlace& place) {
     if (!use || textures == nullptr || std::uint32_t(use.texture) >= textures->size() ||
         place.mesh.texture_coordinates.empty())

@@ -1,11 +1,11 @@
-// What rays find on a surface: the material at a point, with its textures, pattern and holes.
+// Surfaces as rays see them: the material at a point, with its textures, pattern and alpha.
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"
 
 namespace sunfleck::raytrace {
 
-// Everything about an instance that decides how it looks at a point.
+// Everything of an instance that determines its appearance at a point.
 struct SurfaceDescription {
     scene::Material material;
     scene::MaterialTextures textures;
@@ -15,11 +15,11 @@ struct SurfaceDescription {
     bool has_holes() const { return material.alpha_mode != scene::AlphaMode::opaque; }
 };
 
-// A place on a triangle.
+// A point on a triangle.
 struct TrianglePlace {
     const scene::Mesh& mesh;
     std::uint32_t primitive;
-    float u, v; // weights of the second and third corner
+    float u, v; // barycentric weights of the second and third vertex
 
     template <typename T>
     T interpolate(const std::vector<T>& values) const {
@@ -28,18 +28,18 @@ struct TrianglePlace {
     }
 };
 
-// Share of light that the surface stops there.
+// Opacity there: the fraction of light blocked.
 float alpha_at(const SurfaceDescription& surface, const scene::TextureStore* textures, const TrianglePlace& place);
 
-// The material there; `local_position` and `local_normal` place its pattern.
+// The material there; the pattern is evaluated at `local_position` and `local_normal`.
 scene::Material material_at(const SurfaceDescription& surface, const scene::TextureStore* textures,
                             const TrianglePlace& place, vec3 local_position, vec3 local_normal);
 
-// The unit `normal` (world space, as `tangent`) bent by the normal map, if there is one.
+// The unit `normal` (world space, like `tangent`) perturbed by the normal map, if there is one.
 vec3 bumped_normal(const SurfaceDescription& surface, const scene::TextureStore* textures, const TrianglePlace& place,
                    const mat3& to_world, vec3 normal);
 
-// A number in [0, 1) that depends on all of them; holes of blended surfaces are drawn by it.
+// Hash of the ray to [0, 1), for stochastic transparency.
 float hole_threshold(vec3 origin, vec3 direction, std::uint32_t primitive, std::uint32_t salt);
 
 } // namespace sunfleck::raytrace

@@ -13,7 +13,8 @@ vec4 blend_rotations(vec4 a, vec4 b, float t) {
     return {result.x, result.y, result.z, result.w};
 }
 
-// Where between two keys a time is: on one of them (next == key), or a share `t` of the way, `length` seconds long.
+// Position of a time between two keys: on one of them (next == key), or a fraction `t` of an interval `length` seconds
+// long.
 struct Between {
     std::size_t key = 0, next = 0;
     float t = 0.0f, length = 0.0f;
@@ -67,7 +68,7 @@ std::vector<float> WeightCurve::at(float seconds) const {
     const bool is_cubic = interpolation == AnimationInterpolation::cubic_spline;
     const Between place = find_keys(times, seconds);
     for (std::size_t i = 0; i < width; ++i) {
-        // Of a cubic key: all in-tangents, then all values, then all out-tangents.
+        // A cubic key stores all in-tangents, then all values, then all out-tangents.
         const auto number = [&](std::size_t key, std::size_t part) {
             return values[is_cubic ? (3 * key + part) * width + i : key * width + i];
         };

@@ -14,33 +14,33 @@ enum class AnimationInterpolation : std::uint32_t { step, linear, cubic_spline }
 struct AnimationCurve {
     AnimationTarget target = AnimationTarget::position;
     AnimationInterpolation interpolation = AnimationInterpolation::linear;
-    std::vector<float> times; // s, rising
-    // One a time: xyz, or a quaternion's xyzw; cubic_spline: three a time (in-tangent, value, out-tangent).
+    std::vector<float> times; // s, ascending
+    // One per key: xyz, or a quaternion's xyzw; cubic_spline: three per key (in-tangent, value, out-tangent).
     std::vector<vec4> values;
 
-    // Before the first key and after the last, the nearest holds.
+    // Clamped to the first and the last key.
     vec4 at(float seconds) const;
 };
 
-// Weights of morph targets over time: `width` numbers a key; cubic_spline: three times as many.
+// Weights of morph targets over time: `width` numbers per key; cubic_spline: three times as many.
 struct WeightCurve {
     AnimationInterpolation interpolation = AnimationInterpolation::linear;
-    std::vector<float> times; // s, rising; empty: no curve
+    std::vector<float> times; // s, ascending; empty: no curve
     std::vector<float> values;
     std::uint32_t width = 0;
 
     std::vector<float> at(float seconds) const;
 };
 
-// Curves of one entity; they start anew after `duration`, which is the same for all entities of a clip.
+// Curves of one entity; they repeat after `duration`, which is the same for all entities of a clip.
 struct Animation {
     std::vector<AnimationCurve> curves;
     WeightCurve weights;
     float duration = 0.0f; // s
 
-    // Sets what the curves say; the rest of `transform` stays.
+    // Sets the animated properties; the rest of `transform` is unchanged.
     void apply(double seconds, Transform& transform) const;
-    // Weights of morph targets at that time; empty without a curve of them.
+    // Weights of morph targets at that time; empty if they are not animated.
     std::vector<float> weights_at(double seconds) const;
 };
 

@@ -1,4 +1,4 @@
-// A camera as shaders read it, and the way from a depth value back to a position.
+// A camera as shaders read it, and reconstruction of positions from depth.
 #ifndef SUNFLECK_ENGINE_SCENE_CAMERA_SHARED_H
 #define SUNFLECK_ENGINE_SCENE_CAMERA_SHARED_H
 #include "engine/core/shader_language.h"

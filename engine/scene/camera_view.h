@@ -1,4 +1,4 @@
-// A camera entity, or explicit numbers, turned into what renderers need.
+// A view, from a camera entity or explicit numbers, as renderers need it.
 #pragma once
 
 #include "engine/scene/camera_shared.h"
@@ -12,7 +12,7 @@ struct CameraView {
     vec3 up{0.0f, 1.0f, 0.0f};
     float vertical_field_of_view = 0.9f; // rad
 
-    // The same view, turned about the target around the world's Y axis.
+    // The same view, orbited about the target around the world's Y axis.
     CameraView orbited(float radians) const {
         CameraView result = *this;
         const quat turn = glm::angleAxis(radians, vec3(0.0f, 1.0f, 0.0f));

@@ -14,7 +14,7 @@ const TypeDescription& Name::description() {
 const TypeDescription& Transform::description() {
     static const TypeDescription type{"Transform",
                                       1,
-                                      "Place relative to the parent.",
+                                      "Position, rotation and scale relative to the parent.",
                                       {SUNFLECK_FIELD(Transform, position, "m", -1e5, 1e5, "Translation"),
                                        SUNFLECK_FIELD(Transform, rotation, "", -1, 1, "Unit quaternion x,y,z,w"),
                                        SUNFLECK_FIELD(Transform, scale, "", -1e4, 1e4, "Scale along the local axes")}};
@@ -50,12 +50,13 @@ const TypeDescription& Material::description() {
          SUNFLECK_FIELD(Material, transmission, "", 0, 1, "Above 0: smooth glass"),
          SUNFLECK_FIELD(Material, index_of_refraction, "", 1, 4, "Of glass and of the dielectric layer"),
          SUNFLECK_FIELD(Material, specular, "", 0, 1, "Adds a dielectric GGX layer"),
-         SUNFLECK_CHOICE(Material, alpha_mode, "What alpha does: nothing, cut holes, or let light through", "opaque",
+         SUNFLECK_CHOICE(Material, alpha_mode, "How alpha is used: ignored, as a cut-out mask, or as opacity", "opaque",
                          "mask", "blend"),
-         SUNFLECK_FIELD(Material, alpha, "", 0, 1, "Share of light that the surface stops, times its texture's alpha"),
-         SUNFLECK_FIELD(Material, alpha_cutoff, "", 0, 1, "Below it, a masked surface has holes"),
-         SUNFLECK_FIELD(Material, double_sided, "", 0, 1, "Pictures show it from behind, too"),
-         SUNFLECK_FIELD(Material, unlit, "", 0, 1, "Shows its base colour whatever the light")}};
+         SUNFLECK_FIELD(Material, alpha, "", 0, 1,
+                        "Fraction of light that the surface blocks, times its texture's alpha"),
+         SUNFLECK_FIELD(Material, alpha_cutoff, "", 0, 1, "A masked surface is cut out where alpha is below this"),
+         SUNFLECK_FIELD(Material, double_sided, "", 0, 1, "Also visible from behind"),
+         SUNFLECK_FIELD(Material, unlit, "", 0, 1, "Shows its base colour, unaffected by light")}};
     return type;
 }
 
@@ -72,8 +73,9 @@ const TypeDescription& Exposure::description() {
     static const TypeDescription type{
         "Exposure",
         1,
-        "How bright the picture is.",
-        {SUNFLECK_FIELD(Exposure, ev100, "EV", -16, 32, "Exposure value at ISO 100; one more halves the brightness")}};
+        "Exposure of the image.",
+        {SUNFLECK_FIELD(Exposure, ev100, "EV", -16, 32,
+                        "Exposure value at ISO 100; one stop more halves the brightness")}};
     return type;
 }
 
@@ -81,19 +83,19 @@ const TypeDescription& AreaLight::description() {
     static const TypeDescription type{
         "AreaLight",
         1,
-        "A Lambertian emitter of simple shape.",
-        {SUNFLECK_CHOICE(AreaLight, shape, "Form of the emitter", "rectangle", "disc", "sphere"),
-         SUNFLECK_FIELD(AreaLight, width, "m", 0, 1e4, "Rectangle's size along X"),
-         SUNFLECK_FIELD(AreaLight, height, "m", 0, 1e4, "Rectangle's size along Y"),
-         SUNFLECK_FIELD(AreaLight, radius, "m", 0, 1e4, "Radius of disc and sphere"),
-         SUNFLECK_FIELD(AreaLight, radiance, "W/(sr m2)", 0, 1e9, "Radiance of every point in every direction")}};
+        "A diffuse area light of simple shape.",
+        {SUNFLECK_CHOICE(AreaLight, shape, "Shape of the emitter", "rectangle", "disc", "sphere"),
+         SUNFLECK_FIELD(AreaLight, width, "m", 0, 1e4, "Width of a rectangle, along X"),
+         SUNFLECK_FIELD(AreaLight, height, "m", 0, 1e4, "Height of a rectangle, along Y"),
+         SUNFLECK_FIELD(AreaLight, radius, "m", 0, 1e4, "Radius of a disc or sphere"),
+         SUNFLECK_FIELD(AreaLight, radiance, "W/(sr m2)", 0, 1e9, "Emitted radiance")}};
     return type;
 }
 
 const TypeDescription& PointLight::description() {
     static const TypeDescription type{"PointLight",
                                       1,
-                                      "Radiates equally in all directions.",
+                                      "A point light: radiates equally in all directions.",
                                       {SUNFLECK_FIELD(PointLight, intensity, "W/sr", 0, 1e9, "Radiant intensity")}};
     return type;
 }
@@ -102,10 +104,11 @@ const TypeDescription& SpotLight::description() {
     static const TypeDescription type{
         "SpotLight",
         1,
-        "Radiates in a cone about its -Z axis.",
+        "A spot light: radiates in a cone about its -Z axis.",
         {SUNFLECK_FIELD(SpotLight, intensity, "W/sr", 0, 1e9, "Radiant intensity on the axis"),
-         SUNFLECK_FIELD(SpotLight, inner_angle, "rad", 0, 1.5707963, "Half angle of the full-intensity cone"),
-         SUNFLECK_FIELD(SpotLight, outer_angle, "rad", 0, 1.5707963, "Half angle where the light ends")}};
+         SUNFLECK_FIELD(SpotLight, inner_angle, "rad", 0, 1.5707963, "Half angle of the cone of full intensity"),
+         SUNFLECK_FIELD(SpotLight, outer_angle, "rad", 0, 1.5707963,
+                        "Half angle at which the light has fallen to zero")}};
     return type;
 }
 
@@ -114,7 +117,7 @@ const TypeDescription& DirectionalLight::description() {
         "DirectionalLight",
         1,
         "Parallel light along its -Z axis.",
-        {SUNFLECK_FIELD(DirectionalLight, irradiance, "W/m2", 0, 1e9, "On a plane that faces the light")}};
+        {SUNFLECK_FIELD(DirectionalLight, irradiance, "W/m2", 0, 1e9, "Irradiance on a plane that faces the light")}};
     return type;
 }
 
@@ -122,9 +125,9 @@ const TypeDescription& Environment::description() {
     static const TypeDescription type{
         "Environment",
         1,
-        "Light from all directions where nothing is hit.",
+        "Light from the surroundings, for rays that hit nothing.",
         {SUNFLECK_FIELD(Environment, radiance, "W/(sr m2)", 0, 1e9, "Uniform radiance of the surroundings"),
-         SUNFLECK_FIELD(Environment, lights, "", 0, 1, "Off: is only seen; lamps stand for its light")}};
+         SUNFLECK_FIELD(Environment, lights, "", 0, 1, "Off: a visible background that lights nothing")}};
     return type;
 }
 
@@ -132,10 +135,10 @@ const TypeDescription& EnvironmentMap::description() {
     static const TypeDescription type{
         "EnvironmentMap",
         1,
-        "A picture of all directions that the Environment's radiance is multiplied by.",
+        "Environment map that scales the Environment's radiance by direction.",
         {SUNFLECK_FIELD(EnvironmentMap, file, "", 0, 0,
                         "Equirectangular PNG, JPEG, EXR or HDR, relative to the scene file"),
-         SUNFLECK_FIELD(EnvironmentMap, rotation, "rad", -7, 7, "Turns the surroundings about the vertical")}};
+         SUNFLECK_FIELD(EnvironmentMap, rotation, "rad", -7, 7, "Rotation about the vertical")}};
     return type;
 }
 
@@ -144,18 +147,20 @@ const TypeDescription& Mover::description() {
         "Mover",
         1,
         "Moves along a path, as a function of the simulation step.",
-        {SUNFLECK_CHOICE(Mover, path, "Kind of motion", "none", "line", "circle", "spin", "hinge", "spline"),
-         SUNFLECK_FIELD(Mover, travel, "m", -1e4, 1e4, "Line: half of the way, from the start; activated: all of it"),
-         SUNFLECK_FIELD(Mover, centre, "m", -1e4, 1e4, "Circle: its centre; hinge: a point on it"),
+        {SUNFLECK_CHOICE(Mover, path, "Kind of path", "none", "line", "circle", "spin", "hinge", "spline"),
+         SUNFLECK_FIELD(Mover, travel, "m", -1e4, 1e4,
+                        "Line: half of the travel, from the start; if activated: all of it"),
+         SUNFLECK_FIELD(Mover, centre, "m", -1e4, 1e4, "Circle: its centre; hinge: a point on its axis"),
          SUNFLECK_FIELD(Mover, axis, "", -1, 1, "Circle, spin and hinge: axis of rotation"),
-         SUNFLECK_FIELD(Mover, angle, "rad", -6.3, 6.3, "Hinge: how far it turns"),
-         SUNFLECK_FIELD(Mover, period, "s", 0.01, 1e4, "Time of one round"),
-         SUNFLECK_FIELD(Mover, phase, "", -1, 1, "Start, as a share of the period"),
-         SUNFLECK_FIELD(Mover, spin_period, "s", 0, 1e4, "Time of one turn about its vertical axis; 0: none"),
-         SUNFLECK_CHOICE(Mover, easing, "Line and hinge: how speed changes", "sine", "linear", "dwell"),
-         SUNFLECK_CHOICE(Mover, activation, "Moves always, while somebody is near, or when used", "clock", "near",
+         SUNFLECK_FIELD(Mover, angle, "rad", -6.3, 6.3, "Hinge: angle of rotation"),
+         SUNFLECK_FIELD(Mover, period, "s", 0.01, 1e4, "Time of one full cycle"),
+         SUNFLECK_FIELD(Mover, phase, "", -1, 1, "Initial phase, as a fraction of the period"),
+         SUNFLECK_FIELD(Mover, spin_period, "s", 0, 1e4,
+                        "Time of one revolution about its own vertical axis; 0: no spin"),
+         SUNFLECK_CHOICE(Mover, easing, "Line and hinge: easing of the motion", "sine", "linear", "dwell"),
+         SUNFLECK_CHOICE(Mover, activation, "Moves always, while a person is near, or when used", "clock", "near",
                          "use"),
-         SUNFLECK_FIELD(Mover, reach, "m", 0, 100, "How near somebody must be")}};
+         SUNFLECK_FIELD(Mover, reach, "m", 0, 100, "Distance at which a person activates it")}};
     return type;
 }
 
@@ -164,8 +169,8 @@ const TypeDescription& SurfacePattern::description() {
         "SurfacePattern",
         1,
         "A pattern on a surface.",
-        {SUNFLECK_CHOICE(SurfacePattern, kind, "What it looks like", "none", "checker", "planks", "bricks", "marble"),
-         SUNFLECK_FIELD(SurfacePattern, colour, "", 0, 1, "Second colour; the first is the material's"),
+        {SUNFLECK_CHOICE(SurfacePattern, kind, "Kind of pattern", "none", "checker", "planks", "bricks", "marble"),
+         SUNFLECK_FIELD(SurfacePattern, colour, "", 0, 1, "Second colour; the first is the material's base colour"),
          SUNFLECK_FIELD(SurfacePattern, scale, "m", 0.001, 1000, "Size of a square, plank, brick or vein")}};
     return type;
 }
@@ -175,7 +180,7 @@ const TypeDescription& ShadowCasting::description() {
         "ShadowCasting",
         1,
         "Whether a moving mesh casts shadows.",
-        {SUNFLECK_FIELD(ShadowCasting, casts, "", 0, 1, "Off for what is thin, or holds a lamp")}};
+        {SUNFLECK_FIELD(ShadowCasting, casts, "", 0, 1, "Off for thin objects and lamp housings")}};
     return type;
 }
 

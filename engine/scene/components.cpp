@@ -2,7 +2,7 @@
 
 namespace sunfleck::scene {
 namespace {
-// Deeper hierarchies than this are taken for cycles.
+// A hierarchy deeper than this is treated as a cycle.
 constexpr int depth_limit = 1000;
 } // namespace
 

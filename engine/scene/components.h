@@ -39,7 +39,8 @@ struct MeshInstance {
     static const TypeDescription& description();
 };
 
-// opaque: alpha is ignored. mask: what is below the cutoff is not there. blend: so much of the light is stopped.
+// opaque: alpha is ignored. mask: cut out where alpha is below the cutoff. blend: alpha is the fraction of light
+// blocked.
 enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 
 // BSDF of the entity's mesh: Lambertian and GGX as in glTF 2.0, or smooth glass where transmission is above zero.
@@ -54,20 +55,20 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha = 1.0f;
     float alpha_cutoff = 0.5f; // of mask
-    bool double_sided = true;  // false: pictures do not show it from behind; to light it is solid from both sides
-    bool unlit = false;        // pictures show its base colour as it is; in light transport it is Lambertian
+    bool double_sided = true;  // false: invisible from behind in images; light transport treats both sides as solid
+    bool unlit = false;        // images show its base colour unlit; in light transport it is Lambertian
     static const TypeDescription& description();
 };
 
-// Which texture (index in the TextureStore) and where on it: KHR_texture_transform.
+// A texture (index in the TextureStore) and its KHR_texture_transform.
 struct TextureUse {
     std::int32_t texture = -1; // -1: none
-    std::uint32_t set = 0;     // of the mesh's texture coordinates, 0 or 1
+    std::uint32_t set = 0;     // of texture coordinates, 0 or 1
     vec2 offset{0.0f}, scale{1.0f};
-    float rotation = 0.0f; // rad, counter-clockwise on the picture
+    float rotation = 0.0f; // rad, counter-clockwise on the image
 
     explicit operator bool() const { return texture >= 0; }
-    // The transform as a matrix, columns first, for coordinates without offset.
+    // The transform without its offset, as a column-major matrix.
     glm::mat2 matrix() const {
         const float c = std::cos(rotation), s = std::sin(rotation);
         return glm::mat2(c * scale.x, -s * scale.x, s * scale.y, c * scale.y);
@@ -79,7 +80,7 @@ struct TextureUse {
     bool operator==(const TextureUse&) const = default;
 };
 
-// Textures that the values of the entity's Material are multiplied by, as in glTF 2.0.
+// Textures that scale the values of the entity's Material, as in glTF 2.0.
 struct MaterialTextures {
     TextureUse base_colour;        // rgb and alpha
     TextureUse metallic_roughness; // blue and green
@@ -87,7 +88,7 @@ struct MaterialTextures {
     TextureUse emission;           // rgb
     TextureUse transmission;       // red
     float normal_scale = 1.0f;     // of x and y
-    vec3 emission_average{1.0f};   // mean of the emission texture: what samplers take the mesh to emit
+    vec3 emission_average{1.0f};   // mean of the emission texture, which samplers use for the whole mesh
     bool operator==(const MaterialTextures&) const = default;
 };
 
@@ -103,7 +104,7 @@ struct Exposure {
 
 enum class AreaShape : std::uint32_t { rectangle, disc, sphere };
 
-// An emitter of simple shape: rectangle and disc lie in the local XY plane and radiate along +Z; the sphere radiates
+// An area light of simple shape: rectangle and disc lie in the local XY plane and radiate along +Z; the sphere radiates
 // outwards. Its entity also has the mesh of the shape, with the same emission, for cameras and rays to see.
 struct AreaLight {
     AreaShape shape = AreaShape::rectangle;
@@ -133,56 +134,56 @@ struct DirectionalLight {
     static const TypeDescription& description();
 };
 
-// Light from all directions where nothing is hit.
+// Light from the surroundings, for rays that hit nothing.
 struct Environment {
     vec3 radiance{0.0f}; // W/(sr m2)
-    bool lights = true;  // false: is only seen, and lamps in the windows stand for its light
+    bool lights = true;  // false: a visible background only, whose light comes from area lights in the windows
     static const TypeDescription& description();
 };
 
 enum class MoverPath : std::uint32_t { none, line, circle, spin, hinge, spline };
-// How far along a line or hinge a mover is: as a pendulum, at even speed, or waiting a quarter of the time at both
+// Easing along a line or hinge: sinusoidal like a pendulum, at constant speed, or resting a quarter of the time at both
 // ends.
 enum class MoverEasing : std::uint32_t { sine, linear, dwell };
-// clock: always. near: goes to its far end while a person is within `reach`, and back. use: when a person uses it.
+// clock: always. near: moves to its far end while a person is within `reach`, then back. use: when a person uses it.
 enum class MoverActivation : std::uint32_t { clock, near, use };
 
-// The entity moves. On the clock, its pose is a function of the simulation step alone, around the transform that it was
-// given; activated, it goes from there to the end of its line or hinge in half a period, and back.
+// A moving entity. On the clock, its pose is a function of the simulation step alone, relative to its initial
+// transform; when activated, it moves from there to the end of its line or hinge in half a period, and back.
 struct Mover {
     MoverPath path = MoverPath::none;
-    vec3 travel{1.0f, 0.0f, 0.0f}; // line: half of the way, there and back, m; activated: all of the way
-    vec3 centre{0.0f};             // circle: about this point, in the plane across `axis`; hinge: a point on it
+    vec3 travel{1.0f, 0.0f, 0.0f}; // line: half of the travel, m; activated: all of it
+    vec3 centre{0.0f};             // circle: centre, in the plane normal to `axis`; hinge: a point on its axis
     vec3 axis{0.0f, 1.0f, 0.0f};   // circle, spin and hinge
-    float angle = 1.5f;            // hinge: rad, to both sides; activated: to one
-    float period = 8.0f;           // s for one round or one way there and back
-    float phase = 0.0f;            // share of a period
-    float spin_period = 0.0f;      // s for a turn about its own vertical axis; 0 does not turn
+    float angle = 1.5f;            // hinge: rad, to both sides; activated: to one side
+    float period = 8.0f;           // s for one full cycle
+    float phase = 0.0f;            // fraction of a period
+    float spin_period = 0.0f;      // s for one revolution about its own vertical axis; 0: no spin
     MoverEasing easing = MoverEasing::sine;
     MoverActivation activation = MoverActivation::clock;
-    float reach = 1.8f; // m, of `near`
+    float reach = 1.8f; // m, for `near`
     static const TypeDescription& description();
 };
 
-// Where the mover stood when the simulation began; made by the simulation.
+// The mover's transform when the simulation began; set by the simulation.
 struct MoverOrigin {
     Transform transform;
 };
 
-// A pattern on a surface, in the mesh's own space: what a texture would be to a surface without coordinates.
+// A procedural pattern in the mesh's own space, for surfaces without texture coordinates.
 enum class PatternKind : std::uint32_t { none, checker, planks, bricks, marble };
 
 struct SurfacePattern {
     PatternKind kind = PatternKind::checker;
     vec3 colour{0.5f};   // the second one; the first is the material's
-    float scale = 0.25f; // m, of a square, plank, brick or vein
+    float scale = 0.25f; // m, size of a square, plank, brick or vein
     bool operator==(const SurfacePattern&) const = default;
     static const TypeDescription& description();
 };
 
-// Without this component, everything casts shadows.
+// An entity without this component casts shadows.
 struct ShadowCasting {
-    bool casts = false; // off for what is thin, or holds a lamp
+    bool casts = false; // off for thin objects and lamp housings
     static const TypeDescription& description();
 };
 
@@ -190,10 +191,10 @@ struct ShadowCasting {
 bool is_static(const ecs::Registry& registry, ecs::Entity entity);
 
 // Brings WorldTransform up to date for all entities with a Transform; unchanged ones keep their change tick. A cycle of
-// parents is cut where it closes.
+// parents is broken where it closes.
 void update_world_transforms(ecs::Registry& registry);
 
-// The entity's place in the world, computed from the hierarchy.
+// The entity's world matrix, computed from the hierarchy.
 mat4 world_matrix(const ecs::Registry& registry, ecs::Entity entity);
 
 // First entity of that name, by index; null if there is none.

@@ -6,11 +6,11 @@ namespace sunfleck::scene {
 namespace {
 
 constexpr float circle = 6.28318530718f, half_circle = 3.14159265359f;
-constexpr std::uint32_t most_columns = 1024;
+constexpr std::uint32_t max_columns = 1024;
 
-// Means of squares of texels, until the picture is small enough.
+// 2x2 box filter, until the image is small enough.
 void make_smaller(std::uint32_t& width, std::uint32_t& height, std::vector<vec3>& texels) {
-    while (width > most_columns && width % 2 == 0 && height % 2 == 0) {
+    while (width > max_columns && width % 2 == 0 && height % 2 == 0) {
         std::vector<vec3> half(std::size_t(width / 2) * (height / 2));
         for (std::uint32_t y = 0; y < height / 2; ++y)
             for (std::uint32_t x = 0; x < width / 2; ++x) {
@@ -69,12 +69,12 @@ EnvironmentImage::Draw EnvironmentImage::draw(float u, float v) const {
         std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()),
         cumulative_.size() - 1);
     const double before = texel > 0 ? cumulative_[texel - 1] : 0.0, share = cumulative_[texel] - before;
-    // What is left of the first number serves again.
+    // The remainder of the first random number is reused.
     const float rest = share > 0.0 ? std::clamp(float((target - before) / share), 0.0f, 0.999999f) : 0.5f;
     const std::uint32_t row = std::uint32_t(texel / width_), column = std::uint32_t(texel % width_);
     const float top = std::cos(half_circle * float(row) / float(height_));
     const float bottom = std::cos(half_circle * float(row + 1) / float(height_));
-    const float y = top + (bottom - top) * v; // evenly over the texel's solid angle
+    const float y = top + (bottom - top) * v; // uniform over the texel's solid angle
     const float angle = circle * ((float(column) + rest) / float(width_) - 0.5f);
     const float r = std::sqrt(std::max(0.0f, 1.0f - y * y));
     result.direction = vec3(r * std::sin(angle), y, -r * std::cos(angle));

@@ -1,4 +1,4 @@
-// A picture of all directions: what an Environment's radiance is multiplied by, and how directions are drawn from it.
+// An environment map: scales an Environment's radiance by direction, and is importance-sampled.
 #pragma once
 
 #include "engine/core/description.h"
@@ -11,10 +11,10 @@
 namespace sunfleck::scene {
 
 // Equirectangular: the top row is +Y, the middle column -Z, and columns to its right turn towards +X. Texels are
-// constant: what is looked up is exactly what is drawn.
+// constant: look-up and sampling use exactly the same function.
 class EnvironmentImage {
 public:
-    // `texels`: linear, rows from the top. Larger than 1024 x 512 it is made smaller. Values that are negative or not
+    // `texels`: linear, rows from the top. Maps larger than 1024 x 512 are reduced. Values that are negative or not
     // finite become 0.
     EnvironmentImage(std::uint32_t width, std::uint32_t height, std::vector<vec3> texels);
 
@@ -30,7 +30,7 @@ public:
         vec3 radiance{0.0f};
         float density = 0.0f; // per solid angle
     };
-    // Density in proportion to luminance. u, v in [0, 1).
+    // Density proportional to luminance. u, v in [0, 1).
     Draw draw(float u, float v) const;
     float density(vec3 direction) const;
 
@@ -44,14 +44,14 @@ private:
     vec3 mean_{0.0f};
 };
 
-// Beside an Environment.
+// On the same entity as an Environment.
 struct EnvironmentMap {
     std::string file;                              // PNG, JPEG, EXR or HDR, relative to the scene file
     float rotation = 0.0f;                         // rad, of the surroundings about +Y
-    std::shared_ptr<const EnvironmentImage> image; // made when the scene is loaded
+    std::shared_ptr<const EnvironmentImage> image; // set when the scene is loaded
     static const TypeDescription& description();
 
-    // From the world's directions to the picture's, and back.
+    // From world directions to the map's, and back.
     vec3 to_image(vec3 d) const { return turned(d, -rotation); }
     vec3 to_world(vec3 d) const { return turned(d, rotation); }
 

@@ -17,7 +17,7 @@ VkSamplerAddressMode address_mode(TextureWrap wrap) {
     }
 }
 
-// All levels, one after the other, each half the size of the one before.
+// All mip levels, one after the other.
 std::vector<std::uint8_t> make_levels(const Texture& texture, std::vector<VkBufferImageCopy>& regions) {
     std::vector<std::uint8_t> all, level = texture.pixels;
     std::uint32_t width = texture.width, height = texture.height;

@@ -1,4 +1,4 @@
-// The texture store on the GPU: an image with all its levels for each texture, and samplers.
+// The texture store on the GPU: an image with all mip levels for each texture, and samplers.
 #pragma once
 
 #include "engine/gpu/frame_resources.h"

@@ -15,14 +15,14 @@ struct InstanceRow {
     uvec4 material;      // 304: x: row of the material buffer, for textured surfaces
 };
 
-// A surface id in the G-buffer: instance row + 1 in the low bits; 0 where nothing is.
+// A surface id in the G-buffer: instance row + 1 in the low bits; 0 for the background.
 SHARED_CONSTANT uint surface_row_mask = 0x1fffffffu;
 SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an AreaLight
 SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
-SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour whatever the light
+SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour, unaffected by light
 
-// What drawing one instance into the G-buffer needs of its row, as push constants: a CPU device reads those once for
-// all vertices and pixels, where it would read a buffer for each.
+// What drawing one instance into the G-buffer needs of its row, as push constants: a CPU device reads those once per
+// draw, but a buffer once per vertex or pixel.
 struct DrawConstants {
     vec4 model[3];         //  0: rows of the model matrix, object to world
     vec4 normal_colour[3]; // 48: columns of the normal matrix; w: red, green, blue of the base colour

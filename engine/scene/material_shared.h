@@ -1,10 +1,10 @@
-// One row of the material buffer: what a textured surface needs beyond its InstanceRow.
+// One row of the material buffer: the data of a textured surface beyond its InstanceRow.
 #ifndef SUNFLECK_ENGINE_SCENE_MATERIAL_SHARED_H
 #define SUNFLECK_ENGINE_SCENE_MATERIAL_SHARED_H
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// Where on a texture: matrix (columns) and offset of the coordinates, and which set.
+// Texture transform: matrix (columns) and offset of the coordinates, and which set.
 struct TextureRow {
     vec4 matrix;
     vec4 offset_set; // xy offset; z: 0 or 1, the set
@@ -14,7 +14,7 @@ struct MaterialRow {
     TextureRow base_colour;
     TextureRow normal;
     TextureRow emission;
-    vec4 factors; // x: alpha; y: what alpha is held against (mask: the cutoff; blend: -1, a pattern of dots);
+    vec4 factors; // x: alpha; y: what alpha is compared with (mask: the cutoff; blend: -1, stippled);
                   // z: scale of the normal map, 0 without one; w: 1 if emission has a texture
 };
 

@@ -6,7 +6,7 @@
 namespace sunfleck::scene {
 namespace {
 
-constexpr std::size_t smallest_mesh = 64, least_triangles = 24; // below these, fewer triangles gain nothing
+constexpr std::size_t min_mesh = 64, min_triangles = 24; // below these, fewer triangles gain nothing
 
 std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices) {
     std::vector<std::uint32_t> sorted = indices;
@@ -18,7 +18,7 @@ std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices) {
 
 std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
     std::vector<MeshDetail> details(1);
-    details.reserve(32); // `whole` stays where it is
+    details.reserve(32); // keeps `whole` in place
     MeshDetail& whole = details.front();
     whole.indices.resize(mesh.indices.size());
     if (mesh.indices.empty())
@@ -29,11 +29,11 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
     whole.vertex_count = count_vertices(whole.indices);
     const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
     std::size_t target = whole.indices.size() / 6 * 3;
-    while (details.size() < 32 && mesh.triangle_count() >= smallest_mesh && target / 3 >= least_triangles) {
+    while (details.size() < 32 && mesh.triangle_count() >= min_mesh && target / 3 >= min_triangles) {
         MeshDetail detail;
         detail.indices.resize(mesh.indices.size());
         float error = 0.0f;
-        // Each level from the whole mesh, so that its error is against the original.
+        // Each level is simplified from the whole mesh, so that its error is relative to the original.
         detail.indices.resize(meshopt_simplify(detail.indices.data(), details.front().indices.data(),
                                                details.front().indices.size(), positions, mesh.positions.size(),
                                                sizeof(vec3), target, 0.25f, 0, &error));
@@ -53,7 +53,7 @@ bool is_closed(const std::vector<std::uint32_t>& joined_indices) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint64_t a = joined_indices[i + k], b = joined_indices[i + (k + 1) % 3];
             if (a == b)
-                continue; // of a triangle without area
+                continue; // degenerate triangle
             edges.push_back(a << 32 | b);
             reversed.push_back(b << 32 | a);
         }

@@ -1,4 +1,4 @@
-// The same surface with fewer triangles, for uses that cannot tell the difference (shadow maps).
+// Levels of detail: simplified meshes, for uses where the difference does not show (shadow maps).
 #pragma once
 
 #include "engine/scene/mesh_store.h"
@@ -7,16 +7,16 @@ namespace sunfleck::scene {
 
 struct MeshDetail {
     std::vector<std::uint32_t> indices; // into the mesh's own vertices
-    std::uint32_t vertex_count = 0;     // different vertices among them
-    float error = 0.0f;                 // m, in the mesh's space: how far the surface may be from the original
+    std::uint32_t vertex_count = 0;     // distinct vertices among them
+    float error = 0.0f;                 // m, in the mesh's space: greatest deviation from the original surface
 };
 
-// From fine to coarse, each with about half the triangles of the one before; the first is the whole mesh with vertices
-// at one place joined. Small meshes and such that cannot be simplified give the first alone.
+// From fine to coarse, each with about half the triangles of the previous one; the first is the whole mesh with
+// coincident vertices merged. Small meshes and meshes that cannot be simplified have only the first.
 std::vector<MeshDetail> make_mesh_details(const Mesh& mesh);
 
-// Every edge has two triangles, once in each direction (vertices at one place count as one): there is an inside, and
-// whoever looks from outside sees front faces only.
+// Watertight: every edge has two triangles, once in each direction (coincident vertices count as one). From outside,
+// only front faces are visible.
 bool is_closed(const std::vector<std::uint32_t>& joined_indices);
 
 } // namespace sunfleck::scene

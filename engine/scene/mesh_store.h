@@ -1,5 +1,5 @@
-// Triangle meshes, by index. Meshes are added and keep their triangles; the vertices of deforming ones are replaced,
-// and a revision tells who derives things from them.
+// Triangle meshes, by index. Meshes are added and keep their triangles; vertices of deforming meshes are replaced, and
+// a revision number tells consumers of derived data.
 #pragma once
 
 #include "engine/core/maths.h"
@@ -13,11 +13,11 @@ namespace sunfleck::scene {
 struct Mesh {
     std::string name;
     std::vector<vec3> positions;
-    std::vector<vec3> normals; // one a vertex, unit length
+    std::vector<vec3> normals; // one per vertex, unit length
     std::vector<std::uint32_t> indices;
-    // One a vertex, or empty.
+    // One per vertex, or empty.
     std::vector<vec4> texture_coordinates; // xy: the first set, zw: the second
-    std::vector<vec4> tangents;            // xyz: along rising u, unit length; w: +1 or -1, sign of the bitangent
+    std::vector<vec4> tangents;            // xyz: along increasing u, unit length; w: +1 or -1, sign of the bitangent
     std::vector<vec4> colours;             // linear RGBA, multiplies the base colour
 
     Bounds bounds() const {

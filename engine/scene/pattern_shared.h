@@ -1,4 +1,4 @@
-// Patterns of surfaces (scene::SurfacePattern): the second colour's share at a point, for shaders and rays alike.
+// Procedural patterns (scene::SurfacePattern): weight of the second colour at a point, for shaders and rays alike.
 #ifndef SUNFLECK_ENGINE_SCENE_PATTERN_SHARED_H
 #define SUNFLECK_ENGINE_SCENE_PATTERN_SHARED_H
 #include "engine/core/shader_language.h"
@@ -10,13 +10,13 @@ SHARED_CONSTANT uint pattern_planks = 2u;
 SHARED_CONSTANT uint pattern_bricks = 3u;
 SHARED_CONSTANT uint pattern_marble = 4u;
 
-// An arbitrary number in [0, 1) for a cell.
+// Hash of a cell to [0, 1).
 SHARED_FUNCTION float pattern_noise(float x, float y, float z) {
     const float mixed = sin(x * 12.9898f + y * 78.233f + z * 37.719f) * 43758.5453f;
     return mixed - floor(mixed);
 }
 
-// Smooth noise of cells of unit size, in [0, 1).
+// Smooth value noise with unit cells, in [0, 1).
 SHARED_FUNCTION float pattern_smooth_noise(vec3 at) {
     const vec3 cell = floor(at);
     vec3 t = at - cell;
@@ -43,7 +43,7 @@ SHARED_FUNCTION float pattern_share(uint kind, float scale, vec3 position, vec3 
         const float vein = abs(sin(3.1f * (p.x + p.y + p.z) + 5.0f * bent));
         return 1.0f - min(1.0f, 3.0f * vein);
     }
-    // In the surface's plane: u along, v across.
+    // Coordinates in the surface's plane: u along, v across.
     const vec3 facing = abs(normal);
     float u = p.x, v = p.z;
     if (facing.y < max(facing.x, facing.z)) {
@@ -51,7 +51,7 @@ SHARED_FUNCTION float pattern_share(uint kind, float scale, vec3 position, vec3 
         v = p.y;
     }
     if (kind == pattern_planks) {
-        // Rows of one plank's width, planks of eight, each of its own tone, with dark joints.
+        // Rows one plank wide; planks eight times as long, each of its own tone, with dark joints.
         const float row = floor(v);
         const float along = u / 8.0f + 0.37f * row;
         const float tone = pattern_noise(floor(along), row, 1.0f);

@@ -30,7 +30,7 @@ Mesh make_tube(const std::function<vec3(float)>& curve, float radius, int segmen
         const float t = float(i) / float(segments);
         const vec3 centre = curve(t);
         const vec3 tangent = glm::normalize(curve(t + step) - curve(t - step));
-        // A frame that closes on itself: the side axis leans away from the curve's centre.
+        // A frame that closes on itself: the side axis points away from the curve's centre.
         const vec3 side = glm::normalize(glm::cross(tangent, glm::normalize(centre + vec3(0.0f, 1e-4f, 0.0f))));
         const vec3 up = glm::cross(side, tangent);
         for (int j = 0; j < sides; ++j) {
@@ -63,7 +63,7 @@ void scale_to_area(Mesh& mesh, float area) {
         position *= factor;
 }
 
-// Turns triangles whose winding disagrees with their normals.
+// Flips triangles whose winding disagrees with their normals.
 void orient(Mesh& mesh) {
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         const std::uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];

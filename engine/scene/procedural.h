@@ -1,4 +1,5 @@
-// Meshes made by code. Counter-clockwise fronts, outward normals, sizes in metres, centred on the origin unless said.
+// Procedural meshes. Counter-clockwise fronts, outward normals, sizes in metres, centred on the origin unless stated
+// otherwise.
 #pragma once
 
 #include "engine/scene/components.h"
@@ -9,7 +10,7 @@ namespace sunfleck::scene {
 // In the XY plane, facing +Z, divided into columns x rows quads.
 Mesh make_rectangle(float width, float height, int columns = 1, int rows = 1);
 Mesh make_box(vec3 size);
-// The same box with its faces turned inwards: a room.
+// The same box with its faces pointing inwards: a room.
 Mesh make_room(vec3 size);
 // In the XY plane, facing +Z. The polygon has the disc's exact area.
 Mesh make_disc(float radius, int segments = 64);
@@ -19,7 +20,7 @@ Mesh make_sphere(float radius, int segments = 64, int rings = 32);
 Mesh make_cylinder(float radius, float height, int segments = 32);
 // About the Y axis: ring radius and tube radius. Vertices: segments x sides.
 Mesh make_torus(float ring_radius, float tube_radius, int segments = 41, int sides = 20);
-// A many-lobed, knotted closed tube of about 3,000 vertices: the complex mover that stands in for scanned models.
+// A many-lobed, knotted closed tube of about 3,000 vertices: a complex mover in place of scanned models.
 Mesh make_knot(float size, int segments = 150, int sides = 20);
 
 // Mesh of an area light's shape.

@@ -1,4 +1,4 @@
-// What the simulation needs to know of entities beyond their Mover.
+// Components of the simulation beyond Mover.
 #pragma once
 
 #include "engine/scene/components.h"
@@ -8,17 +8,17 @@ namespace sunfleck::scene {
 // Control points of a Mover with path `spline`: a closed Catmull-Rom curve through the first `count` of them, in the
 // space of the entity's parent.
 struct SplinePath {
-    static constexpr std::uint32_t most_points = 6;
+    static constexpr std::uint32_t max_points = 6;
     std::uint32_t count = 3;
     vec3 point_1{0.0f}, point_2{0.0f}, point_3{0.0f}, point_4{0.0f}, point_5{0.0f}, point_6{0.0f};
-    bool face_travel = false; // the entity's -Z axis looks along the curve
+    bool face_travel = false; // the entity's -Z axis follows the curve
     static const TypeDescription& description();
 };
 
 enum class BodyShape : std::uint32_t { box, sphere, hull, none };
 
 // A body that physics moves (its entity also has a Mover with path `none`). Static meshes are obstacles without any
-// component, and movers on paths are obstacles that push; shape `none` takes an entity out of physics.
+// component, and movers on paths are obstacles that push; shape `none` excludes an entity from physics.
 struct RigidBody {
     BodyShape shape = BodyShape::box; // of the mesh's bounds, or their hull
     float mass = 1.0f;                // kg; 0: an obstacle that physics does not move
@@ -28,14 +28,14 @@ struct RigidBody {
     static const TypeDescription& description();
 };
 
-// Used by a person, it switches the emitters of other entities on and off.
+// When used by a person, switches the emitters of other entities on and off.
 struct LightSwitch {
     std::string lamps; // names of entities, separated by commas
     bool on = true;
     static const TypeDescription& description();
 };
 
-// Where the player starts, facing the entity's -Z.
+// Start position of the player, facing the entity's -Z.
 struct PlayerStart {
     float height = 1.72f; // m, standing
     static const TypeDescription& description();
@@ -47,10 +47,10 @@ struct Lantern {
     static const TypeDescription& description();
 };
 
-// Where an activated mover is on its way; made by the simulation.
+// Progress of an activated mover; set by the simulation.
 struct MoverState {
     float progress = 0.0f; // 0 at rest, 1 at the far end
-    bool open = false;     // where it is going
+    bool open = false;     // direction: towards the far end
 };
 
 void register_simulation_components(ecs::Registry& registry);

@@ -7,7 +7,7 @@
 namespace sunfleck::scene {
 namespace {
 
-// Of all 256 codes.
+// For all 256 codes.
 const std::array<float, 256>& linear_values() {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> values{};
@@ -45,7 +45,7 @@ vec4 Texture::texel(std::int64_t x, std::int64_t y) const {
 }
 
 vec4 Texture::sample(vec2 coordinates) const {
-    // Far outside, a float tells texels apart no longer, and an integer could not hold them.
+    // Far outside, floats no longer resolve texels, and an integer would overflow.
     const vec2 at = glm::clamp(coordinates, vec2(-1e6f), vec2(1e6f)) * vec2(float(width), float(height));
     if (nearest)
         return texel(std::int64_t(std::floor(at.x)), std::int64_t(std::floor(at.y)));

@@ -1,4 +1,4 @@
-// Textures, by index. They are added and never change, so whoever has seen N of them has seen those for good.
+// Textures, by index. Textures are added and never change, so a consumer that has seen the first N need not look again.
 #pragma once
 
 #include "engine/core/maths.h"
@@ -11,28 +11,28 @@ namespace sunfleck::scene {
 
 enum class TextureWrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 
-// IEC 61966-2-1: the linear value of an encoded one, 0 to 1.
+// IEC 61966-2-1: decodes a value from 0 to 1.
 inline float linear_from_srgb(float s) {
     return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
 }
 
-// One picture as a sampler reads it.
+// One image as a sampler reads it.
 struct Texture {
     std::string name;
     std::uint32_t width = 0, height = 0;
     bool srgb = false; // red, green and blue are sRGB encoded; alpha never is
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
-    bool nearest = false;             // without filtering
+    bool nearest = false;             // nearest-neighbour filtering
     std::vector<std::uint8_t> pixels; // RGBA, rows from the top
 
-    // Linear values at `coordinates` (u to the right, v downwards, 0 to 1 over the picture), filtered bilinearly.
+    // Linear values at `coordinates` (u to the right, v downwards, 0 to 1 over the image), filtered bilinearly.
     vec4 sample(vec2 coordinates) const;
     vec4 texel(std::int64_t x, std::int64_t y) const; // wrapped
-    // Mean of all linear values.
+    // Mean linear value.
     vec4 average() const;
 };
 
-// The next smaller level of a picture, each texel the mean of (up to) four in linear values.
+// The next mip level of an image: each texel is the mean of (up to) four, in linear space.
 std::vector<std::uint8_t> half_size(const std::vector<std::uint8_t>& pixels, std::uint32_t width, std::uint32_t height,
                                     bool srgb);
 

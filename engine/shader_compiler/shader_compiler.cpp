@@ -27,7 +27,7 @@ private:
     std::list<std::string> contents_;
 };
 
-// Limits that glslang checks against; those of a desktop device.
+// Limits that glslang checks against: those of a desktop device.
 TBuiltInResource resource_limits() {
     TBuiltInResource limits{};
     limits.maxClipDistances = 8;
@@ -54,7 +54,7 @@ Result<EShLanguage> stage_of(const std::string& path) {
         return EShLangVertex;
     if (path.ends_with(".frag"))
         return EShLangFragment;
-    return Error{"'" + path + "': the extension tells no shader stage"};
+    return Error{"'" + path + "': its extension names no shader stage"};
 }
 
 } // namespace

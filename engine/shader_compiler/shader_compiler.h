@@ -1,4 +1,4 @@
-// GLSL to SPIR-V at run time, by glslang: for programs that let people edit shaders. Nothing that is embedded links it.
+// GLSL to SPIR-V at run time, by glslang, for programs that reload edited shaders. gi_module does not link it.
 #pragma once
 
 #include "engine/core/result.h"
@@ -10,8 +10,8 @@
 
 namespace sunfleck::shader_compiler {
 
-// `path` (from the project's root) tells the stage by its extension and names the shader in messages; #include looks in
-// `root`. The error holds the compiler's own message with line numbers. Not thread safe.
+// `path`, relative to the project's root, names the shader in messages, and its extension gives the stage; #include
+// searches `root`. The error contains the compiler's message with line numbers. Not thread-safe.
 Result<std::vector<std::uint32_t>> compile(const std::string& path, const std::string& source,
                                            const std::filesystem::path& root);
 

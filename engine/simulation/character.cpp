@@ -8,13 +8,13 @@ namespace sunfleck::simulation {
 namespace {
 
 constexpr float seconds = float(step_seconds);
-constexpr float walking = 2.4f, running = 4.2f, crouched = 1.2f; // m/s
-constexpr float quickness = 12.0f;                               // 1/s, how fast the speed follows
-constexpr float step_height = 0.32f, skin = 0.012f;              // m
-constexpr float steepest = 0.65f;                                // cosine of the slope that one can stand on
+constexpr float walking_speed = 2.4f, running_speed = 4.2f, crouching_speed = 1.2f; // m/s
+constexpr float approach_rate = 12.0f;              // 1/s, rate at which the speed approaches its target
+constexpr float step_height = 0.32f, skin = 0.012f; // m
+constexpr float min_ground_cosine = 0.65f;          // of the angle of the steepest walkable slope
 constexpr float gravity = 9.81f, fastest_fall = 20.0f;
 constexpr float crouching_height = 1.05f, height_speed = 3.0f; // m, m/s
-constexpr float strength = 40.0f;                              // N s a second of pushing, at most
+constexpr float strength = 40.0f;                              // N, greatest pushing force
 constexpr float largest_pitch = 1.5f;                          // rad
 
 } // namespace
@@ -43,14 +43,14 @@ void Character::step(PhysicsWorld& world, const CharacterInput& input, ecs::Enti
     vec3 wish = std::clamp(input.forward, -1.0f, 1.0f) * ahead + std::clamp(input.right, -1.0f, 1.0f) * right;
     if (glm::length(wish) > 1.0f)
         wish = glm::normalize(wish);
-    const float speed = crouching() ? crouched : input.run ? running : walking;
-    velocity_ += (wish * speed - velocity_) * std::min(1.0f, quickness * seconds);
+    const float speed = crouching() ? crouching_speed : input.run ? running_speed : walking_speed;
+    velocity_ += (wish * speed - velocity_) * std::min(1.0f, approach_rate * seconds);
     if (glm::length(velocity_) < 1e-3f)
         velocity_ = vec3(0.0f);
     const vec3 before = capsule_.foot;
     if (velocity_ != vec3(0.0f))
         walk(world, velocity_ * seconds, ignored);
-    // Blocked speed is lost.
+    // Speed into an obstacle is lost.
     vec3 moved = (capsule_.foot - before) / seconds;
     moved.y = 0.0f;
     if (const float most = glm::length(velocity_), got = glm::length(moved); got > most)
@@ -70,7 +70,7 @@ void Character::change_height(const PhysicsWorld& world, bool crouch) {
     Capsule next = capsule_;
     const float most = height_speed * seconds;
     next.height += std::clamp(wanted - capsule_.height, -most, most);
-    // There must be room to stand up.
+    // Standing up needs headroom.
     if (next.height > capsule_.height && world.sweep(capsule_, vec3(0.0f, next.height - capsule_.height + skin, 0.0f)))
         return;
     capsule_ = next;
@@ -79,7 +79,7 @@ void Character::change_height(const PhysicsWorld& world, bool crouch) {
 void Character::ride(const PhysicsWorld& world) {
     if (!grounded_ || ground_.is_null())
         return;
-    const vec3 motion = world.carried_by(ground_, capsule_.foot);
+    const vec3 motion = world.displacement_at(ground_, capsule_.foot);
     if (motion == vec3(0.0f))
         return;
     float share = 1.0f;
@@ -90,14 +90,14 @@ void Character::ride(const PhysicsWorld& world) {
 
 void Character::leave_overlaps(const PhysicsWorld& world) {
     for (int round = 0; round < 4; ++round) {
-        const vec3 out = world.way_out(capsule_);
+        const vec3 out = world.depenetration(capsule_);
         if (glm::length(out) < 1e-4f)
             return;
         capsule_.foot += out;
     }
 }
 
-// Goes as far as it can, then along what is in the way.
+// Moves as far as possible, then slides along the obstacle.
 void Character::slide(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
     for (int round = 0; round < 4 && glm::length(motion) > 1e-5f; ++round) {
         const auto hit = world.sweep(capsule_, motion, ignored);
@@ -114,8 +114,8 @@ void Character::slide(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
             const float momentum = std::min(strength * seconds, hit->mass * glm::length(velocity_) * 0.5f);
             world.push(hit->entity, -vec3(normal.x, 0.0f, normal.z) * momentum, hit->point);
         }
-        // What is too steep to stand on is a wall.
-        if (normal.y < steepest && normal.y > -0.2f) {
+        // Slopes that are too steep to stand on act as walls.
+        if (normal.y < min_ground_cosine && normal.y > -0.2f) {
             normal.y = 0.0f;
             if (glm::length(normal) < 1e-4f)
                 return;
@@ -126,7 +126,7 @@ void Character::slide(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
     }
 }
 
-// Along the ground, and the same from a step higher; whichever gets further counts.
+// Along the ground, and again from one step higher; the attempt that gets further counts.
 void Character::walk(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
     const Capsule start = capsule_;
     slide(world, motion, ignored);
@@ -155,7 +155,7 @@ void Character::walk(PhysicsWorld& world, vec3 motion, ecs::Entity ignored) {
 
 void Character::fall(PhysicsWorld& world, ecs::Entity ignored) {
     falling_ = std::min(falling_ + gravity * seconds, fastest_fall);
-    // On the ground it is followed down steps and slopes.
+    // On the ground, follows it down steps and slopes.
     const float way = grounded_ ? std::max(step_height, falling_ * seconds) : falling_ * seconds + skin;
     const auto hit = world.sweep(capsule_, vec3(0.0f, -way, 0.0f), ignored);
     if (hit && can_stand_on(world, *hit, ignored)) {
@@ -174,9 +174,9 @@ void Character::fall(PhysicsWorld& world, ecs::Entity ignored) {
     slide(world, vec3(0.0f, -falling_ * seconds, 0.0f), ignored);
 }
 
-// The round end of the capsule meets the edge of a step aslant: what counts there is the face beyond the edge.
+// The capsule's round end meets the edge of a step at an angle: use the face beyond the edge instead.
 bool Character::can_stand_on(const PhysicsWorld& world, const SweepHit& hit, ecs::Entity ignored) const {
-    if (hit.normal.y > steepest)
+    if (hit.normal.y > min_ground_cosine)
         return true;
     if (hit.normal.y < 0.05f)
         return false;
@@ -184,7 +184,7 @@ bool Character::can_stand_on(const PhysicsWorld& world, const SweepHit& hit, ecs
     outwards = glm::normalize(outwards);
     const vec3 above = hit.point - 0.03f * outwards + vec3(0.0f, 0.06f, 0.0f);
     const auto face = world.ray(above, vec3(0.0f, -0.12f, 0.0f), ignored);
-    return face && face->normal.y > steepest;
+    return face && face->normal.y > min_ground_cosine;
 }
 
 void Character::rescue(const PhysicsWorld& world) {

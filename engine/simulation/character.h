@@ -1,4 +1,4 @@
-// A person who walks: slides along walls, climbs steps, rides lifts, pushes what is loose, crouches; never jumps.
+// A walking character: slides along walls, climbs steps, rides lifts, pushes loose bodies, crouches; never jumps.
 #pragma once
 
 #include "engine/simulation/physics_world.h"
@@ -7,29 +7,29 @@ namespace sunfleck::simulation {
 
 struct CharacterInput {
     float forward = 0.0f, right = 0.0f; // -1 to 1
-    float turn = 0.0f, look_up = 0.0f;  // rad, of this step
+    float turn = 0.0f, look_up = 0.0f;  // rad in this step
     bool run = false, crouch = false;
 };
 
 class Character {
 public:
     Character() = default;
-    // `yaw` 0 looks along -Z, and grows to the left.
+    // `yaw` 0 looks along -Z and increases to the left.
     Character(vec3 foot, float yaw, float standing_height);
 
-    // One fixed step, after the physics world's.
+    // One fixed step, after that of the physics world.
     void step(PhysicsWorld& world, const CharacterInput& input, ecs::Entity ignored = ecs::null_entity);
 
     const Capsule& capsule() const { return capsule_; }
     vec3 eye() const;
-    vec3 forward() const; // where the eye looks
+    vec3 forward() const; // view direction
     float yaw() const { return yaw_; }
     float pitch() const { return pitch_; }
     vec3 velocity() const { return velocity_; }
     bool grounded() const { return grounded_; }
     bool crouching() const { return capsule_.height < standing_height_ - 0.05f; }
     ecs::Entity stands_on() const { return ground_; }
-    // Times that the level failed to hold the person, who was put back where they last stood.
+    // How often the person fell out of the level and was put back where they last stood.
     std::uint64_t rescued() const { return rescued_; }
 
 private:
@@ -50,7 +50,7 @@ private:
     bool grounded_ = false;
     ecs::Entity ground_;
     vec3 safe_{0.0f};
-    float eye_lag_ = 0.0f; // m that the eye is below its place, after a step up
+    float eye_lag_ = 0.0f; // m by which the eye lags below its position after a step up
     std::uint64_t rescued_ = 0;
 };
 

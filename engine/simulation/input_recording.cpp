@@ -8,7 +8,7 @@
 namespace sunfleck::simulation {
 namespace {
 
-constexpr std::size_t most_steps = 10'000'000; // two days
+constexpr std::size_t max_steps = 10'000'000; // two days
 constexpr const char* first_line = "sunfleck_input 1";
 
 bool valid(const StepInput& step) {
@@ -34,7 +34,7 @@ Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path)
         std::int64_t count = 0;
         std::string rest;
         if (!(fields >> count >> step.forward >> step.right >> step.turn >> step.look_up >> step.buttons) ||
-            (fields >> rest) || count < 1 || std::uint64_t(count) > most_steps - steps.size() || !valid(step))
+            (fields >> rest) || count < 1 || std::uint64_t(count) > max_steps - steps.size() || !valid(step))
             return Error{"'" + path.string() + "', line " + std::to_string(number) +
                          ": 'count forward right turn look_up buttons' within their ranges is needed"};
         steps.insert(steps.end(), std::size_t(count), step);

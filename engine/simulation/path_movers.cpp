@@ -20,7 +20,7 @@ float smooth(float t) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-// Place on the way there and back, -1 to 1, at a share of the period.
+// Position along the travel, -1 to 1, at a fraction of the period.
 float swing(scene::MoverEasing easing, float share) {
     if (easing == scene::MoverEasing::sine)
         return std::sin(share * 2.0f * pi);
@@ -31,10 +31,10 @@ float swing(scene::MoverEasing easing, float share) {
     return 2.0f * smooth(0.5f * clipped + 0.5f) - 1.0f;
 }
 
-// Position and direction of travel on the closed curve; `share` of its length in steps of control points.
+// Position and direction of travel on the closed curve; `share`: fraction of the curve, uniform in control points.
 void on_spline(const scene::SplinePath& path, float share, vec3& position, vec3& direction) {
     const vec3 points[] = {path.point_1, path.point_2, path.point_3, path.point_4, path.point_5, path.point_6};
-    const std::uint32_t n = glm::clamp(path.count, 2u, scene::SplinePath::most_points);
+    const std::uint32_t n = glm::clamp(path.count, 2u, scene::SplinePath::max_points);
     const float place = share * float(n);
     const std::uint32_t i = std::min(std::uint32_t(place), n - 1);
     const float t = place - float(i);

@@ -11,9 +11,9 @@
 namespace sunfleck::simulation {
 namespace {
 
-constexpr float margin = 0.01f;              // m, of Bullet's collision shapes
-constexpr std::size_t most_hull_points = 64; // meshes with more vertices collide as their bounds' box or as triangles
-constexpr float lost_below = 3.0f;           // m under the level
+constexpr float margin = 0.01f;             // m, of Bullet's collision shapes
+constexpr std::size_t max_hull_points = 64; // meshes with more vertices collide as their bounding box or as triangles
+constexpr float fall_limit = 3.0f;          // m below the level
 
 btVector3 to_bullet(vec3 v) {
     return {v.x, v.y, v.z};
@@ -22,7 +22,7 @@ vec3 from_bullet(const btVector3& v) {
     return {float(v.x()), float(v.y()), float(v.z())};
 }
 
-// Bodies have no scale: shapes are made at the entity's.
+// Bodies have no scale: shapes are created at the entity's scale.
 btTransform rigid_transform(const mat4& world) {
     mat3 rotation(world);
     for (int i = 0; i < 3; ++i)
@@ -59,7 +59,7 @@ struct PhysicsWorld::Implementation {
         std::unique_ptr<btRigidBody> body;
         btTransform start, previous;
         bool kinematic = false;
-        vec3 offset{0.0f}; // of the shape's middle from the entity's origin, in the body's frame
+        vec3 offset{0.0f}; // from the entity's origin to the shape's centre, in the body's frame
     };
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
@@ -97,7 +97,7 @@ struct PhysicsWorld::Implementation {
             body->body->setCollisionFlags(body->body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
             body->body->setActivationState(DISABLE_DEACTIVATION);
         } else if (mass > 0.0f) {
-            // Small and quick things do not pass through floors.
+            // Continuous collision detection: small, fast bodies do not tunnel through floors.
             btVector3 low, high;
             body->shape->getAabb(btTransform::getIdentity(), low, high);
             const float smallest = float((high - low)[(high - low).minAxis()]);
@@ -117,7 +117,7 @@ struct PhysicsWorld::Implementation {
             body.shape = std::make_unique<btSphereShape>(std::max({half.x, half.y, half.z}));
             return;
         }
-        const bool convex = !may_be_hollow || (mesh.positions.size() <= most_hull_points && is_convex(mesh));
+        const bool convex = !may_be_hollow || (mesh.positions.size() <= max_hull_points && is_convex(mesh));
         if (!convex) {
             body.triangles = std::make_unique<btTriangleMesh>();
             for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
@@ -141,6 +141,46 @@ struct PhysicsWorld::Implementation {
         hull->recalcLocalAabb();
         body.shape = std::move(hull);
     }
+
+    // Moves a body on a path to its entity's pose and wakes what it may push.
+    void move_kinematic(Body& body, const mat4& matrix) {
+        btTransform now = rigid_transform(matrix);
+        now.setOrigin(now * to_bullet(body.offset));
+        body.previous = body.body->getWorldTransform();
+        // Bullet derives the speed of a pusher from the difference.
+        body.body->setInterpolationWorldTransform(body.previous);
+        body.body->setWorldTransform(now);
+        const btVector3 speed = (now.getOrigin() - body.previous.getOrigin()) / float(step_seconds);
+        body.body->setLinearVelocity(speed);
+        if (speed.length2() > 1e-8f)
+            for (auto& other : bodies)
+                if (!other->kinematic && other->body->getInvMass() > 0.0f)
+                    other->body->activate();
+    }
+
+    // Copies a free body's pose to its entity; a body that left the level goes back to its start.
+    void write_back(Body& body, ecs::Registry& registry) {
+        btTransform place = body.body->getWorldTransform();
+        const vec3 middle = from_bullet(place.getOrigin());
+        if (!is_finite(middle) || middle.y < bounds.minimum.y - fall_limit) {
+            ++rescued;
+            body.body->setWorldTransform(body.start);
+            body.body->setLinearVelocity({0, 0, 0});
+            body.body->setAngularVelocity({0, 0, 0});
+            place = body.start;
+        }
+        place.setOrigin(place * to_bullet(-body.offset));
+        const btQuaternion q = place.getRotation();
+        const vec3 position = from_bullet(place.getOrigin());
+        const quat rotation(float(q.w()), float(q.x()), float(q.y()), float(q.z()));
+        const scene::Transform& had = registry.get<scene::Transform>(body.entity);
+        if (had.position == position && had.rotation == rotation)
+            return;
+        registry.patch<scene::Transform>(body.entity, [&](scene::Transform& t) {
+            t.position = position;
+            t.rotation = rotation;
+        });
+    }
 };
 
 PhysicsWorld::PhysicsWorld(ecs::Registry& registry, const scene::MeshStore& meshes)
@@ -148,7 +188,7 @@ PhysicsWorld::PhysicsWorld(ecs::Registry& registry, const scene::MeshStore& mesh
     Implementation& self = *implementation_;
     self.world.setGravity(btVector3(0.0f, -9.81f, 0.0f));
     self.world.getSolverInfo().m_solverMode &= ~SOLVER_RANDMIZE_ORDER;
-    // By entity, so that the order of pools does not matter.
+    // Sorted by entity, so that the order of pools does not matter.
     std::vector<ecs::Entity> entities;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::MeshInstance&, const scene::WorldTransform&) {
@@ -180,57 +220,23 @@ PhysicsWorld::~PhysicsWorld() = default;
 
 void PhysicsWorld::step(ecs::Registry& registry) {
     Implementation& self = *implementation_;
-    for (auto& body : self.bodies) {
-        if (!body->kinematic || !registry.alive(body->entity))
-            continue;
-        btTransform now = rigid_transform(registry.get<scene::WorldTransform>(body->entity).matrix);
-        now.setOrigin(now * to_bullet(body->offset));
-        body->previous = body->body->getWorldTransform();
-        // Bullet takes the speed of what pushes from the difference.
-        body->body->setInterpolationWorldTransform(body->previous);
-        body->body->setWorldTransform(now);
-        const btVector3 speed = (now.getOrigin() - body->previous.getOrigin()) / float(step_seconds);
-        body->body->setLinearVelocity(speed);
-        if (speed.length2() > 1e-8f)
-            for (auto& other : self.bodies)
-                if (!other->kinematic && other->body->getInvMass() > 0.0f)
-                    other->body->activate();
-    }
+    for (auto& body : self.bodies)
+        if (body->kinematic && registry.alive(body->entity))
+            self.move_kinematic(*body, registry.get<scene::WorldTransform>(body->entity).matrix);
     self.world.stepSimulation(float(step_seconds), 0);
-    for (auto& body : self.bodies) {
-        if (body->kinematic || body->body->getInvMass() <= 0.0f || !registry.alive(body->entity))
-            continue;
-        btTransform place = body->body->getWorldTransform();
-        const vec3 middle = from_bullet(place.getOrigin());
-        if (!is_finite(middle) || middle.y < self.bounds.minimum.y - lost_below) {
-            ++self.rescued;
-            body->body->setWorldTransform(body->start);
-            body->body->setLinearVelocity({0, 0, 0});
-            body->body->setAngularVelocity({0, 0, 0});
-            place = body->start;
-        }
-        place.setOrigin(place * to_bullet(-body->offset));
-        const btQuaternion q = place.getRotation();
-        const vec3 position = from_bullet(place.getOrigin());
-        const quat rotation(float(q.w()), float(q.x()), float(q.y()), float(q.z()));
-        const scene::Transform& had = registry.get<scene::Transform>(body->entity);
-        if (had.position == position && had.rotation == rotation)
-            continue;
-        registry.patch<scene::Transform>(body->entity, [&](scene::Transform& t) {
-            t.position = position;
-            t.rotation = rotation;
-        });
-    }
+    for (auto& body : self.bodies)
+        if (!body->kinematic && body->body->getInvMass() > 0.0f && registry.alive(body->entity))
+            self.write_back(*body, registry);
 }
 
 namespace {
 
-// The entity behind a collision object, and what it takes to leave one out.
+// A query callback that ignores one entity.
 template <typename Callback, typename Bodies>
-struct Leaving : Callback {
+struct Ignoring : Callback {
     template <typename... Arguments>
-    Leaving(const Bodies& all, ecs::Entity left_out, Arguments... arguments)
-        : Callback(arguments...), bodies(all), ignored(left_out) {}
+    Ignoring(const Bodies& all, ecs::Entity ignored_entity, Arguments... arguments)
+        : Callback(arguments...), bodies(all), ignored(ignored_entity) {}
     bool needsCollision(btBroadphaseProxy* proxy) const override {
         const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
         return Callback::needsCollision(proxy) && bodies[std::size_t(object->getUserIndex())]->entity != ignored;
@@ -255,7 +261,7 @@ std::optional<SweepHit> PhysicsWorld::sweep(const Capsule& capsule, vec3 motion,
     const btTransform from = capsule_place(capsule);
     btTransform to = from;
     to.setOrigin(from.getOrigin() + to_bullet(motion));
-    Leaving<btCollisionWorld::ClosestConvexResultCallback, decltype(self.bodies)> closest(
+    Ignoring<btCollisionWorld::ClosestConvexResultCallback, decltype(self.bodies)> closest(
         self.bodies, ignored, from.getOrigin(), to.getOrigin());
     self.world.convexSweepTest(&shape, from, to, closest, 0.0f);
     if (!closest.hasHit())
@@ -289,7 +295,7 @@ struct DeepestContacts : btCollisionWorld::ContactResultCallback {
 
 } // namespace
 
-vec3 PhysicsWorld::way_out(const Capsule& capsule) const {
+vec3 PhysicsWorld::depenetration(const Capsule& capsule) const {
     btCapsuleShape shape = capsule_shape(capsule);
     btCollisionObject object;
     object.setCollisionShape(&shape);
@@ -301,13 +307,13 @@ vec3 PhysicsWorld::way_out(const Capsule& capsule) const {
 }
 
 bool PhysicsWorld::overlaps(const Capsule& capsule) const {
-    return glm::length(way_out(capsule)) > 1e-3f;
+    return glm::length(depenetration(capsule)) > 1e-3f;
 }
 
 std::optional<SweepHit> PhysicsWorld::ray(vec3 origin, vec3 motion, ecs::Entity ignored) const {
     const Implementation& self = *implementation_;
     const btVector3 from = to_bullet(origin), to = to_bullet(origin + motion);
-    Leaving<btCollisionWorld::ClosestRayResultCallback, decltype(self.bodies)> closest(self.bodies, ignored, from, to);
+    Ignoring<btCollisionWorld::ClosestRayResultCallback, decltype(self.bodies)> closest(self.bodies, ignored, from, to);
     self.world.rayTest(from, to, closest);
     if (!closest.hasHit())
         return std::nullopt;
@@ -342,7 +348,7 @@ void PhysicsWorld::place(ecs::Registry& registry, ecs::Entity entity, const scen
     body.activate();
 }
 
-vec3 PhysicsWorld::carried_by(ecs::Entity entity, vec3 point) const {
+vec3 PhysicsWorld::displacement_at(ecs::Entity entity, vec3 point) const {
     const auto found = implementation_->by_entity.find(entity);
     if (found == implementation_->by_entity.end() || !found->second->kinematic)
         return vec3(0.0f);

@@ -8,12 +8,12 @@
 namespace sunfleck::simulation {
 namespace {
 
-constexpr float arm = 2.2f;                 // m, how far a person reaches
-constexpr float aim = 0.85f;                // cosine: what lies further from the middle of sight is not meant
-constexpr float squeezed = 0.04f;           // m: a door that presses a person so deep goes back
+constexpr float arm = 2.2f;                 // m, a person's reach
+constexpr float aim = 0.85f;                // cosine: targets farther from the centre of view are ignored
+constexpr float squeeze_limit = 0.04f;      // m, penetration depth at which a door reverses
 constexpr vec3 hand(0.30f, -0.36f, -0.62f); // of the carried lantern, from the eye: right, up, back
 
-// The strength that a lamp has when it is on.
+// The intensity of a lamp that is on.
 struct LampMemory {
     vec3 area{0.0f}, emission{0.0f}, point{0.0f}, spot{0.0f};
 };
@@ -44,7 +44,8 @@ ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
 }
 
 ecs::Registry& prepared(ecs::Registry& registry) {
-    // Switches first: what is off at the start casts no light. Then movers, so that obstacles stand where they begin.
+    // Switches first, so that lamps that start switched off cast no light; then movers, so that obstacles are at their
+    // initial positions.
     std::vector<scene::LightSwitch> switches;
     registry.view<scene::LightSwitch>().each(
         [&](ecs::Entity, const scene::LightSwitch& state) { switches.push_back(state); });
@@ -139,7 +140,7 @@ void Simulation::step(ecs::Registry& registry, const StepInput& input) {
     person.run = (input.buttons & button_run) != 0;
     person.crouch = (input.buttons & button_crouch) != 0;
     player_.step(physics_, person, carried_);
-    if (glm::length(physics_.way_out(player_.capsule())) > squeezed)
+    if (glm::length(physics_.depenetration(player_.capsule())) > squeeze_limit)
         advance_movers(registry, true);
     if (pressed & button_use)
         use(registry);
@@ -149,7 +150,7 @@ void Simulation::step(ecs::Registry& registry, const StepInput& input) {
     scene::update_world_transforms(registry);
 }
 
-// Activated movers go towards their ends. `back`: they press somebody, and retreat.
+// Activated movers move towards their ends. `back`: they press against a person and retreat.
 void Simulation::advance_movers(ecs::Registry& registry, bool back) {
     const vec3 person = player_.capsule().foot + vec3(0.0f, 0.5f * player_.capsule().height, 0.0f);
     std::vector<std::pair<ecs::Entity, scene::MoverState>> changed;
@@ -223,7 +224,7 @@ void Simulation::use(ecs::Registry& registry) {
     }
 }
 
-// On what lies a step ahead, or at the feet where nothing does.
+// On whatever lies one step ahead, or at the person's feet if nothing does.
 void Simulation::put_down(ecs::Registry& registry) {
     if (carried_.is_null())
         return;
@@ -245,7 +246,7 @@ void Simulation::put_down(ecs::Registry& registry) {
     carried_ = ecs::null_entity;
 }
 
-// In the hand it hangs upright, a little behind the look, and not inside walls.
+// In the hand it hangs upright, lags slightly behind the view, and stays out of walls.
 void Simulation::carry(ecs::Registry& registry) {
     if (carried_.is_null())
         return;

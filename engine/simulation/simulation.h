@@ -1,5 +1,5 @@
-// A level that is walked through: fixed steps of movers, physics and one person. The world after n steps is a function
-// of the level and the n inputs alone.
+// The simulation of a level: fixed steps of movers, physics and one person. The state after n steps is a function of
+// the level and the n inputs alone.
 #pragma once
 
 #include "engine/scene/simulation_components.h"
@@ -8,13 +8,13 @@
 
 namespace sunfleck::simulation {
 
-// What a person can do with what is before them.
+// What a person can do with the object in front of them.
 enum class Interaction { none, open, close, switch_lamps, take };
 
 class Simulation {
 public:
-    // The registry holds the level, freshly loaded; its PlayerStart (or the camera "view", or the middle of the level)
-    // is where the person begins.
+    // The registry holds the freshly loaded level. The person starts at its PlayerStart (or the camera "view", or the
+    // centre of the level).
     Simulation(ecs::Registry& registry, const scene::MeshStore& meshes);
 
     // One step of step_seconds.
@@ -27,7 +27,7 @@ public:
     Interaction possible_interaction(ecs::Registry& registry) const;
     bool carries_lantern() const { return !carried_.is_null(); }
 
-    // Of all that moves, switches and lamps and the person: equal worlds have equal hashes.
+    // Hash of everything that moves, of switches and lamps and the person: equal worlds have equal hashes.
     std::uint64_t world_hash(ecs::Registry& registry) const;
 
 private:

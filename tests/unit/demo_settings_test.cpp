@@ -59,6 +59,14 @@ TEST_F(DemoSettingsTest, DamagedFilesGiveTheUsualSettingsAndAreKept) {
     EXPECT_EQ(loaded.settings.bindings[std::size_t(Action::run)], 'R');
 }
 
+TEST_F(DemoSettingsTest, NamesOfEarlierVersionsAreStillRead) {
+    ASSERT_TRUE(save_settings(path, DemoSettings())); // creates the folder
+    ASSERT_TRUE(write_file(path, R"({"letter_scale": 1.5})"));
+    EXPECT_EQ(load_settings(path).settings.ui_scale, 1.5f);
+    ASSERT_TRUE(write_file(path, R"({"letter_scale": 1.5, "ui_scale": 2.0})"));
+    EXPECT_EQ(load_settings(path).settings.ui_scale, 2.0f) << "the present name wins";
+}
+
 TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
     DemoSettings before, settings;
     settings.preset = before.preset = Preset::software;

@@ -1,0 +1,35 @@
+// Components as JSON in scene files, by name of entity, component and field. Not for use outside this folder.
+#pragma once
+
+#include "engine/core/description.h"
+#include "engine/ecs/registry.h"
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+
+namespace sunfleck::io {
+
+inline constexpr int scene_file_version = 2; // version 1 had no checksums and no settings
+
+// Access to one component type by name.
+struct ComponentAccess {
+    const TypeDescription& type;
+    const void* (*find)(ecs::Registry&, ecs::Entity);
+    Status (*set)(ecs::Registry&, ecs::Entity, const std::function<Status(void*)>& fill);
+    Status (*check)(const std::function<Status(void*)>& fill); // whether `set` would work
+};
+
+// Components that glTF cannot express.
+const std::vector<ComponentAccess>& saved_components();
+// Components that glTF can express but a user may have changed: saved when the scene refers to a glTF file that is not
+// written.
+const std::vector<ComponentAccess>& overridden_components();
+
+// Whether apply_entity would succeed.
+Status check_entity(const std::string& name, const nlohmann::json& components);
+// After check_entity. Names that are not nodes create entities that only the scene file has.
+Status apply_entity(ecs::Registry& registry, const std::string& name, const nlohmann::json& components);
+// The components of all named entities; `overridden`: also those that glTF can express.
+nlohmann::json entities_json(ecs::Registry& registry, bool overridden);
+
+} // namespace sunfleck::io
