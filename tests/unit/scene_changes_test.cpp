@@ -1,3 +1,4 @@
+#include "engine/raytrace/ray_scene.h"
 #include "engine/scene/scene_changes.h"
 #include "tests/support/scene_editor.h"
 
@@ -252,6 +253,39 @@ TEST(SceneChanges, AnotherRegistryOrAForcedCollectIsEverything) {
     EXPECT_TRUE(collect(second));
     tracker.collect(second.registry, second.meshes); // missed
     EXPECT_FALSE(cursor.follows(tracker.collect(second.registry, second.meshes)));
+}
+
+// Whatever the edits, rays meet what they meet in a scene built from scratch, and nothing is built where nothing
+// changed.
+TEST(SceneChanges, ARaySceneThatFollowsEqualsOneFromScratch) {
+    SceneEditor editor;
+    ChangeTracker tracker;
+    auto followed = raytrace::RayScene::create().value();
+    std::mt19937 random(5);
+    const auto number = [&] { return float(random() >> 8) * 0x1p-24f; };
+    std::size_t hits = 0;
+    for (int step = 0; step < 600; ++step) {
+        editor.edit();
+        ASSERT_TRUE(followed->update(tracker.collect(editor.registry, editor.meshes), editor.meshes));
+        const std::uint64_t generation = followed->generation(), builds = followed->static_builds();
+        ASSERT_TRUE(followed->update(tracker.collect(editor.registry, editor.meshes), editor.meshes));
+        ASSERT_EQ(followed->generation(), generation);
+        ASSERT_EQ(followed->static_builds(), builds);
+        if (step % 20 != 19)
+            continue;
+        auto fresh = raytrace::RayScene::create().value();
+        ASSERT_TRUE(fresh->update(editor.registry, editor.meshes));
+        EXPECT_FLOAT_EQ(fresh->static_area(), followed->static_area());
+        for (int i = 0; i < 200; ++i) {
+            const raytrace::Ray ray{vec3(8.0f * number(), 8.0f * number(), 5.0f), vec3(0.0f, 0.0f, -1.0f)};
+            for (const auto scope : {raytrace::Scope::everything, raytrace::Scope::static_only}) {
+                const auto a = followed->closest_hit(ray, scope), b = fresh->closest_hit(ray, scope);
+                ASSERT_EQ(a.has_value(), b.has_value());
+                hits += a.has_value();
+            }
+        }
+    }
+    EXPECT_GT(hits, 1000u);
 }
 
 } // namespace
