@@ -283,6 +283,7 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
     for (int step = 0; step < 1000; ++step) {
         const std::uint32_t action = random() % 8;
         const std::size_t which = movers.empty() ? 0 : random() % movers.size();
+        const ecs::Entity edited = movers.empty() ? ecs::null_entity : movers[which].entity;
         if ((action == 0 || movers.empty()) && movers.size() < 12)
             movers.push_back({world.registry.create(), random() % 2 ? boxes : 0, random_place(random)});
         else if (action == 1 && !movers.empty())
@@ -294,9 +295,19 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
         else if (!movers.empty())
             movers[which].matrix =
                 glm::translate(mat4(1.0f), vec3(uniform(random, -0.1f, 0.1f))) * movers[which].matrix;
-        std::shuffle(movers.begin(), movers.end(), random);
         database.begin_frame();
-        database.update_movers(movers, world.meshes);
+        if (step % 2 == 0) { // by what changed, and one that did not
+            std::vector<MoverPlace> changed;
+            for (std::size_t i = 0; i < movers.size(); ++i)
+                if (movers[i].entity == edited || i == 0 || i + 1 == movers.size())
+                    changed.push_back(movers[i]);
+            const bool gone = std::none_of(movers.begin(), movers.end(),
+                                           [&](const MoverPlace& place) { return place.entity == edited; });
+            database.change_movers(changed, {&edited, gone ? 1u : 0u}, world.meshes);
+        } else {
+            std::shuffle(movers.begin(), movers.end(), random);
+            database.update_movers(movers, world.meshes);
+        }
         changes += database.changes().size();
         if (step % 100 != 99)
             continue;
