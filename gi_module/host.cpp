@@ -93,6 +93,7 @@ struct Context::Implementation {
     gi::Settings settings;
     ecs::Registry registry;
     scene::MeshStore meshes;
+    scene::ChangeTracker change_tracker;
     std::vector<ecs::Entity> instances, lights; // null: removed
     std::vector<std::uint32_t> surface_ids;     // by instance
     std::optional<mat4> view_projection;        // of the last frame recorded
@@ -105,7 +106,7 @@ struct Context::Implementation {
     }
     void place(ecs::Entity entity, const mat4& matrix) {
         // Hosts give whole matrices, so the hierarchy's part of an entity stays unused.
-        registry.emplace_or_replace<scene::WorldTransform>(entity, {matrix});
+        registry.update<scene::WorldTransform>(entity, {matrix});
     }
     void set_light(ecs::Entity entity, const LightData& data);
 };
@@ -307,16 +308,17 @@ Status Context::update(const Frame& frame) {
     Implementation& self = *implementation_;
     self.updated = false;
     self.resources->begin_frame(frame.serial, frame.completed_serial);
-    SUNFLECK_TRY(self.rays->update(self.registry, self.meshes));
+    const scene::SceneChanges& changes = self.change_tracker.collect(self.registry, self.meshes);
+    SUNFLECK_TRY(self.rays->update(changes, self.meshes));
     SUNFLECK_TRY(self.gpu_scene->stage_meshes(self.meshes, *self.resources));
-    SUNFLECK_TRY(self.gpu_scene->update(self.registry, self.meshes, *self.resources));
+    SUNFLECK_TRY(self.gpu_scene->update(changes, self.meshes, *self.resources));
     gi::FrameInput input;
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
     input.progress = frame.progress;
     input.view_projection = self.view_projection;
-    SUNFLECK_TRY(self.system->update(self.registry, self.meshes, *self.gpu_scene, *self.rays, input));
+    SUNFLECK_TRY(self.system->update(self.registry, changes, self.meshes, *self.gpu_scene, *self.rays, input));
     std::unordered_map<ecs::Entity, std::uint32_t> rows;
     for (const scene::DrawItem& item : self.gpu_scene->draws())
         rows[item.entity] = item.row;

@@ -61,17 +61,6 @@ bool same_sampling(const Settings& a, const Settings& b) {
            a.candidates == b.candidates && a.spread == b.spread;
 }
 
-MoverPlace place_of(const ecs::Registry& registry, const scene::MeshStore& meshes, const scene::DrawItem& item) {
-    MoverPlace place;
-    place.entity = item.entity;
-    place.mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
-    place.matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
-    place.blocks = item.casts_shadow;
-    place.revision = meshes.revision(place.mesh);
-    place.solid = item.kind != scene::surface_kind_holes && place.revision == 0;
-    return place;
-}
-
 } // namespace
 
 std::span<const gpu::EmbeddedShader> shaders() {
@@ -171,7 +160,16 @@ void System::make_samples(ecs::Registry& registry, const raytrace::RayScene& ray
 
 // Those that move have samples of their own, and so have those that once changed their strength: the first change makes
 // new samples for all, later ones only scale.
-void System::find_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& bounds) {
+void System::find_emitters(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                           const Bounds& bounds) {
+    const bool same = emitter_cursor_.follows(changes) && !changes.emitters_changed() &&
+                      emitter_movers_ == settings_.movers && emitter_bounds_.minimum == bounds.minimum &&
+                      emitter_bounds_.maximum == bounds.maximum;
+    emitter_cursor_.saw(changes);
+    if (same)
+        return;
+    emitter_movers_ = settings_.movers;
+    emitter_bounds_ = bounds;
     emitters_ = collect_emitters(registry, meshes, bounds, varying_);
     if (find_varying(registry))
         emitters_ = collect_emitters(registry, meshes, bounds, varying_);
@@ -291,14 +289,16 @@ Status System::configure_maps() {
     return {};
 }
 
-Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes,
-                                 const scene::GpuScene& gpu_scene, bool static_changed) {
+Status System::update_visibility(ecs::Registry& registry, const scene::SceneChanges& changes,
+                                 const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
+                                 bool static_changed) {
     VisibilityOptions options;
     options.patches.levels = settings_.patch_levels;
     options.tests = settings_.visibility_tests;
     const bool same_options =
         options.patches.levels == database_options_.patches.levels && options.tests == database_options_.tests;
-    if (database_samples_ != sample_generation_ || static_changed || !same_options) {
+    const bool built = database_samples_ != sample_generation_ || static_changed || !same_options;
+    if (built) {
         database_samples_ = 0; // should it be stopped
         if (!database_.build(registry, meshes, samples_, options, input_.progress))
             return Error{"the lighting's preparation was stopped"};
@@ -315,16 +315,39 @@ Status System::update_visibility(ecs::Registry& registry, const scene::MeshStore
         const StageTimer timer(cpu_times_, "visibility of samples");
         database_.change_samples(samples_, changed_samples_);
     }
-    std::vector<MoverPlace> movers;
-    for (const scene::DrawItem& item : gpu_scene.draws())
-        if (!item.is_static) {
-            movers.push_back(place_of(registry, meshes, item));
-            MoverPlace& place = movers.back();
-            place.lit = settings_.movers != MoverHandling::transfer ||
-                        !TransferLighting::takes(item, place.matrix, meshes, place.mesh);
-        }
-    database_.update_movers(movers, meshes);
+    update_movers(changes, meshes, gpu_scene, built || database_movers_ != settings_.movers);
     return {};
+}
+
+// `all`: the database knows none of them, or other settings apply.
+void System::update_movers(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                           const scene::GpuScene& gpu_scene, bool all) {
+    all = all || !mover_cursor_.follows(changes);
+    mover_cursor_.saw(changes);
+    database_movers_ = settings_.movers;
+    std::vector<MoverPlace> movers;
+    std::vector<ecs::Entity> gone;
+    const auto add = [&](const scene::Drawable& drawable) {
+        const scene::DrawItem* item = gpu_scene.find(drawable.entity);
+        if (item == nullptr) // its mesh is not on the GPU yet: looked for again in the next frame
+            mover_cursor_ = {};
+        if (item == nullptr || drawable.is_static)
+            return gone.push_back(drawable.entity);
+        movers.push_back(MoverPlace::of(drawable));
+        movers.back().lit = settings_.movers != MoverHandling::transfer ||
+                            !TransferLighting::takes(*item, drawable.matrix, meshes, drawable.mesh);
+    };
+    if (all) {
+        for (const scene::Drawable* drawable : changes.all)
+            add(*drawable);
+        return database_.update_movers(movers, meshes);
+    }
+    for (const scene::DrawableChange& change : changes.drawables)
+        if (change.removed())
+            gone.push_back(change.entity);
+        else if (change.is_mover())
+            add(*change.now);
+    database_.change_movers(movers, gone, meshes);
 }
 
 Status System::update_transfer(const ecs::Registry& registry, const scene::MeshStore& meshes,
@@ -387,8 +410,8 @@ std::vector<float> System::contributions_of_stale_maps(const scene::GpuScene& gp
     return map_contributions(database_, samples_, rows_, gpu_scene.draws(), *input_.view_projection, wanted);
 }
 
-Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                      raytrace::RayScene& rays, const FrameInput& input) {
+Status System::update(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                      const scene::GpuScene& gpu_scene, raytrace::RayScene& rays, const FrameInput& input) {
     cpu_times_.clear();
     counters_ = {};
     input_ = input;
@@ -398,7 +421,8 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
     database_geometry_ = rays.static_generation();
     {
         const StageTimer timer(cpu_times_, "light samples");
-        find_emitters(registry, meshes, gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
+        find_emitters(registry, changes, meshes,
+                      gpu_scene.static_bounds().empty() ? bounds : gpu_scene.static_bounds());
         changed_samples_.clear();
         if (needs_new_samples(rays))
             make_samples(registry, rays);
@@ -408,14 +432,14 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
             scheduler_.reset(samples_.size());
         SUNFLECK_TRY(configure_maps());
         if (settings_.mover_paths && settings_.movers != MoverHandling::as_static)
-            blocked_paths_.update(registry, meshes, gpu_scene, samples_, sample_generation_);
+            blocked_paths_.update(changes, meshes, samples_, sample_generation_);
         else
             blocked_paths_ = {};
         update_rows(bounds, rays);
     }
     if (uses_many_light()) {
         const StageTimer timer(cpu_times_, "visibility");
-        SUNFLECK_TRY(update_visibility(registry, meshes, gpu_scene, static_changed));
+        SUNFLECK_TRY(update_visibility(registry, changes, meshes, gpu_scene, static_changed));
     } else {
         database_samples_ = 0;
     }

@@ -4,7 +4,8 @@
 //
 //     auto system = gi::System::create({device, shaders}).value();
 //     each frame:
-//         system->update(registry, meshes, gpu_scene, input)       // CPU: samples, stale maps
+//         changes = tracker.collect(registry, meshes)               // what moved; rays and GPU scene follow it
+//         system->update(registry, changes, meshes, gpu_scene, rays, input) // CPU: samples, stale maps
 //         graph.reset();  ... the host's geometry pass ...
 //         irradiance = system->add_passes(graph, g_buffer, camera)  // declares the GPU work
 //         graph.compile();  graph.execute(commands, resources, timers);
@@ -98,10 +99,10 @@ public:
     const Settings& settings() const { return settings_; }
 
     // Follows the registry: light samples are made when settings, emitters or static geometry changed, and live on as
-    // LightSample entities with a ShadowMap beside each; maps that a moved object may touch become stale. World
-    // transforms, ray scene and GPU scene must be up to date.
-    Status update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                  raytrace::RayScene& rays, const FrameInput& input);
+    // LightSample entities with a ShadowMap beside each; maps that a moved object may touch become stale. Ray scene and
+    // GPU scene must have followed `changes`.
+    Status update(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                  const scene::GpuScene& gpu_scene, raytrace::RayScene& rays, const FrameInput& input);
 
     // Declares this frame's GPU work and returns the irradiance image, RGBA, W/m2 without albedo; alpha 0 where nothing
     // is. `camera` holds a CameraRow, the camera of the G-buffer. Call once after each update.
@@ -135,7 +136,8 @@ public:
 private:
     System(gpu::Device& device) : device_(device), resources_(device) {}
     bool uses_many_light() const;
-    void find_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& bounds);
+    void find_emitters(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                       const Bounds& bounds);
     bool find_varying(ecs::Registry& registry);
     bool needs_new_samples(const raytrace::RayScene& rays);
     void follow_dynamic_lights(ecs::Registry& registry, const raytrace::RayScene& rays);
@@ -143,8 +145,10 @@ private:
     void mirror_samples(ecs::Registry& registry);
     Status configure_maps();
     void update_rows(const Bounds& bounds, const raytrace::RayScene& rays);
-    Status update_visibility(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                             bool static_changed);
+    Status update_visibility(ecs::Registry& registry, const scene::SceneChanges& changes,
+                             const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene, bool static_changed);
+    void update_movers(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                       const scene::GpuScene& gpu_scene, bool all);
     Status update_transfer(const ecs::Registry& registry, const scene::MeshStore& meshes,
                            const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays);
     void count_passes();
@@ -186,6 +190,9 @@ private:
     std::vector<std::uint32_t> to_draw_;
     VisibilityDatabase database_;
     VisibilityOptions database_options_;
+    scene::ChangeCursor emitter_cursor_, mover_cursor_; // of emitters_, and of the movers in database_
+    Bounds emitter_bounds_;                             // that emitters_ were found in
+    MoverHandling emitter_movers_ = MoverHandling::as_static, database_movers_ = MoverHandling::as_static;
     std::unique_ptr<PassGrouping> passes_; // if they are counted
     std::uint64_t passes_generation_ = 0;  // of the database
     std::uint32_t passes_lights_ = 0;
