@@ -40,6 +40,7 @@ struct Context::Implementation {
     gi::Settings settings;
     ecs::Registry registry;
     scene::MeshStore meshes;
+    scene::ChangeTracker change_tracker;
     scene::TextureStore textures;
     std::vector<SharedMaterial> materials;
     std::vector<ecs::Entity> instances, lights;    // null: removed
@@ -57,7 +58,7 @@ struct Context::Implementation {
     }
     void place(ecs::Entity entity, const mat4& matrix) {
         // Hosts give whole matrices, so the hierarchy's part of an entity stays unused.
-        registry.emplace_or_replace<scene::WorldTransform>(entity, {matrix});
+        registry.update<scene::WorldTransform>(entity, {matrix});
     }
     void set_light(ecs::Entity entity, const LightData& data);
     Result<SharedMaterial> make_material(const MaterialData& data, const SharedMaterial* before);

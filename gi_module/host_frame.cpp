@@ -66,9 +66,10 @@ Status Context::update(const Frame& frame) {
     const bool lost = frame.dropped || self.broken || self.unrecorded;
     self.broken = false;
     self.unrecorded = true;
-    SUNFLECK_TRY(self.rays->update(self.registry, self.meshes, &self.textures));
+    const scene::SceneChanges& changes = self.change_tracker.collect(self.registry, self.meshes);
+    SUNFLECK_TRY(self.rays->update(changes, self.meshes, &self.textures));
     SUNFLECK_TRY(self.gpu_scene->stage_meshes(self.meshes, *self.resources));
-    SUNFLECK_TRY(self.gpu_scene->update(self.registry, self.meshes, *self.resources));
+    SUNFLECK_TRY(self.gpu_scene->update(changes, self.meshes, *self.resources));
     gi::FrameInput input;
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
@@ -77,7 +78,7 @@ Status Context::update(const Frame& frame) {
     input.view_projection = self.view_projection;
     gi::set_measured_times(input, self.timers->latest());
     input.previous_frame_lost = lost;
-    SUNFLECK_TRY(self.system->update(self.registry, self.meshes, *self.gpu_scene, *self.rays, input));
+    SUNFLECK_TRY(self.system->update(self.registry, changes, self.meshes, *self.gpu_scene, *self.rays, input));
     std::unordered_map<ecs::Entity, std::uint32_t> rows;
     for (const scene::DrawItem& item : self.gpu_scene->draws())
         rows[item.entity] = item.row;

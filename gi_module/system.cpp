@@ -56,6 +56,7 @@ Status System::set_settings(const Settings& settings) {
     SUNFLECK_TRY(settings.validate());
     SUNFLECK_ASSIGN(plan_, settings.light_plan());
     settings_ = settings;
+    ++settings_generation_;
     return {};
 }
 
@@ -78,8 +79,8 @@ Services System::services() {
     return {settings_, input_, samples_, *shadows_, database, resources_, restart_, cache_folder_, cpu_times_};
 }
 
-Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                      const raytrace::RayScene& rays, const FrameInput& input) {
+Status System::update(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                      const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays, const FrameInput& input) {
     cpu_times_.clear();
     input_ = input;
     restart_ = !recorded_ || input.previous_frame_lost;
@@ -88,7 +89,7 @@ Status System::update(ecs::Registry& registry, const scene::MeshStore& meshes, c
         shadows_->lost_frame();
     resources_.begin_frame(input.serial, input.completed_serial);
     SUNFLECK_TRY(find_view());
-    const SceneView scene{registry, meshes, gpu_scene, rays};
+    const SceneView scene{registry, changes, meshes, gpu_scene, rays};
     const bool static_changed = geometry_generation_ != rays.static_generation();
     geometry_generation_ = rays.static_generation();
     SUNFLECK_TRY(update_samples(scene, static_changed));
@@ -144,9 +145,9 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
                 return true;
         return false;
     };
-    SUNFLECK_TRY(visibility_.update(settings_, {scene.registry, scene.meshes, scene.gpu_scene, samples_.samples(),
-                                                samples_.generation(), samples_.moved(), static_changed, lit_elsewhere,
-                                                input_.progress}));
+    SUNFLECK_TRY(visibility_.update(settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene,
+                                                samples_.samples(), samples_.generation(), samples_.moved(),
+                                                static_changed, lit_elsewhere, settings_generation_, input_.progress}));
     cpu_times_["visibility of samples"] += visibility_.sample_milliseconds();
     return {};
 }

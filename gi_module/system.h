@@ -4,7 +4,8 @@
 //
 //     auto system = gi::System::create(device, pipelines).value();
 //     each frame:
-//         system->update(registry, meshes, gpu_scene, rays, input)          // CPU: samples, visibility, stale maps
+//         changes = tracker.collect(registry, meshes)                       // what moved; rays and GPU scene follow it
+//         system->update(registry, changes, meshes, gpu_scene, rays, input) // CPU: samples, visibility, stale maps
 //         graph.reset();  ... the host's geometry pass ...
 //         irradiance = system->add_passes(graph, gpu_scene, g_buffer, camera)  // declares the GPU work
 //         graph.compile();  graph.execute(commands, resources, timers);
@@ -35,8 +36,8 @@ public:
 
     // Follows the registry: light samples are made when settings, emitters or static geometry changed; maps that a
     // moved object may touch become stale. World transforms, ray scene and GPU scene must be up to date.
-    Status update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                  const raytrace::RayScene& rays, const FrameInput& input);
+    Status update(ecs::Registry& registry, const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                  const scene::GpuScene& gpu_scene, const raytrace::RayScene& rays, const FrameInput& input);
 
     // Declares this frame's GPU work and returns the irradiance image, RGBA, W/m2 without albedo; alpha 0 where nothing
     // is. `camera` holds a CameraRow, the camera of the G-buffer. Call at most once after each update; without it, or
@@ -86,6 +87,7 @@ private:
     std::vector<std::unique_ptr<Technique>> techniques_; // as techniques() lists them
     FrameInput input_;
     const DebugView* view_ = nullptr;
+    std::uint64_t settings_generation_ = 1;
     std::uint64_t geometry_generation_ = 0;
     bool recorded_ = true; // the passes of the last update
     bool restart_ = false;

@@ -90,10 +90,13 @@ Status SceneRenderer::update(const FrameRequest& request) {
     timers_->begin_frame(submission_->serial(), completed);
     start = Clock::now();
     scene::deform_meshes(registry_, meshes_);
-    SUNFLECK_TRY(rays_->update(registry_, meshes_, &textures_));
+    const scene::SceneChanges& changes = change_tracker_.collect(registry_, meshes_);
+    statistics_.cpu_ms["scene changes"] = milliseconds_since(start);
+    start = Clock::now();
+    SUNFLECK_TRY(rays_->update(changes, meshes_, &textures_));
     statistics_.cpu_ms["ray scene"] = milliseconds_since(start);
     start = Clock::now();
-    SUNFLECK_TRY(gpu_scene_->update(registry_, meshes_, *resources_));
+    SUNFLECK_TRY(gpu_scene_->update(changes, meshes_, *resources_));
     statistics_.cpu_ms["gpu scene"] = milliseconds_since(start);
     gi::FrameInput input;
     input.serial = submission_->serial();
@@ -104,7 +107,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
-    SUNFLECK_TRY(lighting_->update(registry_, meshes_, *gpu_scene_, *rays_, input));
+    SUNFLECK_TRY(lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input));
     return {};
 }
 

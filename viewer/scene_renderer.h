@@ -90,6 +90,7 @@ private:
     ecs::Registry registry_;
     scene::MeshStore meshes_;
     scene::TextureStore textures_;
+    scene::ChangeTracker change_tracker_;
     std::unique_ptr<gpu::ShaderLibrary> shaders_;
     std::unique_ptr<gpu::PipelineStore> pipelines_;
     std::unique_ptr<gpu::Submission> submission_;

@@ -3,6 +3,7 @@
 
 #include "engine/ecs/entity.h"
 
+#include <algorithm>
 #include <cassert>
 #include <span>
 #include <utility>
@@ -44,6 +45,7 @@ private:
 class PoolBase {
 public:
     static constexpr std::uint32_t absent = 0xffffffffu;
+    static constexpr std::size_t removals_kept = 4096; // at least
 
     virtual ~PoolBase() = default;
 
@@ -58,8 +60,20 @@ public:
 
     Tick added_tick(std::size_t position) const { return added_[position]; }
     Tick changed_tick(std::size_t position) const { return changed_[position]; }
+    // When anything was last added, changed or removed; 0: never.
+    Tick newest_stamp() const { return newest_stamp_; }
+    Tick newest_removal() const { return newest_removal_; }
+    // Raised whenever elements come, go or swap places.
+    std::uint64_t order_version() const { return order_version_; }
+
+    // The newest removals, oldest first: the log drops old ones when it outgrows the pool, whoever reads it.
     std::span<const Removal> removals() const { return removals_; }
+    // Whether the log still has all removals after `since`.
+    bool knows_removals_since(Tick since) const { return since >= forgotten_until_; }
     void forget_removals_until(Tick tick) {
+        for (const Removal& removal : removals_)
+            if (removal.tick <= tick)
+                forgotten_until_ = std::max(forgotten_until_, removal.tick);
         std::erase_if(removals_, [tick](const Removal& removal) { return removal.tick <= tick; });
     }
 
@@ -81,11 +95,16 @@ public:
         added_.pop_back();
         changed_.pop_back();
         removals_.push_back({entity, tick});
+        newest_removal_ = tick;
+        ++order_version_;
+        if (removals_.size() > std::max<std::size_t>(removals_kept, 2 * entities_.size()))
+            forget_removals_until(removals_[removals_.size() / 2].tick);
     }
 
     void swap_positions(std::uint32_t a, std::uint32_t b) {
         if (a == b)
             return;
+        ++order_version_;
         swap_values(a, b);
         std::swap(entities_[a], entities_[b]);
         std::swap(added_[a], added_[b]);
@@ -94,7 +113,10 @@ public:
         sparse_[entities_[b].index] = b;
     }
 
-    void stamp(Entity entity, Tick tick) { changed_[sparse_[entity.index]] = tick; }
+    void stamp(Entity entity, Tick tick) {
+        changed_[sparse_[entity.index]] = tick;
+        newest_stamp_ = tick;
+    }
 
     Signal added, changed, removed;
     // Set by the group that owns this pool's order.
@@ -108,6 +130,8 @@ protected:
         entities_.push_back(entity);
         added_.push_back(tick);
         changed_.push_back(tick);
+        newest_stamp_ = tick;
+        ++order_version_;
     }
     virtual void move_values_last_to(std::uint32_t position) = 0;
     virtual void swap_values(std::uint32_t a, std::uint32_t b) = 0;
@@ -118,6 +142,8 @@ private:
     std::vector<Tick> added_;
     std::vector<Tick> changed_;
     std::vector<Removal> removals_;
+    Tick newest_stamp_ = 0, newest_removal_ = 0, forgotten_until_ = 0;
+    std::uint64_t order_version_ = 0;
 };
 
 template <typename T>

@@ -5,6 +5,11 @@
 
 namespace sunfleck::ecs {
 
+Registry::Registry() {
+    static std::atomic<std::uint64_t> made{0};
+    id_ = ++made;
+}
+
 std::size_t Registry::next_type_index() {
     static std::atomic<std::size_t> next{0};
     return next++;

@@ -14,7 +14,7 @@ namespace sunfleck::ecs {
 
 class Registry {
 public:
-    Registry() = default;
+    Registry();
     Registry(Registry&&) = delete;
     Registry(const Registry&) = delete;
     Registry& operator=(const Registry&) = delete;
@@ -27,6 +27,8 @@ public:
                living_[entity.index];
     }
     std::size_t entity_count() const { return generations_.size() - free_.size(); }
+    // Unlike that of any other registry of this process, one that was destroyed included.
+    std::uint64_t id() const { return id_; }
     // Living entities in order of index.
     std::vector<Entity> entities() const;
 
@@ -80,6 +82,15 @@ public:
             target.changed.emit(*this, entity);
     }
 
+    // emplace_or_replace that leaves the element and its tick alone if the value is the same; true if it was not.
+    template <typename T>
+    bool update(Entity entity, T value) {
+        if (const T* stored = try_get<T>(entity); stored != nullptr && *stored == value)
+            return false;
+        emplace_or_replace<T>(entity, std::move(value));
+        return true;
+    }
+
     template <typename... Ts>
     View<Ts...> view() {
         return View<Ts...>(*this, find_pool<Ts>()...);
@@ -104,7 +115,7 @@ public:
     // body(Entity, const T&) for elements stamped after `since`, in pool order. Additions count as changes.
     template <typename T, typename Body>
     void each_changed_since(Tick since, Body&& body) {
-        if (const Pool<T>* source = find_pool<T>()) {
+        if (const Pool<T>* source = find_pool<T>(); source != nullptr && source->newest_stamp() > since) {
             const IterationScope scope(*this);
             for (std::size_t i = 0; i < source->size(); ++i)
                 if (source->changed_tick(i) > since)
@@ -113,32 +124,40 @@ public:
     }
     template <typename T, typename Body>
     void each_added_since(Tick since, Body&& body) {
-        if (const Pool<T>* source = find_pool<T>()) {
+        if (const Pool<T>* source = find_pool<T>(); source != nullptr && source->newest_stamp() > since) {
             const IterationScope scope(*this);
             for (std::size_t i = 0; i < source->size(); ++i)
                 if (source->added_tick(i) > since)
                     body(source->entities()[i], source->value(i));
         }
     }
-    // body(Entity) for removals after `since`, oldest first; the entity may be dead.
+    // body(Entity) for removals after `since`, oldest first; the entity may be dead. The log is bounded: ask
+    // knows_removals_since, and compare with a copy where it says no.
     template <typename T, typename Body>
     void each_removed_since(Tick since, Body&& body) const {
-        if (const Pool<T>* source = find_pool<T>())
+        if (const Pool<T>* source = find_pool<T>(); source != nullptr && source->newest_removal() > since)
             for (const Removal& removal : source->removals())
                 if (removal.tick > since)
                     body(removal.entity);
     }
     template <typename T>
+    bool knows_removals_since(Tick since) const {
+        const Pool<T>* source = find_pool<T>();
+        return source == nullptr || source->knows_removals_since(since);
+    }
+    // At once, without a look at the elements.
+    template <typename T>
     bool any_change_since(Tick since) const {
         const Pool<T>* source = find_pool<T>();
-        if (source == nullptr)
-            return false;
-        for (std::size_t i = 0; i < source->size(); ++i)
-            if (source->changed_tick(i) > since)
-                return true;
-        return !source->removals().empty() && source->removals().back().tick > since;
+        return source != nullptr && std::max(source->newest_stamp(), source->newest_removal()) > since;
     }
-    // Drops removals that every consumer has seen from the log.
+    // Another number than before: loops over T may go in another order.
+    template <typename T>
+    std::uint64_t order_version() const {
+        const Pool<T>* source = find_pool<T>();
+        return source == nullptr ? 0 : source->order_version();
+    }
+    // Drops removals that every consumer has seen from the log, before its length makes it drop them.
     void forget_removals_until(Tick tick);
 
     // --- Signals: added (after), changed (after), removed (before destruction) -- ---------------------------------
@@ -212,6 +231,7 @@ private:
     std::vector<std::unique_ptr<GroupBase>> groups_;
     std::vector<std::function<void(Registry&)>> deferred_;
     Tick tick_ = 1;
+    std::uint64_t id_;
     int iterating_ = 0;
 };
 

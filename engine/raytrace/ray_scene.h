@@ -3,8 +3,7 @@
 #pragma once
 
 #include "engine/core/result.h"
-#include "engine/scene/components.h"
-#include "engine/scene/mesh_store.h"
+#include "engine/scene/scene_changes.h"
 #include "engine/scene/texture_store.h"
 
 #include <array>
@@ -55,9 +54,12 @@ public:
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;
 
-    // Follows the registry: builds what is new, moves movers, drops what is gone. World transforms must be up to date.
+    // Follows the scene: builds what is new, moves movers, drops what is gone, and does nothing where nothing changed.
     // The static scene is rebuilt only if static geometry changed.
     // Masked and blended surfaces have their holes for all rays. Without `textures`, surfaces are as if they had none.
+    Status update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                  const scene::TextureStore* textures = nullptr);
+    // The same for whoever has no ChangeTracker; world transforms must be up to date.
     Status update(ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore* textures = nullptr);
 

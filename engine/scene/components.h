@@ -17,6 +17,7 @@ struct Transform {
     vec3 position{0.0f};
     quat rotation{1.0f, 0.0f, 0.0f, 0.0f};
     vec3 scale{1.0f};
+    bool operator==(const Transform&) const = default;
     static const TypeDescription& description();
 
     mat4 matrix() const {
@@ -32,6 +33,7 @@ struct Parent {
 // Derived by update_world_transforms; never edited or saved.
 struct WorldTransform {
     mat4 matrix{1.0f};
+    bool operator==(const WorldTransform&) const = default;
 };
 
 struct MeshInstance {
@@ -57,6 +59,7 @@ struct Material {
     float alpha_cutoff = 0.5f; // of mask
     bool double_sided = true;  // false: invisible from behind in images; light transport treats both sides as solid
     bool unlit = false;        // images show its base colour unlit; in light transport it is Lambertian
+    bool operator==(const Material&) const = default;
     static const TypeDescription& description();
 };
 
@@ -112,11 +115,13 @@ struct AreaLight {
     float height = 1.0f; // rectangle, along Y
     float radius = 0.5f; // disc and sphere
     vec3 radiance{1.0f}; // W/(sr m2), Lambertian
+    bool operator==(const AreaLight&) const = default;
     static const TypeDescription& description();
 };
 
 struct PointLight {
     vec3 intensity{1.0f}; // radiant intensity, W/sr
+    bool operator==(const PointLight&) const = default;
     static const TypeDescription& description();
 };
 
@@ -125,12 +130,14 @@ struct SpotLight {
     vec3 intensity{1.0f}; // radiant intensity on the axis, W/sr
     float inner_angle = 0.3f;
     float outer_angle = 0.6f;
+    bool operator==(const SpotLight&) const = default;
     static const TypeDescription& description();
 };
 
 // Light from infinity, travelling along the local -Z axis.
 struct DirectionalLight {
     vec3 irradiance{1.0f}; // on a plane that faces it, W/m2
+    bool operator==(const DirectionalLight&) const = default;
     static const TypeDescription& description();
 };
 
@@ -138,6 +145,7 @@ struct DirectionalLight {
 struct Environment {
     vec3 radiance{0.0f}; // W/(sr m2)
     bool lights = true;  // false: a visible background only, whose light comes from area lights in the windows
+    bool operator==(const Environment&) const = default;
     static const TypeDescription& description();
 };
 

@@ -49,6 +49,7 @@ struct EnvironmentMap {
     std::string file;                              // PNG, JPEG, EXR or HDR, relative to the scene file
     float rotation = 0.0f;                         // rad, of the surroundings about +Y
     std::shared_ptr<const EnvironmentImage> image; // set when the scene is loaded
+    bool operator==(const EnvironmentMap&) const = default;
     static const TypeDescription& description();
 
     // From world directions to the map's, and back.

@@ -32,11 +32,6 @@ void memory_barrier(gpu::PassContext& context, VkPipelineStageFlags2 from, VkAcc
     context.device.vk.vkCmdPipelineBarrier2(context.commands, &dependency);
 }
 
-shared::TextureRow texture_row(const TextureUse& use) {
-    const glm::mat2 m = use.matrix();
-    return {vec4(m[0], m[1]), vec4(use.offset, float(use.set), 0.0f)};
-}
-
 } // namespace
 
 Status GpuScene::update_textures(const TextureStore& textures, gpu::Submission& submission) {
@@ -47,6 +42,7 @@ GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
     Geometry geometry;
     auto& [positions, normals, coordinates, tangents, colours, indices] = geometry;
     ranges_.clear();
+    ranges_changed_ = true;
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
         const Mesh& mesh = meshes[i];
         ranges_.push_back({std::uint32_t(indices.size()),
@@ -115,137 +111,6 @@ Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& reso
         return {};
     };
     return for_each_buffer(geometry, make);
-}
-
-namespace {
-
-// Of the corners of a box in object space.
-float greatest_displacement(const mat4& before, const mat4& after, const Bounds& bounds) {
-    float greatest = 0.0f;
-    for (int i = 0; i < 8; ++i) {
-        const vec4 corner(i & 1 ? bounds.maximum.x : bounds.minimum.x, i & 2 ? bounds.maximum.y : bounds.minimum.y,
-                          i & 4 ? bounds.maximum.z : bounds.minimum.z, 1.0f);
-        greatest = std::max(greatest, glm::length(vec3(after * corner) - vec3(before * corner)));
-    }
-    return greatest;
-}
-
-shared::DrawConstants draw_constants(const shared::InstanceRow& row, std::uint32_t number) {
-    shared::DrawConstants constants{};
-    const mat4 model_rows = glm::transpose(row.model);
-    for (int i = 0; i < 3; ++i) {
-        constants.model[i] = model_rows[i];
-        constants.normal_colour[i] = vec4(vec3(row.normal_matrix[i]), row.base_colour[i]);
-    }
-    const vec3 emission(row.emission);
-    constants.emission = vec4(emission, 0.0f);
-    constants.surface = (number + 1) | (row.emission.w > 0.0f ? shared::surface_area_light : 0) |
-                        (emission.r + emission.g + emission.b > 0.0f ? shared::surface_emits : 0) |
-                        (row.material.y != 0 ? shared::surface_unlit : 0);
-    return constants;
-}
-
-} // namespace
-
-Status GpuScene::update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources) {
-    draws_.clear();
-    removed_bounds_.clear();
-    static_bounds_ = bounds_ = {};
-    for (auto& [entity, previous] : previous_)
-        previous.seen = false;
-    std::vector<shared::InstanceRow> rows;
-    std::vector<shared::MaterialRow> materials;
-    copies_.clear();
-    has_emission_textures_ = false;
-    for (std::uint32_t mesh = 0; mesh < ranges_.size(); ++mesh)
-        if (ranges_[mesh].revision != meshes.revision(mesh))
-            SUNFLECK_TRY(update_vertices(mesh, meshes, resources));
-    registry.view<MeshInstance, WorldTransform>().each([&](ecs::Entity entity, const MeshInstance& instance,
-                                                           const WorldTransform& transform) {
-        if (instance.mesh >= ranges_.size())
-            return;
-        const MeshRange& range = ranges_[instance.mesh];
-        const Material* material = registry.try_get<Material>(entity);
-        const Material fallback;
-        const Material& surface = material != nullptr ? *material : fallback;
-        DrawItem item;
-        item.entity = entity;
-        item.first_index = range.first_index;
-        item.index_count = range.index_count;
-        item.vertex_offset = range.vertex_offset;
-        item.vertex_count = range.vertex_count;
-        item.row = std::uint32_t(rows.size());
-        item.details = range.details;
-        item.mirrored = glm::determinant(mat3(transform.matrix)) < 0.0f;
-        item.closed = range.closed && glm::determinant(mat3(transform.matrix)) > 0.0f;
-        item.single_sided = !surface.double_sided;
-        item.scale = std::sqrt(std::max({glm::dot(transform.matrix[0], transform.matrix[0]),
-                                         glm::dot(transform.matrix[1], transform.matrix[1]),
-                                         glm::dot(transform.matrix[2], transform.matrix[2])}));
-        item.bounds = transform_bounds(transform.matrix, meshes.bounds(instance.mesh));
-        item.is_static = is_static(registry, entity);
-        if (const ShadowCasting* casting = registry.try_get<ShadowCasting>(entity))
-            item.casts_shadow = item.is_static || casting->casts;
-        bounds_.add(item.bounds);
-        if (item.is_static)
-            static_bounds_.add(item.bounds);
-
-        Previous& previous = previous_[entity];
-        const bool known = !previous.bounds.empty();
-        item.moved =
-            !known || previous.model != transform.matrix || previous.revision != meshes.revision(instance.mesh);
-        item.previous_bounds = previous.bounds;
-        if (known && item.moved)
-            item.displacement = greatest_displacement(previous.model, transform.matrix, meshes.bounds(instance.mesh));
-        shared::InstanceRow row{};
-        row.model = transform.matrix;
-        row.previous_model = known ? previous.model : transform.matrix;
-        row.normal_matrix = mat4(normal_matrix(transform.matrix));
-        row.base_colour = vec4(surface.base_colour, 0.0f);
-        if (const SurfacePattern* pattern = registry.try_get<SurfacePattern>(entity)) {
-            item.kind = std::uint32_t(pattern->kind);
-            row.pattern = vec4(pattern->colour, pattern->scale);
-            row.inverse_model = glm::inverse(transform.matrix);
-        }
-        row.emission = vec4(surface.emission, registry.has<AreaLight>(entity) ? 1.0f : 0.0f);
-        row.material.y = surface.unlit ? 1 : 0;
-        if (meshes[instance.mesh].is_textured() || surface.alpha_mode != AlphaMode::opaque)
-            describe_surface(registry, entity, surface, item, row, materials);
-        item.constants = draw_constants(row, item.row);
-        rows.push_back(row);
-        previous = {transform.matrix, item.bounds, meshes.revision(instance.mesh), true};
-        draws_.push_back(item);
-    });
-    std::erase_if(previous_, [&](const auto& entry) {
-        if (!entry.second.seen)
-            removed_bounds_.push_back(entry.second.bounds);
-        return !entry.second.seen;
-    });
-    SUNFLECK_ASSIGN(rows_, resources.upload(std::span<const shared::InstanceRow>(rows)));
-    if (materials.empty())
-        materials.emplace_back(); // bound, but not read
-    SUNFLECK_ASSIGN(materials_, resources.upload(std::span<const shared::MaterialRow>(materials)));
-    return {};
-}
-
-void GpuScene::describe_surface(ecs::Registry& registry, ecs::Entity entity, const Material& material, DrawItem& item,
-                                shared::InstanceRow& row, std::vector<shared::MaterialRow>& materials) {
-    item.kind = material.alpha_mode == AlphaMode::opaque ? surface_kind_textured : surface_kind_holes;
-    row.material.x = std::uint32_t(materials.size());
-    shared::MaterialRow target{};
-    static const MaterialTextures none;
-    const MaterialTextures* found = registry.try_get<MaterialTextures>(entity);
-    const MaterialTextures& textures = found != nullptr ? *found : none;
-    target.base_colour = texture_row(textures.base_colour);
-    target.normal = texture_row(textures.normal);
-    target.emission = texture_row(textures.emission);
-    target.factors = vec4(material.alpha, material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : -1.0f,
-                          textures.normal ? textures.normal_scale : 0.0f, textures.emission ? 1.0f : 0.0f);
-    item.textures[0] = textures.base_colour.texture;
-    item.textures[1] = textures.normal.texture;
-    item.textures[2] = textures.emission.texture;
-    has_emission_textures_ = has_emission_textures_ || (textures.emission && material.emission != vec3(0.0f));
-    materials.push_back(target);
 }
 
 Status GpuScene::update_vertices(std::uint32_t index, const MeshStore& meshes, gpu::FrameResources& resources) {

@@ -9,7 +9,7 @@
 #include "engine/scene/gpu_textures.h"
 #include "engine/scene/instance_shared.h"
 #include "engine/scene/material_shared.h"
-#include "engine/scene/mesh_store.h"
+#include "engine/scene/scene_changes.h"
 
 #include <memory>
 #include <span>
@@ -28,6 +28,7 @@ inline constexpr std::uint32_t surface_kind_textured = 5, surface_kind_holes = 6
 
 struct DrawItem {
     ecs::Entity entity;
+    std::uint32_t mesh = 0, revision = 0; // of the store, and of the mesh
     std::uint32_t first_index = 0;
     std::uint32_t index_count = 0;
     std::int32_t vertex_offset = 0;
@@ -60,13 +61,22 @@ public:
     Status stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources);
     Status update_textures(const TextureStore& textures, gpu::Submission& submission);
 
-    // Rewrites the draw list and instance rows from the registry; call once a frame after update_world_transforms.
-    Status update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources);
+    // Brings the draw list and the instance rows up to date; once a frame. Only what changed is described again, and
+    // the list is laid out again where entities came, went or changed places in it.
+    Status update(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources);
+    // The same for whoever has no ChangeTracker; world transforms must be up to date.
+    Status update(ecs::Registry& registry, const MeshStore& meshes, gpu::FrameResources& resources) {
+        return update(tracker_.collect(registry, meshes), meshes, resources);
+    }
 
     // Adds the pass that copies vertices of deformed meshes, if there are any; before whatever draws them.
     void add_passes(gpu::FrameGraph& graph);
 
     const std::vector<DrawItem>& draws() const { return draws_; }
+    const DrawItem* find(ecs::Entity entity) const {
+        const auto place = place_of_.find(entity);
+        return place == place_of_.end() ? nullptr : &draws_[place->second];
+    }
     const gpu::Buffer& positions() const { return positions_; }
     const gpu::Buffer& normals() const { return normals_; }
     const gpu::Buffer& indices() const { return indices_; }
@@ -112,8 +122,16 @@ private:
         std::uint32_t first = 0; // vertex
     };
     Status update_vertices(std::uint32_t mesh, const MeshStore& meshes, gpu::FrameResources& resources);
-    void describe_surface(ecs::Registry& registry, ecs::Entity entity, const Material& material, DrawItem& item,
-                          shared::InstanceRow& row, std::vector<shared::MaterialRow>& materials);
+    Status update_deformed(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources);
+    void settle();
+    bool needs_layout(const SceneChanges& changes, const MeshStore& meshes) const;
+    void lay_out(const SceneChanges& changes, const MeshStore& meshes);
+    void refresh(const SceneChanges& changes, const MeshStore& meshes);
+    void describe(const Drawable& drawable, const MeshStore& meshes, DrawItem& item, shared::InstanceRow& row);
+    void describe_place(const Drawable& drawable, const MeshStore& meshes, DrawItem& item,
+                        shared::InstanceRow& row) const;
+    void find_bounds(bool static_ones);
+    void find_emission_textures();
     Status copy_vertices(gpu::PassContext& context) const;
     Status copy_staged(gpu::PassContext& context);
     // Calls make(buffer, its name, its values, its usage) for all of them.
@@ -127,13 +145,6 @@ private:
         SUNFLECK_TRY(make(colours_, "mesh colours", geometry.colours, vertices));
         return make(indices_, "mesh indices", geometry.indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
     }
-    struct Previous {
-        mat4 model{1.0f};
-        Bounds bounds;
-        std::uint32_t revision = 0; // of the mesh
-        bool seen = false;
-    };
-
     gpu::Device& device_;
     GpuTextures textures_;
     gpu::Buffer positions_, normals_, indices_, texture_coordinates_, tangents_, colours_;
@@ -142,11 +153,17 @@ private:
     std::vector<VertexCopy> copies_;
     std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;
+    bool ranges_changed_ = false; // since the draw list was laid out
+    ChangeTracker tracker_;       // of the update without changes
+    ChangeCursor cursor_;
     std::vector<DrawItem> draws_;
+    std::vector<shared::InstanceRow> instance_rows_;          // of draws_
+    std::vector<shared::MaterialRow> material_rows_;          // by InstanceRow::material.x
+    std::unordered_map<ecs::Entity, std::uint32_t> place_of_; // in draws_
+    std::vector<std::uint32_t> movers_, moved_; // places in draws_; those that moved did so in the last update
     std::vector<Bounds> removed_bounds_;
     gpu::UploadSlice rows_;
     Bounds static_bounds_, bounds_;
-    std::unordered_map<ecs::Entity, Previous> previous_;
 };
 
 } // namespace sunfleck::scene

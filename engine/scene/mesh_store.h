@@ -36,6 +36,7 @@ public:
         bounds_.push_back(mesh.bounds());
         meshes_.push_back(std::move(mesh));
         revisions_.push_back(0);
+        ++edits_;
         return std::uint32_t(meshes_.size() - 1);
     }
     // New vertices for the same triangles.
@@ -45,17 +46,21 @@ public:
         bounds_[index] = mesh.bounds();
         meshes_[index] = std::move(mesh);
         ++revisions_[index];
+        ++edits_;
     }
     const Mesh& operator[](std::uint32_t index) const { return meshes_[index]; }
     const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
     // How often the vertices were replaced.
     std::uint32_t revision(std::uint32_t index) const { return revisions_[index]; }
+    // How often meshes were added or replaced.
+    std::uint64_t edits() const { return edits_; }
     std::uint32_t size() const { return std::uint32_t(meshes_.size()); }
 
 private:
     std::vector<Mesh> meshes_;
     std::vector<Bounds> bounds_;
     std::vector<std::uint32_t> revisions_;
+    std::uint64_t edits_ = 0;
 };
 
 } // namespace sunfleck::scene

@@ -256,10 +256,10 @@ void Simulation::carry(ecs::Registry& registry) {
     way.y += 0.25f * player_.forward().y;
     if (const auto hit = physics_.ray(eye, 1.3f * way, carried_))
         way *= std::min(1.0f, std::max(0.0f, hit->fraction * 1.3f - 0.3f));
-    registry.patch<scene::Transform>(carried_, [&](scene::Transform& t) {
-        t.position = eye + way - vec3(0.0f, 0.12f, 0.0f);
-        t.rotation = turned;
-    });
+    scene::Transform held = registry.get<scene::Transform>(carried_);
+    held.position = eye + way - vec3(0.0f, 0.12f, 0.0f);
+    held.rotation = turned;
+    registry.update<scene::Transform>(carried_, held);
 }
 
 std::uint64_t Simulation::world_hash(ecs::Registry& registry) const {

@@ -50,25 +50,50 @@ bool BlockedPaths::crosses_path(const Box& box, const LightSample& sample) {
     return false;
 }
 
-void BlockedPaths::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
-                          std::span<const LightSample> samples, std::uint64_t generation) {
-    std::vector<Box> boxes;
-    for (const scene::DrawItem& item : gpu_scene.draws()) {
-        if (item.is_static || !item.casts_shadow)
-            continue;
-        const std::uint32_t mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
-        const mat4& matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
-        if (is_large_box(meshes[mesh], meshes.bounds(mesh), matrix))
-            boxes.push_back({matrix, glm::inverse(matrix), meshes.bounds(mesh)});
+bool BlockedPaths::follow_one(const scene::DrawableChange& change, const scene::MeshStore& meshes) {
+    const scene::Drawable* now = change.now;
+    const auto known = boxes_.find(change.entity);
+    const bool blocks = now != nullptr && !now->is_static && now->casts_shadow &&
+                        is_large_box(meshes[now->mesh], meshes.bounds(now->mesh), now->matrix);
+    if (!blocks) {
+        if (known == boxes_.end())
+            return false;
+        boxes_.erase(known);
+        return true;
     }
-    if (boxes == boxes_ && generation == generation_ && blocked_.size() == samples.size())
+    const Box box{now->matrix, glm::inverse(now->matrix), meshes.bounds(now->mesh)};
+    if (known != boxes_.end() && known->second == box)
+        return false;
+    boxes_[change.entity] = box;
+    return true;
+}
+
+// True if a box came, went or moved.
+bool BlockedPaths::follow(const scene::SceneChanges& changes, const scene::MeshStore& meshes) {
+    bool changed = false;
+    if (cursor_.follows(changes)) {
+        for (const scene::DrawableChange& change : changes.drawables)
+            changed = (change.is_mover() && follow_one(change, meshes)) || changed;
+    } else {
+        boxes_.clear();
+        changed = true;
+        for (const scene::Drawable* drawable : changes.all)
+            follow_one({drawable->entity, nullptr, drawable}, meshes);
+    }
+    cursor_.saw(changes);
+    return changed;
+}
+
+void BlockedPaths::update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                          std::span<const LightSample> samples, std::uint64_t generation) {
+    const bool same_boxes = !follow(changes, meshes);
+    if (same_boxes && generation == generation_ && blocked_.size() == samples.size())
         return;
-    boxes_ = std::move(boxes);
     generation_ = generation;
     blocked_.assign(samples.size(), 0);
     for (std::size_t i = 0; i < samples.size(); ++i)
-        blocked_[i] =
-            std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) { return crosses_path(box, samples[i]); });
+        blocked_[i] = std::any_of(boxes_.begin(), boxes_.end(),
+                                  [&](const auto& entry) { return crosses_path(entry.second, samples[i]); });
     count_ = std::size_t(std::count(blocked_.begin(), blocked_.end(), std::uint8_t(1)));
 }
 

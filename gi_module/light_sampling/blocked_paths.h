@@ -1,13 +1,14 @@
-// Which reflected samples get no light because something stands in the way that it came. Walks see static geometry
-// only, so without this a closed door would reflect, in the room behind it, the light of the room before it.
+// Which VPLs get no light because a mover stands in the path that it came by. Random walks see static geometry only, so
+// without this a closed door would let light of the room before it be reflected in the room behind it.
 //
 // Only large boxes that cast shadows count (doors, panels, platforms): a sample stands for a wide beam, which smaller
 // things do not block.
 #pragma once
 
-#include "engine/scene/gpu_scene.h"
+#include "engine/scene/scene_changes.h"
 #include "gi_module/transport/light_sample.h"
 
+#include <map>
 #include <span>
 
 namespace sunfleck::gi {
@@ -16,8 +17,9 @@ class BlockedPaths {
 public:
     static constexpr float smallest_side = 0.5f; // m: two sides of a box must be longer
 
-    // `generation`: another number means other samples. Does nothing where no such box has moved.
-    void update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::GpuScene& gpu_scene,
+    // `generation`: another number means other samples. Looks at movers that changed only, and at the samples only
+    // where such a box came, went or moved.
+    void update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
                 std::span<const LightSample> samples, std::uint64_t generation);
     bool is_blocked(std::uint32_t sample) const { return sample < blocked_.size() && blocked_[sample] != 0; }
     std::size_t count() const { return count_; }
@@ -35,7 +37,11 @@ private:
     static bool crosses(const Box& box, vec3 from, vec3 to);
     static bool crosses_path(const Box& box, const LightSample& sample);
 
-    std::vector<Box> boxes_;
+    bool follow(const scene::SceneChanges& changes, const scene::MeshStore& meshes);
+    bool follow_one(const scene::DrawableChange& change, const scene::MeshStore& meshes);
+
+    scene::ChangeCursor cursor_;
+    std::map<ecs::Entity, Box> boxes_;
     std::vector<std::uint8_t> blocked_; // by sample
     std::uint64_t generation_ = 0;
     std::size_t count_ = 0;

@@ -111,7 +111,8 @@ void DynamicLights::place_direct(Light& light, const raytrace::RayScene& rays) {
         LightSample sample = make_direct_sample(light.emitter, i, light.direct, settings_, rays);
         sample.dynamic = true;
         LightSample& old = samples_[light.first + i];
-        if (!moved_.empty() && (sample.position != old.position || sample.normal != old.normal))
+        const bool same_cone = sample.cone_scale == old.cone_scale && sample.cone_offset == old.cone_offset;
+        if (!moved_.empty() && (sample.position != old.position || sample.normal != old.normal || !same_cone))
             moved_[light.first + i] = 1;
         old = sample;
     }

@@ -88,6 +88,14 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request) {
 void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& request) {
     const Bounds& fixed = scene.gpu_scene.static_bounds();
     const Bounds bounds = fixed.empty() ? scene.gpu_scene.bounds() : fixed;
+    const bool same = emitter_cursor_.follows(scene.changes) && !scene.changes.emitters_changed() &&
+                      emitters_as_static_ == request.movers_are_static && emitter_bounds_.minimum == bounds.minimum &&
+                      emitter_bounds_.maximum == bounds.maximum;
+    emitter_cursor_.saw(scene.changes);
+    if (same)
+        return;
+    emitters_as_static_ = request.movers_are_static;
+    emitter_bounds_ = bounds;
     emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
     if (find_varying(scene.registry))
         emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
@@ -202,7 +210,7 @@ void SampleSet::update_bounds(const SceneView& scene, const LightSettings& setti
 void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
                             float indirect_scale) {
     if (settings.mover_paths && !sampled_.movers_are_static)
-        blocked_paths_.update(scene.registry, scene.meshes, scene.gpu_scene, samples_, generation_);
+        blocked_paths_.update(scene.changes, scene.meshes, samples_, generation_);
     else
         blocked_paths_ = {};
     remapped_.clear();

@@ -26,6 +26,7 @@ namespace sunfleck::gi {
 // The scene to be lit. All parts must be up to date and outlive the call.
 struct SceneView {
     ecs::Registry& registry;
+    const scene::SceneChanges& changes; // that all below have followed
     const scene::MeshStore& meshes;
     const scene::GpuScene& gpu_scene;
     const raytrace::RayScene& rays;
@@ -80,6 +81,9 @@ private:
     BlockedPaths blocked_paths_;
     std::vector<std::uint32_t> dynamic_samples_; // index of each dynamic sample among all
     std::vector<std::uint32_t> moved_, remapped_;
+    scene::ChangeCursor emitter_cursor_; // of emitters_ and dynamic_emitters_
+    Bounds emitter_bounds_;              // of the scene that they were found in
+    bool emitters_as_static_ = false;    // and whether movers counted as static geometry
     SampleRequest sampled_; // what the samples were generated for
     std::uint32_t slots_ = 1;
     bool valid_ = false;

@@ -18,18 +18,6 @@ constexpr Counter pairs_unlit{"pairs_unlit", "pairs", "visibility",
 constexpr Counter patches{"surface_patches", "patches", "visibility", "Leaves of the tree over static surfaces"};
 constexpr Counter memory{"visibility_database", "B", memory_group, "The visibility database on the CPU"};
 
-MoverPlace place_of(const VisibilityInput& input, const scene::DrawItem& item) {
-    MoverPlace place;
-    place.entity = item.entity;
-    place.mesh = input.registry.get<scene::MeshInstance>(item.entity).mesh;
-    place.matrix = input.registry.get<scene::WorldTransform>(item.entity).matrix;
-    place.blocks = item.casts_shadow;
-    place.revision = input.meshes.revision(place.mesh);
-    place.solid = item.kind != scene::surface_kind_holes && place.revision == 0;
-    place.lit = !input.lit_elsewhere || !input.lit_elsewhere(item);
-    return place;
-}
-
 } // namespace
 
 std::span<const Counter> SceneVisibility::counters() {
@@ -55,7 +43,8 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
     const bool same_options =
         options_ && options.patches.levels == options_->patches.levels && options.tests == options_->tests;
     std::span<const std::uint32_t> moved = input.moved_samples;
-    if (sample_generation_ != input.sample_generation || input.static_changed || !same_options) {
+    const bool build = sample_generation_ != input.sample_generation || input.static_changed || !same_options;
+    if (build) {
         sample_generation_ = 0; // in case it is stopped
         if (!database_.build(input.registry, input.meshes, input.samples, options, input.progress))
             return Error{"preparing the lighting was stopped"};
@@ -67,16 +56,38 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
     const auto start = std::chrono::steady_clock::now();
     database_.change_samples(input.samples, moved);
     sample_milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    follow_movers(input);
+    follow_movers(input, build);
     return {};
 }
 
-void SceneVisibility::follow_movers(const VisibilityInput& input) {
+// `all`: the database knows none of them.
+void SceneVisibility::follow_movers(const VisibilityInput& input, bool all) {
+    all = all || !mover_cursor_.follows(input.changes) || lighting_generation_ != input.lighting_generation;
+    mover_cursor_.saw(input.changes);
+    lighting_generation_ = input.lighting_generation;
     std::vector<MoverPlace> movers;
-    for (const scene::DrawItem& item : input.gpu_scene.draws())
-        if (!item.is_static)
-            movers.push_back(place_of(input, item));
-    database_.update_movers(movers, input.meshes);
+    std::vector<ecs::Entity> gone;
+    const auto add = [&](const scene::Drawable& drawable) {
+        const scene::DrawItem* item = input.gpu_scene.find(drawable.entity);
+        if (item == nullptr) // its mesh is not on the GPU yet: looked for again in the next frame
+            mover_cursor_ = {};
+        if (item == nullptr || drawable.is_static)
+            return gone.push_back(drawable.entity);
+        movers.push_back(MoverPlace::of(drawable));
+        movers.back().lit = !input.lit_elsewhere || !input.lit_elsewhere(*item);
+    };
+    if (all) {
+        for (const scene::Drawable* drawable : input.changes.all)
+            add(*drawable);
+        database_.update_movers(movers, input.meshes);
+        return;
+    }
+    for (const scene::DrawableChange& change : input.changes.drawables)
+        if (change.removed())
+            gone.push_back(change.entity);
+        else if (change.is_mover())
+            add(*change.now);
+    database_.change_movers(movers, gone, input.meshes);
 }
 
 } // namespace sunfleck::gi

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
+#include "engine/scene/scene_changes.h"
 #include "gi_module/transport/report.h"
 #include "gi_module/visibility/visibility_database.h"
 #include "gi_module/visibility/visibility_settings.h"
@@ -14,6 +15,7 @@ namespace sunfleck::gi {
 
 struct VisibilityInput {
     ecs::Registry& registry;
+    const scene::SceneChanges& changes; // that meshes and GPU scene have followed
     const scene::MeshStore& meshes;
     const scene::GpuScene& gpu_scene;
     std::span<const LightSample> samples;
@@ -22,7 +24,8 @@ struct VisibilityInput {
     bool static_changed = false; // static geometry did
     // Whether a mover is lit by a technique that needs nothing of the database; null: none is.
     std::function<bool(const scene::DrawItem&)> lit_elsewhere;
-    std::function<bool(float)> progress; // of building
+    std::uint64_t lighting_generation = 0; // another number: lit_elsewhere may answer differently
+    std::function<bool(float)> progress;   // of building
 };
 
 class SceneVisibility {
@@ -40,12 +43,14 @@ public:
     void report(Report& report) const;
 
 private:
-    void follow_movers(const VisibilityInput& input);
+    void follow_movers(const VisibilityInput& input, bool all);
 
     VisibilityDatabase database_;
     std::optional<VisibilityOptions> options_; // that it was built with
     std::uint64_t sample_generation_ = 0;      // of the samples that it knows; 0: none
     double sample_milliseconds_ = 0.0;
+    scene::ChangeCursor mover_cursor_;
+    std::uint64_t lighting_generation_ = 0;
 };
 
 } // namespace sunfleck::gi

@@ -44,7 +44,7 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
                                std::span<const LightSample> samples, const VisibilityOptions& options,
                                const std::function<bool(float)>& progress) {
     options_ = options;
-    samples_.assign(samples.begin(), samples.end());
+    samples_ = samples;
     static_blockers_ = {};
     patches_.build(registry, meshes, options.patches, static_blockers_);
     movers_.clear();
@@ -135,7 +135,7 @@ bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& prog
         reporter.end_level();
         for (std::uint32_t node = first; node < end; ++node) {
             if (!patches_.can_split(node) ||
-                (patches_.nodes().size() + 4) * std::uint64_t(samples_.size()) > options_.most_pairs)
+                (patches_.nodes().size() + 4) * std::uint64_t(samples_.size()) > options_.max_pairs)
                 continue;
             std::size_t partial = 0, reached = 0;
             for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
@@ -314,6 +314,7 @@ std::uint32_t VisibilityDatabase::make_group(std::vector<std::uint32_t> roots) {
 }
 
 void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {
+    samples_ = samples;
     if (changed.empty())
         return;
     // What movers did to these pairs is taken back before the pairs change.
@@ -329,8 +330,6 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
     }
     for (const PairChange& change : changes)
         record(change.node, change.sample, change.before, change.after);
-    for (const std::uint32_t sample : changed)
-        samples_[sample] = samples[sample];
     if (all_dynamic) {
         for (const std::uint32_t sample : changed) {
             clusters_[cluster_of_[sample]].bounds = {};

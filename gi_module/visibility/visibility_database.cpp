@@ -4,6 +4,7 @@
 #include "engine/core/jobs.h"
 
 #include <algorithm>
+#include <set>
 
 namespace sunfleck::gi {
 
@@ -68,69 +69,97 @@ void VisibilityDatabase::begin_frame() {
 }
 
 void VisibilityDatabase::update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes) {
-    const auto mark_affected = [&](std::uint32_t node) {
-        for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
-            const PairState fixed = static_state(node, sample);
-            affected_[sample] |= fixed == PairState::none || fixed == PairState::partial;
-        }
-    };
-    std::map<EntityBits, const MoverPlace*> present;
+    std::set<EntityBits> present;
     for (const MoverPlace& place : movers)
+        present.insert(place.entity.bits());
+    std::vector<ecs::Entity> gone;
+    for (const auto& [bits, mover] : movers_)
+        if (present.count(bits) == 0)
+            gone.push_back(mover.entity);
+    change_movers(movers, gone, meshes);
+}
+
+// By entity, whatever order they are given in: those that go, then those that come or stay.
+void VisibilityDatabase::change_movers(std::span<const MoverPlace> changed, std::span<const ecs::Entity> removed,
+                                       const scene::MeshStore& meshes) {
+    std::map<EntityBits, const MoverPlace*> places;
+    std::set<EntityBits> leaving;
+    for (const ecs::Entity entity : removed)
+        leaving.insert(entity.bits());
+    for (const MoverPlace& place : changed) {
+        const EntityBits bits = place.entity.bits();
         if (place.mesh < meshes.size())
-            present[place.entity.bits()] = &place;
-    for (auto it = movers_.begin(); it != movers_.end();) {
-        const auto found = present.find(it->first);
-        if (found != present.end() && found->second->mesh == it->second.mesh &&
-            found->second->solid == it->second.solid) {
-            ++it;
-            continue;
-        }
-        const std::uint32_t slot = it->second.slot;
-        if (it->second.blocks)
-            mark_affected(mover_node(it->second.entity));
-        it->second.blocks = false;
-        replace_footprints(it->second);
-        mover_slots_[slot] = ecs::null_entity;
-        set_mover_row(slot);
-        it = movers_.erase(it);
+            places[bits] = &place;
+        const auto known = movers_.find(bits);
+        if (known != movers_.end() &&
+            (place.mesh >= meshes.size() || known->second.mesh != place.mesh || known->second.solid != place.solid))
+            leaving.insert(bits);
     }
-    for (const auto& [bits, place] : present) {
-        const auto found = movers_.find(bits);
-        const bool added = found == movers_.end();
-        Mover& mover = movers_[bits];
-        if (!added && mover.matrix == place->matrix && mover.blocks == place->blocks &&
-            unlit_slots_[mover.slot] == !place->lit && mover.revision == place->revision)
-            continue;
-        if (added) {
-            mover.entity = place->entity;
-            mover.mesh = place->mesh;
-            mover.solid = place->solid;
-            mover.revision = place->revision;
-            mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
-            mover.footprint.resize(samples_.size());
-            auto free = std::find(mover_slots_.begin(), mover_slots_.end(), ecs::null_entity);
-            if (free == mover_slots_.end())
-                free = mover_slots_.insert(free, ecs::null_entity);
-            *free = place->entity;
-            mover.slot = std::uint32_t(free - mover_slots_.begin());
-            unlit_slots_.resize(mover_slots_.size(), 0);
-            grow_rows();
-        } else if (mover.blocks) {
-            mark_affected(mover_node(mover.entity));
-        }
-        if (mover.revision != place->revision)
-            mover.blocker = MovingBlocker(meshes[place->mesh], place->solid);
-        mover.revision = place->revision;
-        mover.blocks = place->blocks;
-        unlit_slots_[mover.slot] = !place->lit;
-        mover.matrix = place->matrix;
-        mover.blocker.place(place->matrix);
-        const std::uint32_t node = mover_node(mover.entity);
-        set_mover_row(mover.slot);
-        if (mover.blocks)
-            mark_affected(node);
-        replace_footprints(mover);
+    for (const EntityBits bits : leaving)
+        remove_mover(bits);
+    for (const auto& [bits, place] : places)
+        place_mover(*place, meshes);
+}
+
+// Samples that see the mover where it is now: their maps show it.
+void VisibilityDatabase::mark_affected(const Mover& mover) {
+    const std::uint32_t node = mover_node(mover.entity);
+    for (std::uint32_t sample = 0; mover.blocks && sample < samples_.size(); ++sample) {
+        const PairState fixed = static_state(node, sample);
+        affected_[sample] |= fixed == PairState::none || fixed == PairState::partial;
     }
+}
+
+void VisibilityDatabase::remove_mover(EntityBits bits) {
+    const auto found = movers_.find(bits);
+    if (found == movers_.end())
+        return;
+    Mover& mover = found->second;
+    const std::uint32_t slot = mover.slot;
+    mark_affected(mover);
+    mover.blocks = false;
+    replace_footprints(mover);
+    mover_slots_[slot] = ecs::null_entity;
+    set_mover_row(slot);
+    movers_.erase(found);
+}
+
+VisibilityDatabase::Mover& VisibilityDatabase::add_mover(const MoverPlace& place) {
+    Mover& mover = movers_[place.entity.bits()];
+    mover.entity = place.entity;
+    mover.mesh = place.mesh;
+    mover.solid = place.solid;
+    mover.blocks = false; // until it is placed
+    mover.footprint.resize(samples_.size());
+    auto free = std::find(mover_slots_.begin(), mover_slots_.end(), ecs::null_entity);
+    if (free == mover_slots_.end())
+        free = mover_slots_.insert(free, ecs::null_entity);
+    *free = place.entity;
+    mover.slot = std::uint32_t(free - mover_slots_.begin());
+    unlit_slots_.resize(mover_slots_.size(), 0);
+    grow_rows();
+    return mover;
+}
+
+// Does nothing where the mover is known and nothing about it changed.
+void VisibilityDatabase::place_mover(const MoverPlace& place, const scene::MeshStore& meshes) {
+    const auto found = movers_.find(place.entity.bits());
+    const bool added = found == movers_.end();
+    Mover& mover = added ? add_mover(place) : found->second;
+    if (!added && mover.matrix == place.matrix && mover.blocks == place.blocks &&
+        unlit_slots_[mover.slot] == !place.lit && mover.revision == place.revision)
+        return;
+    mark_affected(mover);
+    if (added || mover.revision != place.revision)
+        mover.blocker = MovingBlocker(meshes[place.mesh], place.solid);
+    mover.revision = place.revision;
+    mover.blocks = place.blocks;
+    unlit_slots_[mover.slot] = !place.lit;
+    mover.matrix = place.matrix;
+    mover.blocker.place(place.matrix);
+    set_mover_row(mover.slot);
+    mark_affected(mover);
+    replace_footprints(mover);
 }
 
 // Of the mover in a slot against static geometry; of a free slot, everything is unlit.

@@ -13,13 +13,14 @@
 // without a search, and counts at the pair are enough to infer its state.) Nodes within are found top-down: what a
 // parent settles (none, full), its children inherit without tests.
 //
-// Samples of emitters that move (LightSample::dynamic) are decided anew every frame, so more coarsely: what one blocker
-// hides from them is found for whole groups of charts, all else that they face is "partial".
+// Samples of emitters that move (LightSample::dynamic) are decided again every frame, so more coarsely: what one
+// blocker hides from them is found for whole groups of charts, all else that they face is "partial".
 //
 // Movers are nodes, too. They shadow themselves and each other, so between "unlit", "full" (by static geometry) and
 // "partial" they have no state "none".
 #pragma once
 
+#include "engine/scene/scene_changes.h"
 #include "gi_module/visibility/moving_blocker.h"
 #include "gi_module/visibility/surface_patches.h"
 #include "gi_module/visibility/test_grouping.h"
@@ -44,6 +45,12 @@ struct MoverPlace {
     bool lit = true;            // false: its pixels get no light from here, so that all its pairs read "unlit"
     bool solid = true;          // false: it has holes, or changes its shape
     std::uint32_t revision = 0; // of the mesh
+
+    // Lit, for all that a drawable says.
+    static MoverPlace of(const scene::Drawable& drawable) {
+        const bool solid = drawable.material.alpha_mode == scene::AlphaMode::opaque && drawable.revision == 0;
+        return {drawable.entity, drawable.mesh, drawable.matrix, drawable.casts_shadow, true, solid, drawable.revision};
+    }
 };
 
 struct PairChange {
@@ -54,8 +61,8 @@ struct PairChange {
 struct VisibilityOptions {
     PatchOptions patches;
     float split_share = 0.08f; // patches are split if at least this share of the samples that reach them is partial
-    std::uint64_t most_pairs = std::uint64_t(24) << 20; // no further splits beyond
-    TestGrouping tests = TestGrouping::clusters;        // of movers
+    std::uint64_t max_pairs = std::uint64_t(24) << 20; // no further splits beyond
+    TestGrouping tests = TestGrouping::clusters;       // of movers
 };
 
 struct VisibilityCounters {
@@ -65,17 +72,22 @@ struct VisibilityCounters {
 
 class VisibilityDatabase {
 public:
-    // Starts anew: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
-    // `progress` is called with the share that is done, from any thread but by one at a time; if it returns false,
-    // build stops and returns false, and the database is empty.
+    // From scratch: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
+    // The samples are not copied: they must stay where they are until the next build or change_samples.
+    // `progress` is called with the share that is done, from any thread, never concurrently; if it returns false, build
+    // stops and returns false, and the database is empty.
     bool build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
                const VisibilityOptions& options, const std::function<bool(float)>& progress = {});
     // Forgets the changes of the last frame. Once a frame, before the two below.
     void begin_frame();
-    // Samples with these indices have changed; their number and which are dynamic have not. The patches stay.
+    // Samples with these indices have changed (their values already have, where it is the same array); their number and
+    // which are dynamic have not. The patches stay.
     void change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
-    // Follows the movers: new ones are added, missing ones removed, moved ones tested. In any order; the state depends
-    // on the set alone.
+    // Follows the movers. Either by those that are new or may have changed and those that are gone (of all others
+    // nothing is looked at), or by the whole set, without which there is nothing to follow after a build. In any order;
+    // states depend on the set alone.
+    void change_movers(std::span<const MoverPlace> changed, std::span<const ecs::Entity> removed,
+                       const scene::MeshStore& meshes);
     void update_movers(std::span<const MoverPlace> movers, const scene::MeshStore& meshes);
 
     std::uint32_t node_count() const { return std::uint32_t(patches_.nodes().size() + mover_slots_.size()); }
@@ -156,7 +168,7 @@ private:
         std::vector<std::uint32_t> roots;
     };
     static constexpr std::size_t samples_per_cluster = 16;
-    // Footprints of one mover for samples of a cluster, on their way.
+    // Footprints of one mover for samples of a cluster, while they are found.
     struct FootprintWalk {
         const Cluster* cluster = nullptr;
         const MovingBlocker* blocker = nullptr;
@@ -184,6 +196,10 @@ private:
     Footprint roots_for(const Cluster& cluster, const Mover& mover, std::uint64_t& tests) const;
     bool reaches(const Mover& mover, std::uint32_t sample) const;
     void replace_footprints(Mover& mover);
+    Mover& add_mover(const MoverPlace& place);
+    void place_mover(const MoverPlace& place, const scene::MeshStore& meshes);
+    void remove_mover(EntityBits bits);
+    void mark_affected(const Mover& mover);
     void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
     void set_mover_row(std::uint32_t slot);
     void set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed);
@@ -199,7 +215,7 @@ private:
     void grow_rows();
 
     VisibilityOptions options_;
-    std::vector<LightSample> samples_;
+    std::span<const LightSample> samples_; // the owner's
     SurfacePatches patches_;
     StaticBlockers static_blockers_;
     std::vector<Cluster> clusters_;

@@ -1,0 +1,95 @@
+// What a RayScene holds: Embree's scenes and the instances in them. Only for its own files.
+#pragma once
+
+#include "engine/raytrace/ray_scene.h"
+#include "engine/raytrace/surface_materials.h"
+
+#include <embree3/rtcore.h>
+#include <map>
+#include <unordered_map>
+
+namespace sunfleck::raytrace {
+
+struct DeviceRelease {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using ScenePointer = std::unique_ptr<RTCSceneTy, SceneRelease>;
+
+// A mesh instance as rays see it. Static ones hold world-space vertices in the static scene.
+struct Instance {
+    ecs::Entity entity;
+    std::uint32_t mesh = 0;
+    mat4 matrix{1.0f};
+    mat3 normals{1.0f};
+    SurfaceDescription surface;
+    bool is_static = true;
+    std::uint32_t revision = 0; // of the mesh
+};
+
+// What a filter function needs to tell whether a ray goes through a hole.
+struct HoleFilter {
+    SurfaceDescription surface;
+    const scene::MeshStore* meshes = nullptr;
+    const scene::TextureStore* textures = nullptr;
+    std::uint32_t mesh = 0;
+
+    bool stops(vec3 origin, vec3 direction, std::uint32_t primitive, float u, float v, std::uint32_t salt) const {
+        const float alpha = alpha_at(surface, textures, {(*meshes)[mesh], primitive, u, v});
+        if (surface.material.alpha_mode == scene::AlphaMode::mask)
+            return alpha >= surface.material.alpha_cutoff;
+        return alpha > hole_threshold(origin, direction, primitive, salt);
+    }
+};
+
+struct RayScene::Implementation {
+    struct MeshScene {
+        ScenePointer scene;
+        std::uint32_t revision = 0;
+    };
+    // How the instances differ from what changed entities are now.
+    struct Differences {
+        bool static_geometry = false, static_reflection = false, static_emission = false;
+        bool movers = false;              // came, went, or have other triangles
+        std::vector<std::uint32_t> moved; // movers, in `instances`
+        void compare(const Instance* had, const Instance* now);
+    };
+
+    std::unique_ptr<RTCDeviceTy, DeviceRelease> device;
+    ScenePointer static_scene, top_scene;
+    // Of movers, by mesh; where a surface has holes, also by entity.
+    std::map<std::pair<std::uint32_t, EntityBits>, MeshScene> mesh_scenes;
+    std::vector<std::unique_ptr<HoleFilter>> static_filters, mover_filters;
+    std::vector<Instance> instances; // static ones first; geometry id in static_scene = place in this list
+    std::uint32_t static_count = 0;
+    std::uint32_t static_builds = 0;
+    std::uint64_t static_generation = 0;
+    std::uint64_t generation = 0;
+    float static_area = 0.0f;
+    const scene::MeshStore* meshes = nullptr;
+    const scene::TextureStore* textures = nullptr;
+    std::unordered_map<ecs::Entity, std::uint32_t> place_of; // in instances
+    scene::ChangeTracker tracker;                            // of the update without changes
+    scene::ChangeCursor cursor;
+
+    ScenePointer new_scene() const;
+    void attach_triangles(RTCScene target, const Instance& instance, const mat4& matrix, std::uint32_t id,
+                          std::vector<std::unique_ptr<HoleFilter>>& filters) const;
+    void build_static();
+    RTCScene mesh_scene(const Instance& instance);
+    void attach_instance(RTCScene target, const mat4& matrix, std::uint32_t id) const;
+    void build_top();
+    void move_in_top(std::span<const std::uint32_t> moved);
+    std::vector<scene::DrawableChange> compare_all(const scene::SceneChanges& changes) const;
+    Differences take_over(std::span<const scene::DrawableChange> changes);
+    void list_instances(const scene::SceneChanges& changes, bool static_ones);
+    void rebuild(const Differences& differences);
+
+    RTCScene scope_scene(Scope scope) const {
+        return scope == Scope::static_only ? static_scene.get() : top_scene.get();
+    }
+};
+
+} // namespace sunfleck::raytrace
