@@ -8,8 +8,9 @@
 namespace sunfleck::gi {
 namespace {
 
-// On the map, [-1, 1]^2 if it is on it at all; false if the point is behind the projection.
-bool place_on_map(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t face, vec3 point, vec2& uv) {
+// Map coordinates, in [-1, 1]^2 if the point is on the map; false if it is behind the projection centre.
+bool project_to_map(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t face, vec3 point,
+                    vec2& uv) {
     const vec3 v = point - vec3(light.position_bound);
     const vec3 d(glm::dot(vec3(light.tangent_scale), v), glm::dot(vec3(light.bitangent), v),
                  glm::dot(vec3(light.normal_offset), v));
@@ -26,7 +27,7 @@ bool place_on_map(const shared::LightRow& light, std::uint32_t light_class, std:
 
 } // namespace
 
-bool MapArea::meets(const MapArea& other) const {
+bool MapArea::overlaps(const MapArea& other) const {
     return glm::all(glm::lessThan(low, other.high)) && glm::all(glm::lessThan(other.low, high));
 }
 
@@ -34,11 +35,11 @@ void MapAreas::add(MapArea area) {
     if (area.empty())
         return;
     for (std::size_t i = 0; i < areas_.size();) {
-        if (!areas_[i].meets(area)) {
+        if (!areas_[i].overlaps(area)) {
             ++i;
             continue;
         }
-        // The joined one may meet others that neither met.
+        // The merged area may overlap others.
         area = {glm::min(area.low, areas_[i].low), glm::max(area.high, areas_[i].high)};
         areas_.erase(areas_.begin() + std::ptrdiff_t(i));
         i = 0;
@@ -62,14 +63,14 @@ MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, s
                              corner & 2 ? bounds.maximum.y : bounds.minimum.y,
                              corner & 4 ? bounds.maximum.z : bounds.minimum.z);
             vec2 uv;
-            if (!place_on_map(light, light_class, face, point, uv))
+            if (!project_to_map(light, light_class, face, point, uv))
                 return MapArea::all(resolution);
             low = glm::min(low, uv);
             high = glm::max(high, uv);
         }
     }
-    const auto texel = [&](float place, float beyond) {
-        return std::clamp((place * 0.5f + 0.5f) * float(resolution) + beyond, 0.0f, float(resolution));
+    const auto texel = [&](float coordinate, float margin) {
+        return std::clamp((coordinate * 0.5f + 0.5f) * float(resolution) + margin, 0.0f, float(resolution));
     };
     const glm::uvec2 first(std::uint32_t(texel(low.x, -1.0f)) & ~1u, std::uint32_t(texel(low.y, -1.0f)));
     const glm::uvec2 end((std::uint32_t(std::ceil(texel(high.x, 1.0f))) + 1u) & ~1u,

@@ -1,4 +1,4 @@
-// Which texels of a shadow map a box can cover.
+// Which texels of a shadow map a box may cover; conservative.
 #pragma once
 
 #include "engine/core/maths.h"
@@ -9,15 +9,15 @@
 
 namespace sunfleck::gi {
 
-// Texels from `low` up to, not including, `high`; empty if there are none.
+// Texels from `low` to `high`, exclusive; empty if there are none.
 struct MapArea {
     glm::uvec2 low{0xffffffffu}, high{0};
     bool empty() const { return low.x >= high.x || low.y >= high.y; }
-    bool meets(const MapArea& other) const;
+    bool overlaps(const MapArea& other) const;
     static MapArea all(std::uint32_t resolution) { return {glm::uvec2(0), glm::uvec2(resolution)}; }
 };
 
-// Areas of one map, none of which overlap: those that would are joined.
+// Disjoint areas of one map: overlapping ones are merged.
 class MapAreas {
 public:
     void add(MapArea area);
@@ -28,8 +28,9 @@ private:
     std::vector<MapArea> areas_;
 };
 
-// Of a box (world space) in the map of a light, through the faces whose bit is set (octahedral_map.h); a texel wider on
-// each side, and on even columns, as copies need. Everything if the box reaches behind a face's projection.
+// Area that a box (world space) may cover in the map of a light, on the faces whose bit is set (octahedral_map.h); one
+// texel larger on each side and aligned to even columns, which copies need. The whole map if the box reaches behind a
+// face's projection centre.
 MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t faces,
                      const Bounds& bounds, std::uint32_t resolution);
 

@@ -5,8 +5,8 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::size_t max_pending_frames = 16; // that wait for their times
-constexpr double newest_share = 0.25;   // of the running mean
+constexpr std::size_t max_pending_frames = 16; // whose times are not known yet
+constexpr double newest_share = 0.25;          // of the running mean
 
 } // namespace
 

@@ -1,5 +1,5 @@
-// How many shadow maps a frame may redraw, if what is given is a time: from what earlier frames took. For interactive
-// use, since pictures then depend on the machine's speed.
+// How many shadow maps a frame may redraw if the budget is a time: estimated from the times of earlier frames. For
+// interactive use, since pictures then depend on the machine's speed.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@ namespace sunfleck::gi {
 
 class MapBudget {
 public:
-    // Frame `serial` redraws so many maps.
+    // Frame `serial` redraws `maps` maps.
     void add_frame(std::uint64_t serial, std::uint64_t maps);
-    // What the GPU took for them; serials rise. Frames that `drew` did not name are passed over.
+    // Their GPU time; serials ascend. Frames that were not added are ignored.
     void add_time(std::uint64_t serial, double milliseconds);
-    // Maps that fit, at least one; `unknown` while nothing is known.
+    // Maps that fit into the time, at least one; `unknown` while no time is known.
     std::uint32_t maps_in(double milliseconds, std::uint32_t unknown) const;
 
 private:

@@ -1,16 +1,16 @@
 #include "gi_module/shadows/map_contributions.h"
 
-#include "gi_module/visibility/view_bounds.h"
 #include "gi_module/transport/arrival.h"
+#include "gi_module/visibility/view_bounds.h"
 
 namespace sunfleck::gi {
 namespace {
 
-// A node as the view shows it.
+// A node (surface patch or mover) in the view.
 struct SeenNode {
-    float share = 0.0f; // of the picture, about, but for a factor; 0: out of sight
+    float share = 0.0f; // of the picture, approximately and up to a constant factor; 0: not visible
     vec3 centre{0.0f};
-    vec3 normal{0.0f}; // zero: it has all
+    vec3 normal{0.0f}; // zero: all directions
 };
 
 SeenNode seen_node(const Bounds& bounds, vec3 normal, float area, const mat4& view_projection) {
@@ -19,7 +19,7 @@ SeenNode seen_node(const Bounds& bounds, vec3 normal, float area, const mat4& vi
         return seen;
     seen.centre = bounds.centre();
     seen.normal = normal;
-    const float distance = (view_projection * vec4(seen.centre, 1.0f)).w; // along the view
+    const float distance = (view_projection * vec4(seen.centre, 1.0f)).w; // along the view axis
     seen.share = area / std::max(distance * distance, std::max(area, 1e-12f));
     return seen;
 }
@@ -44,7 +44,7 @@ std::vector<SeenNode> seen_nodes(const VisibilityDatabase& database, const mat4&
     return nodes;
 }
 
-// Irradiance of the sample on the node, brightest channel, times the node's share of the picture.
+// Irradiance from the sample on the node, brightest channel, times the node's share of the picture.
 float light_on(const SeenNode& node, const shared::LightRow& row, std::uint32_t light_class) {
     if (node.share <= 0.0f)
         return 0.0f;
@@ -60,7 +60,7 @@ float light_on(const SeenNode& node, const shared::LightRow& row, std::uint32_t 
 
 std::vector<float> map_contributions(const VisibilityDatabase& database, std::span<const LightSample> samples,
                                      std::span<const shared::LightRow> rows, std::span<const scene::DrawItem> draws,
-                                     const mat4& view_projection, std::span<const std::uint8_t> wanted) {
+                                     const mat4& view_projection, std::span<const std::uint8_t> requested) {
     std::vector<SeenNode> nodes = seen_nodes(database, view_projection);
     std::vector<std::uint32_t> mover_nodes;
     for (const scene::DrawItem& item : draws) {
@@ -72,7 +72,7 @@ std::vector<float> map_contributions(const VisibilityDatabase& database, std::sp
     }
     std::vector<float> result(samples.size(), 0.0f);
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
-        if (wanted[i] == 0)
+        if (requested[i] == 0)
             continue;
         const std::uint32_t kind = light_class(samples[i].kind);
         float sum = 0.0f;

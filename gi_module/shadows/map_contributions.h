@@ -1,4 +1,4 @@
-// What stale shadow maps cost the picture: the scheduler's first priority.
+// How much each stale shadow map matters to the picture: the scheduler's first priority.
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
@@ -9,12 +9,12 @@
 
 namespace sunfleck::gi {
 
-// By sample, in arbitrary units: the unshadowed irradiance of the sample on all nodes that movers shadow from it and
-// that the view may show, each times about its share of the picture; and on the movers themselves. That is how much of
-// the picture's light the movers' part of the map decides. 0 for samples that are not `wanted`.
+// By sample, in arbitrary units: the sample's unshadowed irradiance on all visible nodes that movers shadow from it and
+// on the movers themselves, each weighted by its approximate share of the picture. That is how much of the picture's
+// light the movers' part of the map decides. Only for samples whose `requested` is not 0; 0 for the others.
 // `rows`: of the samples. `view_projection`: world to clip, reverse depth without a far plane.
 std::vector<float> map_contributions(const VisibilityDatabase& database, std::span<const LightSample> samples,
                                      std::span<const shared::LightRow> rows, std::span<const scene::DrawItem> draws,
-                                     const mat4& view_projection, std::span<const std::uint8_t> wanted);
+                                     const mat4& view_projection, std::span<const std::uint8_t> requested);
 
 } // namespace sunfleck::gi

@@ -6,11 +6,11 @@
 namespace sunfleck::gi {
 namespace {
 
-// Of the mean contribution, added to each: maps that hardly matter are redrawn now and then all the same, and not all
-// in one frame when they are overdue.
-constexpr float least_share = 0.2f;
+// Of the mean contribution, added to every map: maps that hardly matter are still redrawn from time to time, and not
+// all in one frame when they become overdue.
+constexpr float min_share = 0.2f;
 
-// What decides beside age.
+// Priority is age times this.
 std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority priority,
                               std::span<const float> contributions) {
     std::vector<float> weights(samples.size(), 1.0f);
@@ -21,7 +21,7 @@ std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority 
         priority == MapPriority::contribution && contributions.size() == samples.size() && sum > 0.0f;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const vec3 flux = samples[i].flux;
-        weights[i] = by_contribution ? contributions[i] + least_share * sum / float(samples.size())
+        weights[i] = by_contribution ? contributions[i] + min_share * sum / float(samples.size())
                                      : std::max({flux.x, flux.y, flux.z});
     }
     return weights;
@@ -48,6 +48,30 @@ std::size_t MapScheduler::unusable() const {
     return std::size_t(std::count(static_stale_.begin(), static_stale_.end(), std::uint8_t(1)));
 }
 
+struct MapScheduler::Rank {
+    bool unusable; // nothing in the map can be relied on
+    bool overdue;
+    float weight;
+
+    bool goes_before(const Rank& other) const {
+        if (unusable != other.unusable)
+            return unusable;
+        return overdue != other.overdue ? overdue : weight > other.weight;
+    }
+};
+
+std::vector<MapScheduler::Rank> MapScheduler::ranks_of(std::span<const std::uint32_t> stale, std::uint32_t budget,
+                                                       const std::vector<float>& weights) const {
+    const std::uint32_t overdue = 4 * std::uint32_t((stale.size() + budget - 1) / budget);
+    std::vector<Rank> ranks;
+    for (const std::uint32_t i : stale) {
+        const float age = float(age_[i]);
+        const bool late = age_[i] >= overdue;
+        ranks.push_back({is_static_stale(i), late, late ? age : age * weights[i]});
+    }
+    return ranks;
+}
+
 std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,
                                                 std::uint32_t budget, std::span<const float> contributions) const {
     std::vector<std::uint32_t> chosen;
@@ -58,27 +82,16 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
         return chosen;
     if (budget == 0)
         return {};
-    const std::uint32_t overdue = 4 * std::uint32_t((chosen.size() + budget - 1) / budget);
-    const std::vector<float> weights = weights_of(samples, priority, contributions);
-    struct Rank {
-        bool unusable; // nothing that the map shows is true
-        bool overdue;
-        float weight;
-    };
-    const auto rank = [&](std::uint32_t i) -> Rank {
-        const float age = float(age_[i]);
-        const bool late = age_[i] >= overdue;
-        return {is_static_stale(i), late, late ? age : age * weights[i]};
-    };
-    std::stable_sort(chosen.begin(), chosen.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const Rank ra = rank(a), rb = rank(b);
-        if (ra.unusable != rb.unusable)
-            return ra.unusable;
-        return ra.overdue != rb.overdue ? ra.overdue : ra.weight > rb.weight;
-    });
-    chosen.resize(budget);
-    std::sort(chosen.begin(), chosen.end());
-    return chosen;
+    const std::vector<Rank> ranks = ranks_of(chosen, budget, weights_of(samples, priority, contributions));
+    std::vector<std::size_t> order(chosen.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return ranks[a].goes_before(ranks[b]); });
+    std::vector<std::uint32_t> first(budget);
+    for (std::uint32_t i = 0; i < budget; ++i)
+        first[i] = chosen[order[i]];
+    std::sort(first.begin(), first.end());
+    return first;
 }
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {

@@ -1,9 +1,8 @@
 // Which shadow maps are redrawn in a frame. Thesis sec. 4.5.3.
 //
-// A map is stale from the moment that something in it moved until it is redrawn. Of the stale ones, as many as the
+// A map is stale from the moment that something in it moves until it is redrawn. Of the stale maps, as many as the
 // budget allows are chosen by priority. No priority can starve a map: one that has waited 4 * ceil(stale / budget)
-// frames goes before all that have waited less, so that with an unchanging budget every map is redrawn within twice
-// that.
+// frames is overdue and goes first, so with a constant budget every map is redrawn within twice that time.
 #pragma once
 
 #include "gi_module/shadows/shadow_settings.h"
@@ -16,40 +15,44 @@ namespace sunfleck::gi {
 
 class MapScheduler {
 public:
-    // All maps of `count` samples are stale, static part and all.
+    // All maps of `count` samples are stale, including their static parts.
     void reset(std::size_t count);
-    // Something in the sample's map moved, so many metres.
+    // Something in the sample's map moved by `distance`, m.
     void mark(std::uint32_t sample, float distance = 0.0f) {
         age_[sample] = age_[sample] > 0 ? age_[sample] : 1;
         lags_[sample] += distance;
     }
-    // The static part must be redrawn, too.
+    // The static part is stale, too.
     void mark_static(std::uint32_t sample) {
         mark(sample);
         static_stale_[sample] = 1;
     }
-    // Stale maps are a frame older. Once a frame, before marking.
+    // Stale maps age by a frame. Once a frame, before marking.
     void advance();
 
-    // Samples whose maps are to be redrawn, in rising order: all whose static part is stale, and others up to the
-    // budget. `contributions`: by sample, for that priority (many_light/map_contributions.h).
+    // Samples whose maps are to be redrawn, in ascending order, up to the budget: those whose static part is stale
+    // first. `contributions`: by sample, for MapPriority::contribution (map_contributions.h).
     std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority, std::uint32_t budget,
                                       std::span<const float> contributions = {}) const;
-    // The maps show the present.
+    // The maps were redrawn and are up to date.
     void done(std::span<const std::uint32_t> samples);
 
     bool is_static_stale(std::uint32_t sample) const { return static_stale_[sample] != 0; }
     // 0: fresh.
     std::uint32_t frames_out_of_date(std::uint32_t sample) const { return age_[sample]; }
     std::span<const std::uint32_t> ages() const { return age_; }
-    // How far things in the map have moved at most since it was drawn, m.
+    // Upper bound of how far objects have moved since the map was drawn, m.
     float lag(std::uint32_t sample) const { return lags_[sample]; }
     std::size_t stale() const;
-    // Maps whose static part is stale: they show nothing that is true.
+    // Maps whose static part is stale: nothing in them can be relied on.
     std::size_t unusable() const;
     std::size_t size() const { return age_.size(); }
 
 private:
+    struct Rank;
+    std::vector<Rank> ranks_of(std::span<const std::uint32_t> stale, std::uint32_t budget,
+                               const std::vector<float>& weights) const;
+
     std::vector<std::uint32_t> age_;
     std::vector<std::uint8_t> static_stale_;
     std::vector<float> lags_;

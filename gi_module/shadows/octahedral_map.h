@@ -2,13 +2,13 @@
 //
 // Light space: d = (dot(tangent, v), dot(bitangent, v), dot(normal, v)) with v from the light to the point.
 //
-// Hemisphere (surface samples): the upper four faces of an octahedron fill the square: w = |x| + |y| + z,
-// (u, v) = (x + y, x - y) / w in [-1, 1]^2. On each face the map is a plane projection with w as its homogeneous
+// Hemisphere (surface samples): the upper four faces of an octahedron fill the map: w = |x| + |y| + z,
+// (u, v) = (x + y, x - y) / w in [-1, 1]^2. On each face the map is a planar projection with w as the homogeneous
 // coordinate, so 1/w is linear across the map: planes are exact and rasterisation needs no subdivision. Faces meet on
 // the square's diagonals. Sphere (point and spot lights): all eight faces; the upper four in the inner diamond, the
-// lower four folded out to the corners. Cone (spot lights whose cone is narrow): one plane projection, w = z, (u, v) =
-// scale * (x, y) / w, since the sphere would give a cone of 17 degrees one texel of forty. Orthographic (directional
-// lights): (u, v) = (x, y) / radius.
+// lower four folded out to the corners. Cone (spot lights with a narrow cone): one planar projection, w = z, (u, v) =
+// scale * (x, y) / w, since a spherical map would spend one texel in forty on a cone of 17 degrees. Orthographic
+// (directional lights): (u, v) = (x, y) / radius.
 //
 // Stored value: near / w, reverse: 1 at the near distance, 0 at infinity; orthographic: 1 - z / (2 radius).
 #ifndef SUNFLECK_GI_SHADOWS_OCTAHEDRAL_MAP_H
@@ -16,11 +16,11 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// Blockers nearer than this (in w) count as being at this distance. Sets the 16-bit step: w^2 / (65535 * near), which
-// is 8 mm at 5 m.
+// Blockers nearer than this (in w) are treated as if at this distance. Determines the quantisation step of 16 bits,
+// w^2 / (65535 * near): 8 mm at 5 m.
 SHARED_CONSTANT float shadow_near = 0.05f;
 
-// xy: place on the map in [-1, 1]^2; z: 1 / w.
+// xy: map coordinates in [-1, 1]^2; z: 1 / w.
 SHARED_FUNCTION vec3 hemisphere_map(vec3 d) {
     float inverse_w = 1.0f / (abs(d.x) + abs(d.y) + d.z);
     return vec3((d.x + d.y) * inverse_w, (d.x - d.y) * inverse_w, inverse_w);
@@ -34,13 +34,13 @@ SHARED_FUNCTION vec3 sphere_map(vec3 d) {
     return vec3(p, inverse_w);
 }
 
-// What is beside the light or behind it lies far outside the map.
+// Points beside or behind the light get coordinates far outside the map.
 SHARED_FUNCTION vec3 cone_map(vec3 d, float scale) {
     float inverse_w = 1.0f / max(d.z, 1e-4f);
     return vec3(d.x * scale * inverse_w, d.y * scale * inverse_w, inverse_w);
 }
 
-SHARED_CONSTANT uint cone_face = 8u; // the only face of a cone's map, beside the sphere's
+SHARED_CONSTANT uint cone_face = 8u; // the only face of a cone's map; 0 to 7 are the sphere's
 
 // Signs of x, y, z on a face: hemisphere faces 0 to 3, sphere faces 0 to 7. Bit 0: x, bit 1: y, bit 2: z; set is
 // negative.
@@ -66,7 +66,7 @@ SHARED_FUNCTION vec3 sphere_face_clip(vec3 d, uint face) {
     return vec3(s.x * (w - s.y * d.y), s.y * (w - s.x * d.x), w);
 }
 
-// How kernels read the maps.
+// How kernels read the shadow maps.
 SHARED_CONSTANT uint maps_none = 0u;           // no shadow test
 SHARED_CONSTANT uint maps_texel_buffer = 1u;   // uniform texel buffer
 SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
@@ -74,18 +74,18 @@ SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
 // --- Bias, derived and not tuned -----------------------------------------------------------------------------------
 // A look-up reads the texel centre c nearest to the receiver's direction q (both as points with w = 1). The receiver's
 // plane n.p = h has 1/w = n.q / h at q and n.c / h at c, so its own depth in the map differs from the receiver's by at
-// most |c - q| / |h|, h being the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x -
-// y, z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the
+// most |c - q| / |h|, where h is the light's distance to the receiver's plane. On the hemisphere map (u = x + y, v = x
+// - y, z = 1 - |x| - |y|) half a texel of t = 2 / resolution in both directions gives |c - q| <= t / sqrt(2); on the
 // sphere map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that; on a
-// cone's map t / (scale * sqrt(2)). Where the light grazes the receiver, 1/h grows without bound while the light that
-// arrives vanishes; a bias that followed would let light pass under walls. It stops at a slope of 8 (83 degrees):
-// beyond, a surface may shadow itself a little. So  bias = near * texel_reach * min(1 / h, 8 / w),  and a receiver of a
-// sphere's or a cone's map is lit if  near / w + bias + step >= stored.
+// cone's map t / (scale * sqrt(2)). At grazing angles 1/h grows without bound while the light that arrives vanishes; a
+// bias that grew along would leak light under walls. It is limited to a slope of 8 (83 degrees): beyond, a surface may
+// shadow itself a little. So  bias = near * texel_reach * min(1 / h, 8 / w),  and a receiver in a sphere's or a cone's
+// map is lit if  near / w + bias + step >= stored.
 SHARED_CONSTANT float shadow_slope_limit = 8.0f;
 SHARED_FUNCTION float perspective_bias(float texel_reach, float plane_distance, float inverse_w) {
     return shadow_near * texel_reach * min(1.0f / max(plane_distance, 1e-9f), shadow_slope_limit * inverse_w);
 }
-// What the receiver's plane has at a texel's centre with direction `centre`; `normal` in light space.
+// Stored value of the receiver's plane at a texel centre with direction `centre`; `normal` in light space.
 SHARED_FUNCTION float value_on_plane(vec3 normal, float plane_distance, vec3 centre) {
     return -shadow_near * dot(normal, centre) * (1.0f / max(plane_distance, 1e-9f));
 }
@@ -98,42 +98,42 @@ SHARED_FUNCTION float sphere_texel_reach(float resolution) {
 SHARED_FUNCTION float cone_texel_reach(float resolution, float scale) {
     return 1.41421356f / (resolution * scale);
 }
-// Orthographic: the plane's depth changes by tan(angle) a unit of length across the map, at most 1/cos(angle); half a
-// texel's diagonal is sqrt(2) * radius / resolution, in units of the stored value sqrt(1/2) / resolution.
+// Orthographic: the plane's depth changes by tan(angle) per unit of length across the map, at most 1/cos(angle); half a
+// texel's diagonal is sqrt(2) * radius / resolution, or sqrt(1/2) / resolution in units of the stored value.
 SHARED_FUNCTION float orthographic_bias(float resolution, float cosine) {
     return 0.70710678f / resolution * min(1.0f / max(cosine, 1e-9f), shadow_slope_limit);
 }
 
-// On hemisphere maps, which nearly all samples have, what is held against the texel is the receiver's plane where the
-// texel's centre meets it, within the bias of the receiver: a blocker is then missed by the texel's true slope and not
-// by the steepest one. Two things remain. A surface that is not quite a plane (a tenth of the bias is for it); and in
-// concave corners the centre may lie on the other wall, before the receiver's plane though nothing is before the
-// receiver: what is nearer to the receiver than about a texel's width, one and a quarter times the head-on bias,
-// does not shadow it. Both were chosen by counting: pairs that rays find free or blocked, and pixels in corners. Movers
-// may be in the maps as simplified forms of themselves, and then have the whole bias.
+// On hemisphere maps, which nearly all samples have, the texel is compared with the receiver's plane at the texel's
+// centre, clamped to within the bias of the receiver: a blocker is then missed by the texel's true slope and not by the
+// steepest one. Two tolerances remain. One is for surfaces that are not quite planar: a tenth of the bias. The other is
+// for concave corners, where the texel's centre may lie on the other wall, nearer to the light than the receiver's
+// plane, although nothing occludes the receiver: a blocker within about a texel's width of the receiver, one and a
+// quarter times the head-on bias, does not shadow it. Both were chosen by counting errors: pairs that rays find free or
+// blocked, and pixels in corners. Movers may be in the maps in simplified form, and then get the whole bias.
 SHARED_CONSTANT float shadow_centre_slack = 0.1f;
 SHARED_CONSTANT float shadow_head_on_slack = 1.25f;
-// Value that a receiver is held against. `inverse_w`: 1 / w at the receiver; `normal`: its normal in light space;
-// `plane_distance`: of the light to its plane; `centre`: direction of the texel's centre; `simplified`: 1 for
-// a surface of which the map shows a simplified form, or 0.
+// The receiver's value to compare with the texel. `inverse_w`: 1 / w at the receiver; `normal`: its normal in light
+// space; `plane_distance`: from the light to its plane; `centre`: direction of the texel's centre; `simplified`: 1 for
+// a surface that is simplified in the map, else 0.
 SHARED_FUNCTION float receiver_centre_value(float inverse_w, vec3 normal, float plane_distance, vec3 centre,
                                             float texel_reach, float simplified) {
     float receiver = shadow_near * inverse_w;
     float bias = perspective_bias(texel_reach, plane_distance, inverse_w);
     float on_plane = value_on_plane(normal, plane_distance, centre);
-    float held = clamp(on_plane, receiver - bias, receiver + bias) + shadow_centre_slack * bias;
-    return max(held, receiver + max(shadow_head_on_slack * texel_reach * receiver, simplified * bias));
+    float clamped = clamp(on_plane, receiver - bias, receiver + bias) + shadow_centre_slack * bias;
+    return max(clamped, receiver + max(shadow_head_on_slack * texel_reach * receiver, simplified * bias));
 }
 
 // --- Filtered look-up ----------------------------------------------------------------------------------------------
-// Blends the four nearest texels' answers. Each texel is held against the receiver's own plane at that texel's centre,
-// which is exact for planes; it may differ from the receiver's value by at most `shadow_filter_window` times the bias
-// above (the four centres are up to three times as far as the nearest), and a quarter of a head-on bias is added for
-// surfaces that are not quite planes.
+// Blends the comparisons of the four nearest texels (percentage-closer filtering). Each texel is compared with the
+// receiver's own plane at that texel's centre, which is exact for planes; the plane's value may differ from the
+// receiver's by at most `shadow_filter_window` times the bias above (the four centres are up to three times as far as
+// the nearest), and a quarter of a head-on bias is added for surfaces that are not quite planar.
 SHARED_CONSTANT float shadow_filter_window = 3.0f;
 SHARED_CONSTANT float shadow_filter_slack = 0.25f;
 
-// Directions with w = 1 through a place of the map.
+// Directions with w = 1 through map coordinates.
 SHARED_FUNCTION vec3 hemisphere_direction(vec2 uv) {
     vec2 p = vec2(uv.x + uv.y, uv.x - uv.y) * 0.5f;
     return vec3(p, 1.0f - abs(p.x) - abs(p.y));
@@ -149,9 +149,9 @@ SHARED_FUNCTION vec3 cone_direction(vec2 uv, float scale) {
     return vec3(uv.x / scale, uv.y / scale, 1.0f);
 }
 
-// Value that a receiver is held against at a texel centre with direction `centre`. `receiver`: near / w at the
-// receiver; `normal`: its normal in light space; `plane_distance`: of the light to its plane; `bias`, `texel_reach`: as
-// above.
+// The receiver's value to compare with a texel whose centre has direction `centre`. `receiver`: near / w at the
+// receiver; `normal`: its normal in light space; `plane_distance`: from the light to its plane; `bias`, `texel_reach`:
+// as above.
 SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float plane_distance, vec3 centre, float bias,
                                            float texel_reach) {
     float window = shadow_filter_window * bias;
@@ -159,7 +159,7 @@ SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float pl
     return clamp(on_plane, receiver - window, receiver + window) + shadow_filter_slack * texel_reach * receiver;
 }
 
-// Largest error of a stored value: half a step of 16-bit depth for itself, and rounding of the receiver's.
+// Largest error of a comparison: half a step of 16-bit depth for the stored value, and rounding of the receiver's.
 SHARED_FUNCTION float depth_step(uint bits) {
     return bits == 16u ? 1.0f / 65535.0f : 4e-7f;
 }

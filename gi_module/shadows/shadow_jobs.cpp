@@ -20,7 +20,7 @@ dvec4 along(const vec4& axis, const shared::DrawConstants& occluder, dvec3 origi
 
 } // namespace
 
-// The projections of octahedral_map.h, of points in the occluder's space.
+// The projections of octahedral_map.h, applied to points in the occluder's space.
 shared::ShadowJob make_shadow_job(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t layer,
                                   std::uint32_t face, const shared::DrawConstants& occluder, std::uint32_t row) {
     const dvec3 origin(light.position_bound);

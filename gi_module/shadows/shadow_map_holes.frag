@@ -1,10 +1,10 @@
 #version 460
-// Leaves out what is a hole.
+// Alpha test: discards fragments in holes.
 layout(set = 0, binding = 2) uniform sampler2D colour_texture;
-layout(location = 0) in vec2 in_place;
-layout(location = 1) in vec2 in_alpha_least;
+layout(location = 0) in vec2 in_uv;
+layout(location = 1) in vec2 in_alpha_cutoff;
 
 void main() {
-    if (texture(colour_texture, in_place).a * in_alpha_least.x < in_alpha_least.y)
+    if (texture(colour_texture, in_uv).a * in_alpha_cutoff.x < in_alpha_cutoff.y)
         discard;
 }

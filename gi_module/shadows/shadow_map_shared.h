@@ -3,11 +3,11 @@
 #include "gi_module/transport/light_row_shared.h"
 SHARED_BEGIN
 
-// One instance of a draw: an occluder seen from one light through one face. All that a vertex needs, as attributes of
-// the instance: a CPU device reads those once for all lanes, buffers for each.
+// One instance of a draw: an occluder seen from one light through one face. Instance attributes hold all that a vertex
+// needs: a CPU device reads those once for all lanes, but buffers once per lane.
 struct ShadowJob {
-    vec4 x, y, w;    // clip position = dot(row, (p, 1)) of a point in the occluder's space; see octahedral_map.h
-    vec4 z;          // the same for light-space z; of directional lights, the depth
+    vec4 x, y, w;    // clip position = dot(row, (p, 1)) of point p in the occluder's space; see octahedral_map.h
+    vec4 z;          // the same for light-space z; for directional lights, depth
     uint layer_face; // layer of the staging image in the low 16 bits, face in bits 16 to 19, light class from bit 20
     uint row;        // instance row of the occluder
 };

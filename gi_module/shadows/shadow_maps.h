@@ -1,12 +1,12 @@
-// Octahedral shadow maps of light samples: where they are stored, which are stale, and the passes that redraw them.
-// Thesis sec. 4.2. Maps live in one texel buffer, slot after slot, row after row; they are drawn as layers of a depth
-// image, many at once, and copied over.
+// Octahedral shadow maps of light samples (VPLs): their storage and the passes that redraw them. Thesis sec. 4.2. All
+// maps lie in one texel buffer, slot after slot, row after row; they are drawn as layers of a depth image, many at
+// once, and copied over.
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
-#include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/shadows/map_area.h"
 #include "gi_module/shadows/shadow_map_shared.h"
+#include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/transport/light_row.h"
 
 #include "engine/gpu/frame_graph.h"
@@ -23,9 +23,10 @@ struct ShadowRequest {
     std::uint32_t light_class = 0;
     shared::LightRow light;
     bool redraw_static = true; // the static part is stale, too
-    // How far the simplified surface of a mover may be off, in texels.
+    // Largest error of a mover's simplified surface, in texels.
     float detail_texels = 0.5f;
-    std::vector<std::uint8_t> hidden; // by entity index: 1 for what casts no shadow of its own; may be shorter
+    std::vector<std::uint8_t> hidden; // by entity index: 1 for occluders that cast no shadow of their own because
+                                      // static geometry hides them from the light; may be shorter
     bool hides(ecs::Entity entity) const { return entity.index < hidden.size() && hidden[entity.index] != 0; }
 };
 
@@ -33,15 +34,15 @@ struct MapLayout {
     std::uint32_t resolution = 256;
     std::uint32_t bits = 16;
     std::uint32_t wanted = 0;       // maps
-    std::uint64_t memory_bytes = 0; // bound of all layers together
-    bool keep_static = false;       // a second layer a map, with static geometry alone
-    bool shrink = false;            // a lower resolution rather than fewer maps
+    std::uint64_t memory_bytes = 0; // limit for all layers together
+    bool keep_static = false;       // a second layer per map, with static geometry only
+    bool shrink = false;            // lower the resolution rather than the number of maps
     bool operator==(const MapLayout&) const = default;
 };
 
 struct MapOptions {
-    bool keep_static = false; // draw movers over the kept static layer
-    bool detail = false;      // draw movers with as much detail as a texel shows
+    bool keep_static = false; // draw movers over the static layer
+    bool detail = false;      // draw movers with only as much detail as texels resolve
 };
 
 struct ShadowCounters {
@@ -55,23 +56,24 @@ class ShadowMaps {
 public:
     static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
-    // Sets resolution, bits and number of slots; content is lost when anything changes (returns true then). The number
-    // of slots is limited by what is wanted, the memory and the device; with `shrink`, the resolution is instead.
+    // Sets resolution, bits and number of slots. Returns true if any of them changed: the content of all maps is then
+    // lost. The number of slots is limited by the request, the memory and the device; with `shrink`, the resolution is
+    // lowered instead.
     Result<bool> configure(const MapLayout& layout, gpu::FrameResources& resources);
 
     std::uint32_t slots() const { return slots_; }
     std::uint32_t resolution() const { return resolution_; }
     std::uint32_t bits() const { return bits_; }
     const gpu::Buffer& texels() const { return texels_; }
-    // Static geometry alone; empty unless they are kept.
+    // Static geometry only; empty unless it is kept.
     const gpu::Buffer& static_texels() const { return static_texels_; }
 
-    // Adds passes that draw the requested maps with everything in `scene` as occluders. Faces that no occluder reaches
-    // are left empty without being drawn.
+    // Adds passes that draw the requested maps with everything in `scene` as occluders. Faces without occluders are
+    // left empty without being drawn.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
                       std::span<const ShadowRequest> requests, const MapOptions& options, ShadowCounters& counters);
 
-    // Bit per face: the box may be seen through it. For directional lights bit 0.
+    // A bit per face: set if the box may be visible in it. For directional lights only bit 0.
     static std::uint32_t faces_that_see(const ShadowRequest& request, const Bounds& bounds);
 
 private:
@@ -91,7 +93,7 @@ private:
     Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;
-    const gpu::Pipeline* pipelines16_[2] = {}; // all faces; faces towards the light
+    const gpu::Pipeline* pipelines16_[2] = {}; // both sides of triangles; sides that face the light
     const gpu::Pipeline* pipelines32_[2] = {};
     const gpu::Pipeline* hole_pipelines_[2] = {}; // 16 bits, 32 bits
     gpu::Buffer texels_, static_texels_;

@@ -1,6 +1,6 @@
-// Where a vertex lies on the face of a shadow map: the instance (ShadowJob) says which map, a layer of the staging image,
-// which face and which occluder, so that one call draws many. Thesis sec. 4.2.2, with instances in place of four passes a
-// map. Included by vertex shaders that declare the constants and gl_PerVertex.
+// Projects a vertex to the face of a shadow map. The instance (ShadowJob) selects the map, which is a layer of the
+// staging image, the face and the occluder, so that one call draws many. Thesis sec. 4.2.2, with instances in place of
+// four passes per map. Included by vertex shaders that declare the constants and gl_PerVertex.
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec4 in_x;
 layout(location = 2) in vec4 in_y;
@@ -25,7 +25,7 @@ void project_on_map() {
         gl_ClipDistance[0] = gl_ClipDistance[1] = gl_ClipDistance[2] = 1.0;
         return;
     }
-    // Light-space x and y again from the face's projection.
+    // Light-space x and y, recovered from the face's projection.
     const vec3 s = face_signs(face);
     const bool hemisphere = kind == light_class_surface;
     vec2 d = vec2(x, y);
@@ -33,8 +33,8 @@ void project_on_map() {
         d = vec2(x + y, x - y) * 0.5;
     else if (s.z < 0.0)
         d = vec2(s.x * (w - s.y * y), s.y * (w - s.x * x));
-    // Neighbouring faces meet on texel centres. Each is drawn a quarter of a texel wider, so that rounding leaves no
-    // gap on a centre that both share, and no other centre gets a value from the wrong face.
+    // Neighbouring faces meet on texel centres. Each face is drawn a quarter of a texel wider, so that rounding leaves
+    // no gap on a shared centre, while no other centre gets a value from the wrong face.
     const float margin = constants.half_texel_margin * w;
     gl_ClipDistance[0] = s.x * d.x + margin;
     gl_ClipDistance[1] = s.y * d.y + margin;

@@ -8,18 +8,18 @@
 namespace sunfleck::gi {
 namespace {
 
-// Texels by which movers' simplified surfaces may be off. Shadows of direct light lie on each other and show their
-// outline; those of reflected light are scattered.
+// Largest error of movers' simplified surfaces, in texels. Shadows of direct samples coincide and show their outline;
+// those of reflected samples are scattered.
 constexpr float direct_detail = 0.35f, indirect_detail = 2.0f;
 
 constexpr Counter map_updates{"shadow_map_updates", "maps", "shadow maps", "Shadow maps drawn in this frame"};
 constexpr Counter map_faces{"shadow_map_faces", "faces", "shadow maps",
-                            "Octahedron faces drawn, those with an occluder"};
+                            "Octahedron faces drawn, i.e. those with an occluder"};
 constexpr Counter map_vertices{"shadow_map_vertices", "vertices", "shadow maps",
                                "Vertices shaded for shadow maps, by the size of the meshes"};
 constexpr Counter maps_stale{"shadow_maps_stale", "maps", "shadow maps",
-                             "Shadow maps that show movers where they were, after this frame"};
-constexpr Counter map_memory{"shadow_maps", "B", memory_group, "Shadow maps, with static parts that are kept"};
+                             "Shadow maps that are still stale after this frame: they show movers where they were"};
+constexpr Counter map_memory{"shadow_maps", "B", memory_group, "Shadow maps, including their static parts"};
 
 } // namespace
 
@@ -42,8 +42,8 @@ Result<std::unique_ptr<ShadowService>> ShadowService::create(gpu::Device& device
     return service;
 }
 
-// With the database every sample keeps a map: with more samples than memory holds at full size, maps are smaller. Each
-// sample is then dimmer, too.
+// With the database every sample keeps a map: if memory does not suffice at full resolution, maps are smaller. With so
+// many samples, each of them is also dimmer.
 Status ShadowService::configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
                                 gpu::FrameResources& resources) {
     settings_ = settings;
@@ -91,7 +91,7 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
     before_ = scheduler_;
 }
 
-// The host's budget is a limit; the setting's is exceeded for maps that could not be used otherwise.
+// The host's budget is a hard limit; that of the settings is exceeded for maps that are unusable otherwise.
 std::uint32_t ShadowService::budget_of(const ScheduleInput& input) const {
     if (database_ == nullptr)
         return input.host_budget;
@@ -114,26 +114,26 @@ void ShadowService::mark_by_visibility(const SampleSet& samples, const ScheduleI
             scheduler_.mark(i, distance);
 }
 
-// A moved object touches the map of every sample that sees the box where it was, or the one where it is.
+// A moved object affects the map of every sample that sees its box, at its old or its new position.
 void ShadowService::mark_by_bounds(const SampleSet& samples, const scene::GpuScene& gpu_scene) {
-    std::vector<Bounds> touched(gpu_scene.removed_bounds().begin(), gpu_scene.removed_bounds().end());
+    std::vector<Bounds> affected(gpu_scene.removed_bounds().begin(), gpu_scene.removed_bounds().end());
     for (const scene::DrawItem& item : gpu_scene.draws())
         if (item.moved && item.casts_shadow) {
-            touched.push_back(item.bounds);
+            affected.push_back(item.bounds);
             if (!item.previous_bounds.empty())
-                touched.push_back(item.previous_bounds);
+                affected.push_back(item.previous_bounds);
         }
-    if (touched.empty())
+    if (affected.empty())
         return;
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
         const ShadowRequest request{0, samples.light_class_of(i), samples.rows()[i], true};
-        if (std::any_of(touched.begin(), touched.end(),
+        if (std::any_of(affected.begin(), affected.end(),
                         [&](const Bounds& bounds) { return ShadowMaps::faces_that_see(request, bounds) != 0; }))
             scheduler_.mark(i);
     }
 }
 
-// Empty where the choice does not need them.
+// Empty if the choice does not depend on them.
 std::vector<float> ShadowService::contributions(const SampleSet& samples, const ScheduleInput& input,
                                                 std::uint32_t budget) const {
     if (database_ == nullptr || !input.view_projection || settings_.map_priority != MapPriority::contribution ||

@@ -1,8 +1,8 @@
-// Shadow maps for all techniques: one store, one scheduler, one budget. Techniques say that they need maps by owning
-// light; which of them are redrawn in a frame is decided here.
+// Shadow maps for all techniques: one store, one scheduler, one budget. A technique that owns light needs maps; which
+// of them are redrawn in a frame is decided here.
 //
-// A frame: configure -> follow -> schedule (CPU, in System::update), add_passes (GPU work), and with the next frame's
-// begin_frame what was recorded counts as drawn, or not.
+// A frame: configure -> follow -> schedule (CPU, in System::update), add_passes (GPU work). Maps count as drawn from
+// then on, unless the next frame reports that the recorded one never reached the GPU: lost_frame.
 #pragma once
 
 #include "gi_module/light_sampling/sample_set.h"
@@ -14,67 +14,67 @@
 
 namespace sunfleck::gi {
 
-// How a frame's maps are kept. `database`: the visibility database follows the scene, so it is known which maps a mover
-// touches and what they hide; maps are then kept for all samples, redrawn within a budget, and movers are drawn over
-// the kept static part. Without it (the baseline) every map that a mover may touch is redrawn whole.
+// How maps are maintained. `database`: the visibility database follows the scene, so it is known which maps a mover
+// affects and which occluders are hidden; maps are then kept for all samples and redrawn within a budget, and movers
+// are drawn over the static part. Without it (the baseline), every map that a mover may affect is redrawn completely.
 struct MapPolicy {
     bool database = true;
 };
 
 struct ScheduleInput {
     const scene::GpuScene& gpu_scene;
-    const VisibilityDatabase* database = nullptr; // null: policy without it
+    const VisibilityDatabase* database = nullptr; // null: MapPolicy::database is off
     std::uint64_t serial = 0;
-    std::uint32_t host_budget = 0xffffffffu; // maps; a limit, whatever the settings say
+    std::uint32_t host_budget = 0xffffffffu; // maps; also limits the budget of the settings
     std::optional<mat4> view_projection;
 };
 
-// Of one sample's map, for browsers of maps.
+// State of one sample's map, for inspection.
 struct MapState {
     std::uint32_t slot = 0;
     std::uint32_t resolution = 0;         // texels along a side
-    std::uint32_t frames_out_of_date = 0; // 0: it shows the last completed step
-    bool static_part_valid = false;       // false: nothing that it shows is true
+    std::uint32_t frames_out_of_date = 0; // 0: up to date
+    bool static_part_valid = false;       // false: nothing in the map can be relied on
 };
 
 class ShadowService {
 public:
     static Result<std::unique_ptr<ShadowService>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
-    // Makes room for the maps of `count` samples. Call before SampleSet::update_rows, which needs slots().
+    // Allocates the maps of `count` samples. Call before SampleSet::update_rows, which needs slots().
     Status configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
                      gpu::FrameResources& resources);
-    // Maps whose static part is void after what happened to the samples. `static_changed`: all of them.
+    // Marks the maps whose static part is stale because their samples changed. `static_changed`: all maps.
     void follow(const SampleSet& samples, bool static_changed);
-    // Marks what movers touched, and chooses the maps to redraw.
+    // Marks the maps that movers affect, and chooses those to redraw.
     void schedule(const SampleSet& samples, const ScheduleInput& input);
-    // What the GPU took for an earlier frame's maps, ms; only for ShadowSettings::map_milliseconds.
+    // GPU time of an earlier frame's maps, ms; only used for ShadowSettings::map_milliseconds.
     void measured(std::uint64_t serial, double milliseconds) { budget_.add_time(serial, milliseconds); }
 
     // Adds the passes that redraw the chosen maps.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                       gpu::FrameResources& resources);
-    // Where there are more samples than slots, samples take turns: adds the passes that draw the maps of samples
-    // [first, first + count), over those that used the slots before.
+    // For more samples than slots, which then share them in turn: adds the passes that draw the maps of samples
+    // [first, first + count) over those that used the slots before.
     Status add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
-                     std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources);
-    // The frame's passes never reached the GPU: what they would have drawn is as stale as it was.
+                         std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources);
+    // The frame's passes never reached the GPU: maps are as stale as before it.
     void lost_frame();
 
     const ShadowMaps& maps() const { return *maps_; }
     const ShadowSettings& settings() const { return settings_; }
     std::uint32_t slots() const { return std::max(maps_->slots(), 1u); }
     bool slots_are_shared(std::uint32_t samples) const { return settings_.shadows && samples > slots(); }
-    // Samples whose maps this frame redraws, in rising order.
+    // Samples whose maps this frame redraws, in ascending order.
     std::span<const std::uint32_t> to_draw() const { return to_draw_; }
-    // What the maps show is as of this frame's to_draw, once add_passes was called.
+    // After add_passes, the maps in to_draw count as up to date.
     std::uint32_t frames_out_of_date(std::uint32_t sample) const { return scheduler_.frames_out_of_date(sample); }
     std::span<const std::uint32_t> ages() const { return scheduler_.ages(); }
     bool is_static_stale(std::uint32_t sample) const { return scheduler_.is_static_stale(sample); }
     std::size_t stale() const { return scheduler_.stale(); }
-    // How far movers are at most from where the sample's map shows them, m, as far as that can matter.
+    // Upper bound of how far movers are from where the sample's map shows them, m; limited to what can matter.
     float lag(std::uint32_t sample) const { return std::min(scheduler_.lag(sample), lag_limit_); }
-    // Whether maps show movers with less detail than pictures.
+    // Whether movers are simplified in the maps.
     bool simplifies_movers() const { return policy_.database && settings_.map_detail; }
     MapState state(const SampleSet& samples, std::uint32_t sample) const;
 
@@ -97,10 +97,10 @@ private:
     MapPolicy policy_;
     const VisibilityDatabase* database_ = nullptr; // of this frame
     std::vector<std::uint32_t> to_draw_;
-    MapScheduler before_; // drawing this frame's maps
+    MapScheduler before_; // state before this frame's maps were drawn
     std::uint64_t sample_generation_ = 0;
     bool cleared_ = false;   // all maps lost their content in configure
-    float lag_limit_ = 0.0f; // m: a mover that is farther from where it was does not touch itself
+    float lag_limit_ = 0.0f; // m: a mover that has moved farther does not overlap its old position
     ShadowCounters drawn_;   // in this frame
 };
 

@@ -1,12 +1,12 @@
-// What a user can set about shadow maps.
+// Settings of shadow maps.
 #pragma once
 
 #include "engine/core/description.h"
 
 namespace sunfleck::gi {
 
-// contribution: by the light that the map's movers shadow in the picture (shadows/map_contributions.h), times age; with
-// no visibility database in use, flux_and_age. flux_and_age: brightest channel times age, thesis sec. 4.5.3. age:
+// contribution: by the light in the picture that the map's movers may shadow (shadows/map_contributions.h), times age;
+// without a visibility database, as flux_and_age. flux_and_age: brightest channel times age, thesis sec. 4.5.3. age:
 // oldest first.
 enum class MapPriority : std::uint32_t { contribution, flux_and_age, age };
 
@@ -19,7 +19,7 @@ struct ShadowSettings {
     bool static_maps = true;
     bool map_detail = true;
     std::uint32_t map_budget = 80; // shadow maps a frame
-    float map_milliseconds = 0.0f; // GPU time for them; 0: map_budget counts
+    float map_milliseconds = 0.0f; // GPU time for them; 0: map_budget applies
     MapPriority map_priority = MapPriority::contribution;
 
     static const TypeDescription& description();

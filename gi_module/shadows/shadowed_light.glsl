@@ -1,49 +1,50 @@
-// Light of one sample at one pixel: what every kernel that evaluates samples per pixel shares.
+// Light of one sample (VPL) at one pixel: shared by all kernels that evaluate samples per pixel.
 //
-// The including shader defines before: light_class, maps (maps_none: no test), filtered, map_bits, stale_maps (some
-// map shows movers where they were), simplified_movers (in the maps) as constants;
-// map_side(), the texels along a map's side; and map_value(slot, texel), the stored value.
+// The including shader first defines, as constants: light_class; maps (maps_none: no shadow test); filtered; map_bits;
+// stale_maps (some maps show movers where they were); simplified_movers (in the maps). And as functions: map_side(),
+// the texels along a map's side; and map_value(slot, texel), the stored value.
 #include "gi_module/shadows/octahedral_map.h"
 
 struct Pixel {
     vec3 position;
     vec3 normal;
     vec3 geometric_normal;
-    float on_mover; // 1: of a mover, which maps may show simplified, and stale ones where it was; 0
+    float on_mover; // 1: on a mover, which maps may show simplified or, if stale, where it was; else 0
 };
 
-// What one sample does to a pixel, as factors of its intensity.
+// The effect of one sample on a pixel, as factors of its intensity.
 struct LightFactor {
     float unshadowed;
-    float clamped;    // what the bound of the geometry term took away
-    float visibility; // 0 to 1, by the shadow map
+    float clamped;    // removed by the bound of the geometry term
+    float visibility; // 0 to 1, from the shadow map
 };
 
-vec2 map_place(vec2 uv) { return (uv * 0.5 + 0.5) * map_side(); }
+vec2 map_texel(vec2 uv) { return (uv * 0.5 + 0.5) * map_side(); }
 ivec2 inside_map(ivec2 texel) { return clamp(texel, ivec2(0), ivec2(int(map_side()) - 1)); }
 
-// 1 if nothing in the map is nearer to the light than the receiver, whose stored value with its bias is `receiver`.
+// 1 if nothing in the map is nearer to the light than the receiver, whose value including its bias is `receiver`.
 float nearest_visibility(uint slot, vec2 uv, float receiver) {
-    return receiver >= map_value(slot, inside_map(ivec2(map_place(uv)))) ? 1.0 : 0.0;
+    return receiver >= map_value(slot, inside_map(ivec2(map_texel(uv)))) ? 1.0 : 0.0;
 }
 
 float blend(vec4 lit, vec2 weight) { return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y); }
 
-// The same from the four nearest texels, for the parallel light of an orthographic map.
+// The same, filtered over the four nearest texels, for the parallel light of an orthographic map.
 float filtered_visibility(uint slot, vec2 uv, float receiver) {
-    const vec2 place = map_place(uv) - 0.5;
-    const ivec2 corner = ivec2(floor(place));
+    const vec2 position = map_texel(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(position));
     vec4 lit;
     [[unroll]] for (int i = 0; i < 4; ++i)
         lit[i] = receiver >= map_value(slot, inside_map(corner + ivec2(i & 1, i >> 1))) ? 1.0 : 0.0;
-    return blend(lit, place - floor(place));
+    return blend(lit, position - floor(position));
 }
 
-// The same for other maps: each texel against the receiver's plane at the texel's centre. `scale`: of a cone's map, or 0.
+// The same for other maps: each texel is compared with the receiver's plane at the texel's centre. `scale`: of a cone's
+// map, or 0.
 float filtered_plane_visibility(uint slot, float scale, vec2 uv, float receiver, vec3 light_space_normal,
                                 float plane_distance, float bias, float reach, float lag) {
-    const vec2 place = map_place(uv) - 0.5;
-    const ivec2 corner = ivec2(floor(place));
+    const vec2 position = map_texel(uv) - 0.5;
+    const ivec2 corner = ivec2(floor(position));
     vec4 lit;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
@@ -54,12 +55,12 @@ float filtered_plane_visibility(uint slot, float scale, vec2 uv, float receiver,
         const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
         lit[i] = min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, texel) ? 1.0 : 0.0;
     }
-    return blend(lit, place - floor(place));
+    return blend(lit, position - floor(position));
 }
 
-// What a receiver on a mover gains where the map is stale: the mover itself, as the map shows it, may be nearer to the
-// light by as much as it has moved since, and would shadow all of its lit side. 1/w changes by the step over w squared,
-// and w, the sum of three coordinates, by at most sqrt(3) times the distance.
+// Extra bias for a receiver on a mover in a stale map: the mover's old image in the map may be nearer to the light by
+// as much as the mover has moved since, and would shadow its whole lit side. 1/w changes by the change of w over w
+// squared, and w, the sum of three coordinates, by at most sqrt(3) times the distance.
 float lag_value(LightRow light, Pixel pixel, float inverse_w) {
     return stale_maps == 0 ? 0.0 : pixel.on_mover * shadow_near * 1.7320508 * light.bitangent.w * inverse_w * inverse_w;
 }
@@ -75,7 +76,7 @@ LightFactor unshadowed_factor(LightRow light, Pixel pixel) {
     }
     const float squared_distance = max(dot(v, v), 1e-12);
     const float receiver_distance = -dot(pixel.normal, v);        // |v| times the receiver's cosine
-    const float plane_distance = -dot(pixel.geometric_normal, v); // of the light to the receiver's plane
+    const float plane_distance = -dot(pixel.geometric_normal, v); // from the light to the receiver's plane
     const float lit_side = plane_distance > 0.0 ? max(receiver_distance, 0.0) : 0.0;
     if (light_class == light_class_surface) {
         const float inverse = 1.0 / squared_distance;
@@ -101,17 +102,17 @@ float directional_visibility(LightRow light, Pixel pixel, vec3 v, float along) {
                          : filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
 }
 
-// The same on a hemisphere map, from the nearest texel and the receiver's plane at its centre.
+// Unfiltered look-up in a hemisphere map: the nearest texel against the receiver's plane at its centre.
 float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, float plane_distance,
                             float simplified, float lag) {
-    const vec2 texel = clamp(floor(map_place(place.xy)), vec2(0.0), vec2(map_side() - 1.0));
+    const vec2 texel = clamp(floor(map_texel(place.xy)), vec2(0.0), vec2(map_side() - 1.0));
     const vec3 centre = hemisphere_direction((texel + 0.5) * (2.0 / map_side()) - 1.0);
     const float value = receiver_centre_value(place.z, light_space_normal, plane_distance, centre,
                                               hemisphere_texel_reach(map_side()), simplified);
     return min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, ivec2(texel)) ? 1.0 : 0.0;
 }
 
-// What the shadow map says, 0 to 1.
+// Result of the shadow test, 0 to 1.
 float map_visibility(LightRow light, Pixel pixel) {
     const vec3 v = pixel.position - light.position_bound.xyz;
     const float along = dot(light.normal_offset.xyz, v);
@@ -141,7 +142,7 @@ float map_visibility(LightRow light, Pixel pixel) {
     return filtered_plane_visibility(slot, scale, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
 }
 
-// `test`: whether the shadow map is asked; a constant where it is inlined.
+// `test`: whether to test against the shadow map; a constant at each call, so that it is folded.
 LightFactor light_factor(LightRow light, Pixel pixel, bool test) {
     LightFactor factor = unshadowed_factor(light, pixel);
     if (maps != maps_none && test)
