@@ -7,7 +7,7 @@ namespace {
 
 constexpr int bands = 5;
 
-// sqrt((2l + 1) / (4 pi) (l - m)! / (l + m)!), times sqrt(2) where m > 0: both signs of m share it.
+// sqrt((2l + 1) / (4 pi) (l - m)! / (l + m)!), times sqrt(2) where m > 0; the same for m and -m.
 std::array<std::array<float, bands>, bands> normalisation() {
     std::array<std::array<float, bands>, bands> result{};
     for (int l = 0; l < bands; ++l)

@@ -9,10 +9,10 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float shortening = 1e-4f; // of a ray's length, at the light's end: samples lie on surfaces
-constexpr int max_layers = 64;     // of the mover itself that a ray passes
+constexpr float shortening = 1e-4f; // of a ray's length, at the light's end, since samples lie on surfaces
+constexpr int max_layers = 64;      // of the mover itself that a ray passes through
 
-bool meets(const raytrace::Ray& ray, const Bounds& bounds) {
+bool intersects(const raytrace::Ray& ray, const Bounds& bounds) {
     float enter = 0.0f, leave = ray.maximum;
     for (int axis = 0; axis < 3; ++axis) {
         const float inverse = 1.0f / (std::abs(ray.direction[axis]) > 1e-12f ? ray.direction[axis] : 1e-12f);
@@ -60,9 +60,10 @@ public:
         return result;
     }
 
-    // Whether a wall stands between the mover's middle and a point of its box: what that point sees is of another room.
-    bool is_cut_off(vec3 local, vec3 middle) const {
-        const vec3 from(matrix_ * vec4(middle, 1.0f)), to(matrix_ * vec4(local, 1.0f));
+    // Whether a wall separates a point of the mover's box from its centre: the point would see the light of another
+    // room.
+    bool is_cut_off(vec3 local, vec3 centre) const {
+        const vec3 from(matrix_ * vec4(centre, 1.0f)), to(matrix_ * vec4(local, 1.0f));
         return scene_.rays.occluded(raytrace::Ray{from, to - from, 0.0f, 1.0f}, raytrace::Scope::static_only);
     }
 
@@ -93,7 +94,7 @@ private:
     }
 
     bool hidden_by_movers(raytrace::Ray ray) const {
-        if (std::none_of(others_.begin(), others_.end(), [&](const Bounds& bounds) { return meets(ray, bounds); }))
+        if (std::none_of(others_.begin(), others_.end(), [&](const Bounds& bounds) { return intersects(ray, bounds); }))
             return false;
         for (int layer = 0; layer < max_layers; ++layer) {
             const auto hit = scene_.rays.closest_hit(ray);
@@ -122,9 +123,9 @@ vec3 PointGrid::point(std::uint32_t index) const {
     return local_.minimum + local_.extent() * (cell + 0.5f) / float(side_);
 }
 
-PointGrid::Weights PointGrid::around(vec3 place) const {
+PointGrid::Weights PointGrid::around(vec3 position) const {
     const vec3 extent = glm::max(local_.extent(), vec3(1e-9f));
-    const vec3 at = glm::clamp((place - local_.minimum) / extent * float(side_) - 0.5f, 0.0f, float(side_ - 1));
+    const vec3 at = glm::clamp((position - local_.minimum) / extent * float(side_) - 0.5f, 0.0f, float(side_ - 1));
     const glm::uvec3 low(glm::min(at, vec3(float(side_ > 1 ? side_ - 2 : 0))));
     const vec3 part = at - vec3(low);
     Weights result;
@@ -146,13 +147,13 @@ std::vector<Environment> project_environment(const ProbeScene& scene, const scen
                                              const PointGrid& grid) {
     const Projection projection(scene, mover, matrix);
     std::vector<Environment> result(grid.size());
-    const vec3 middle = 0.5f * (grid.point(0) + grid.point(grid.size() - 1));
+    const vec3 centre = 0.5f * (grid.point(0) + grid.point(grid.size() - 1));
     std::vector<std::uint8_t> cut_off(grid.size(), 0);
     parallel_for_chunks(grid.size(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const vec3 local = grid.point(std::uint32_t(i));
-            cut_off[i] = grid.size() > 1 && projection.is_cut_off(local, middle);
-            result[i] = projection.at(cut_off[i] ? middle : local);
+            cut_off[i] = grid.size() > 1 && projection.is_cut_off(local, centre);
+            result[i] = projection.at(cut_off[i] ? centre : local);
         }
     });
     return result;

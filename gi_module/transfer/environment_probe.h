@@ -1,5 +1,5 @@
-// What arrives at a point from all light samples, as spherical harmonics (thesis sec. 4.4.1). At several points of a
-// mover, so that the edge of a shadow can cross it (fig. 4-14 shows what one point does).
+// Light from all light samples (VPLs) at a point, as spherical harmonics (thesis sec. 4.4.1). Evaluated at several
+// points of a mover, so that the edge of a shadow can cross it (fig. 4-14 shows the result with one point).
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"
@@ -10,23 +10,24 @@
 
 namespace sunfleck::gi {
 
-// Incident radiance by colour, in a mover's own space.
+// Incident radiance by colour channel, in a mover's object space.
 struct Environment {
     std::array<Harmonics, 3> colours{};
 };
 
-// A grid of points in a mover's box, the same number along each axis.
+// A regular grid of points in a mover's bounding box, `side` along each axis.
 class PointGrid {
 public:
     PointGrid(const Bounds& local, std::uint32_t side) : local_(local), side_(side) {}
     std::uint32_t size() const { return side_ * side_ * side_; }
     vec3 point(std::uint32_t index) const;
-    // The eight points around a place, and their weights; outside of the grid the nearest count.
+    // The eight grid points around a position and their trilinear weights; outside of the grid, those of the nearest
+    // position in it.
     struct Weights {
         std::array<std::uint32_t, 8> points;
         std::array<float, 8> weights;
     };
-    Weights around(vec3 place) const;
+    Weights around(vec3 position) const;
 
 private:
     Bounds local_;
@@ -38,11 +39,11 @@ struct ProbeScene {
     std::span<const LightSample> samples;
     std::span<const shared::LightRow> rows; // of the samples
     std::span<const scene::DrawItem> draws;
-    const VisibilityDatabase* database = nullptr; // null: every sample is tested
+    const VisibilityDatabase* database = nullptr; // null: every sample is tested by rays
 };
 
-// The environments of all points of the grid. What hides a sample from a point is found by rays; samples that the
-// database knows to be hidden from all of the mover cost none. The mover itself does not count.
+// The environments of all points of the grid. Occlusion between samples and points is found by rays; samples that are
+// hidden from the whole mover, according to the database, cost none. The mover itself does not occlude.
 std::vector<Environment> project_environment(const ProbeScene& scene, const scene::DrawItem& mover, const mat4& matrix,
                                              const PointGrid& grid);
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Only where the G-buffer shows this mover, and this layer of it.
+// Keeps only fragments where the G-buffer shows this mover, and this layer of it.
 #include "engine/scene/instance_shared.h"
 #include "gi_module/transfer/transfer_shared.h"
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A mover whose vertices know their irradiance (thesis sec. 4.4.1: the pixel shader only interpolates).
+// A mover with irradiance per vertex (thesis sec. 4.4.1: the pixel shader only interpolates).
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
 #include "gi_module/transfer/transfer_shared.h"

@@ -1,4 +1,4 @@
-// Transfer on the disk: computed once for each content of a mesh.
+// Precomputed transfer on disk: computed once for each content of a mesh.
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
 #include "gi_module/transfer/transfer_data.h"
@@ -63,7 +63,7 @@ Status write_transfer(const std::filesystem::path& folder, std::uint64_t hash, c
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     if (code)
-        return Error{"cannot make folder '" + folder.string() + "': " + code.message()};
+        return Error{"cannot create folder '" + folder.string() + "': " + code.message()};
     const Header header = header_of(hash, data);
     std::string content(reinterpret_cast<const char*>(&header), sizeof header);
     content.append(reinterpret_cast<const char*>(data.rows.data()), data.rows.size() * sizeof(Harmonics));

@@ -11,10 +11,10 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float offset_share = 1e-4f; // of the mesh's size, off a surface before a ray starts
+constexpr float offset_share = 1e-4f; // of the mesh's size: offset of ray origins from their surface
 constexpr std::size_t vertices_per_chunk = 64;
 
-// Where a vertex's ray meets the mesh's front: its light comes from three other vertices.
+// Where a vertex's ray hits a front face of the mesh: its light is interpolated from three other vertices.
 struct SelfHit {
     std::uint32_t primitive;
     float u, v;
@@ -26,6 +26,20 @@ public:
         : mesh_(mesh), side_(std::max(1u, std::uint32_t(std::lround(std::sqrt(double(precision.rays)))))) {}
 
     Result<TransferData> run(const std::function<bool(float)>& progress) {
+        SUNFLECK_TRY(prepare());
+        if (!cast_all(progress))
+            return Error{"the precomputation was stopped"};
+        const std::size_t count = mesh_.positions.size();
+        for (std::size_t order = 1; order < transfer_orders; ++order)
+            parallel_for_chunks(count, vertices_per_chunk, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t vertex = begin; vertex < end; ++vertex)
+                    reflect(vertex, order);
+            });
+        return std::move(data_);
+    }
+
+private:
+    Status prepare() {
         SUNFLECK_ASSIGN(rays_, raytrace::RayScene::create());
         scene::register_components(registry_);
         const ecs::Entity entity = registry_.create();
@@ -37,6 +51,12 @@ public:
         data_.rows.assign(count * transfer_orders, Harmonics{});
         from_.resize(count);
         offset_ = offset_share * glm::length(mesh_.bounds().extent());
+        return {};
+    }
+
+    // False if `progress` stopped it.
+    bool cast_all(const std::function<bool(float)>& progress) {
+        const std::size_t count = mesh_.positions.size();
         std::atomic<std::size_t> done{0};
         std::atomic<bool> stopped{false};
         std::mutex mutex;
@@ -48,18 +68,10 @@ public:
             if (progress && lock.owns_lock() && !stopped)
                 stopped = !progress(float(done) / float(count));
         });
-        if (stopped)
-            return Error{"the precomputation was stopped"};
-        for (std::size_t order = 1; order < transfer_orders; ++order)
-            parallel_for_chunks(count, vertices_per_chunk, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t vertex = begin; vertex < end; ++vertex)
-                    reflect(vertex, order);
-            });
-        return std::move(data_);
+        return !stopped;
     }
 
-private:
-    // Directions in proportion to the cosine: the mean of f times pi is the integral of f times the cosine.
+    // Cosine-weighted directions: the mean of f times pi is the integral of f times the cosine.
     void cast(std::size_t vertex) {
         vec3 tangent, bitangent;
         const vec3 normal = mesh_.normals[vertex];
@@ -68,7 +80,7 @@ private:
         Harmonics& row = data_.rows[vertex * transfer_orders];
         const float weight = pi / float(side_ * side_);
         for (std::uint32_t cell = 0; cell < side_ * side_; ++cell) {
-            // Rings of equal weight, each turned by chance: exact for what varies little along them.
+            // Rings of equal weight, each rotated at random: exact for functions that vary little along them.
             const std::uint32_t ring = cell / side_;
             const float a = (float(ring) + 0.5f) / float(side_);
             const float b =
@@ -93,7 +105,7 @@ private:
         return glm::dot(glm::cross(mesh_.positions[corner[1]] - a, mesh_.positions[corner[2]] - a), direction) < 0.0f;
     }
 
-    // A Lambertian surface of albedo 1 radiates its irradiance over pi; pi falls out against the integral's.
+    // A Lambertian surface of albedo 1 radiates irradiance / pi; this pi cancels that of the integral.
     void reflect(std::size_t vertex, std::size_t order) {
         Harmonics& row = data_.rows[vertex * transfer_orders + order];
         const float weight = 1.0f / float(side_ * side_);

@@ -31,7 +31,7 @@ Environment environment_at(const std::vector<Environment>& points, const PointGr
     return result;
 }
 
-// The series of reflections ends; what is negative is the ringing of few harmonics about a strong light.
+// Negative values are ringing: few harmonics around a strong light.
 vec3 irradiance(const TransferData& transfer, std::size_t vertex, const Environment& light, vec3 albedo,
                 std::uint32_t reflections) {
     vec3 result(0.0f), factor(1.0f);
@@ -72,7 +72,7 @@ Result<const TransferData*> TransferLighting::transfer_of(const scene::MeshStore
     SUNFLECK_ASSIGN(TransferData made, compute_transfer(shape, precision, options.progress));
     if (!options.cache.empty())
         if (const Status kept = write_transfer(options.cache, hash, made); !kept)
-            log_warning("precomputed transfer is not kept: " + kept.error().message);
+            log_warning("precomputed transfer could not be cached: " + kept.error().message);
     return &(transfers_[mesh] = std::move(made));
 }
 

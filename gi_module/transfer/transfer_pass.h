@@ -1,10 +1,10 @@
-// Draws the light of movers with precomputed transfer into a technique's target.
+// Draws movers with their precomputed transfer lighting into the technique's target.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/pipeline.h"
-#include "gi_module/transfer/transfer_lighting.h"
 #include "gi_module/technique.h"
+#include "gi_module/transfer/transfer_lighting.h"
 
 namespace sunfleck::gi {
 
@@ -14,8 +14,8 @@ public:
     static Result<std::unique_ptr<TransferPass>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
     ~TransferPass();
 
-    // Draws the movers into the target, where the G-buffer shows them, and sets its area. `draws` must live until the
-    // graph was executed.
+    // Draws the movers into the target where the G-buffer shows them, and sets its area. `draws` must outlive the
+    // execution of the graph.
     void add_passes(gpu::FrameGraph& graph, const std::vector<TransferDraw>& draws, LightTarget& target);
 
 private:

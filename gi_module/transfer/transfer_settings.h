@@ -1,4 +1,4 @@
-// What a user can set about precomputed radiance transfer.
+// Settings of precomputed radiance transfer.
 #pragma once
 
 #include "engine/core/description.h"
@@ -6,8 +6,8 @@
 namespace sunfleck::gi {
 
 struct TransferSettings {
-    std::uint32_t transfer_points = 4;      // along each side of a mover, where its light is known
-    std::uint32_t transfer_reflections = 2; // of a mover's light onto itself
+    std::uint32_t transfer_points = 4;      // per axis of a mover: where incident light is computed
+    std::uint32_t transfer_reflections = 2; // of light from a mover onto itself
 
     static const TypeDescription& description();
 };

@@ -9,7 +9,7 @@ struct TransferConstants {
     int first_vertex; // of the mesh, in the vertex buffers
 };
 
-// Of the reverse depth, relative: what differs by more is another layer of the mover.
+// Of the reverse depth, relative: fragments that differ by more belong to another layer of the mover.
 SHARED_CONSTANT float transfer_depth_tolerance = 5e-4f;
 
 SHARED_END

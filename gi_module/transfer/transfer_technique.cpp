@@ -29,10 +29,10 @@ const TypeDescription& TransferSettings::description() {
         1,
         "Precomputed radiance transfer for movers.",
         {SUNFLECK_FIELD(TransferSettings, transfer_points, "", 1, 6,
-                        "With movers prt: points along each side of a mover where its light is known; more for "
-                        "sharper shadows on it"),
+                        "With movers prt: points along each axis of a mover where its incident light is computed; more "
+                        "for sharper shadows on it"),
          SUNFLECK_FIELD(TransferSettings, transfer_reflections, "", 0, 2,
-                        "With movers prt: how often a mover reflects light onto itself")}};
+                        "With movers prt: how often light is reflected from a mover onto itself")}};
     return type;
 }
 
