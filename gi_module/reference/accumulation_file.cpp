@@ -37,9 +37,9 @@ Result<Accumulation> load_accumulation(const std::string& path, std::uint64_t ha
     std::memcpy(&header, bytes.data(), sizeof header);
     const std::size_t pixels = std::size_t(header.width) * header.height;
     if (header.hash != hash)
-        return Error{"'" + path + "' belongs to another scene or other settings; delete it to start anew"};
+        return Error{"'" + path + "' belongs to another scene or other settings; delete it to start over"};
     if (bytes.size() != sizeof header + pixels * (3 * sizeof(double) + 1))
-        return Error{"'" + path + "' is damaged; delete it to start anew"};
+        return Error{"'" + path + "' is damaged; delete it to start over"};
     Accumulation accumulation;
     accumulation.width = header.width;
     accumulation.height = header.height;

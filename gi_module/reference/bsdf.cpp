@@ -87,8 +87,8 @@ vec3 Bsdf::evaluate(vec3 outgoing, vec3 incoming) const {
     const vec3 reflected = fresnel(glm::dot(half, outgoing));
     const float masking = 1.0f / (1.0f + ggx_lambda(outgoing, alpha_) + ggx_lambda(incoming, alpha_));
     const vec3 specular = reflected * (ggx_distribution(half.z, alpha_) * masking / (4.0f * outgoing.z * incoming.z));
-    // What the layer reflects on the way in and out does not reach the base; reciprocal, and never above one in sum
-    // (glTF's own mix by the half vector exceeds one at grazing angles).
+    // Light that the layer reflects on entry and exit does not reach the base. This is reciprocal and conserves energy
+    // (glTF's own mix by the half vector does not at grazing angles).
     const vec3 in = fresnel(incoming.z), out = fresnel(outgoing.z);
     const float passed = (1.0f - std::max({in.x, in.y, in.z})) * (1.0f - std::max({out.x, out.y, out.z}));
     return diffuse_ / pi * passed + specular;
@@ -141,8 +141,8 @@ BsdfSample Bsdf::sample_glass(vec3 outgoing, bool entering, float number) const 
     }
     const vec3 across = vec3(outgoing.x, outgoing.y, 0.0f) / -eta;
     result.direction = across - vec3(0.0f, 0.0f, std::sqrt(std::max(0.0f, 1.0f - glm::dot(across, across))));
-    // Radiance is scaled by 1/eta^2 on entering and by as much back on leaving; paths here end on both sides of closed
-    // glass, so the factors cancel and are left out.
+    // Radiance scales with 1/eta^2 when it enters and back when it leaves. Paths start and end outside of closed glass,
+    // so the factors cancel and are left out.
     result.weight = tint_;
     return result;
 }

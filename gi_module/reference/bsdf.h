@@ -7,7 +7,7 @@
 namespace sunfleck::gi::reference {
 
 struct BsdfSample {
-    vec3 direction{0.0f}; // local, towards where the path goes on
+    vec3 direction{0.0f}; // local, in which the path continues
     vec3 weight{0.0f};    // f * |cos| / pdf
     float pdf = 0.0f;     // solid angle; 0 for delta scattering
     bool delta = false;
@@ -16,7 +16,7 @@ struct BsdfSample {
 class Bsdf {
 public:
     explicit Bsdf(const scene::Material& material);
-    // A Lambertian surface of albedo 1: what an irradiance meter has in place of a material.
+    // A Lambertian surface of albedo 1, in place of a material where irradiance is measured.
     static Bsdf white();
 
     bool is_glass() const { return glass_; }

@@ -1,4 +1,5 @@
-// How far a picture's surfaces are from other surfaces, for judging light samples where they are meant to be exact.
+// How far a picture's surfaces are from other surfaces, to compare light samples (VPLs) only where they are meant to be
+// accurate.
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"
@@ -8,8 +9,8 @@
 
 namespace sunfleck::gi::reference {
 
-// For each pixel's centre the distance, m, from the surface that it shows to the nearest other surface, found by
-// `directions` rays spread evenly over the hemisphere; 0 where nothing is seen. Multi-threaded.
+// For each pixel's centre the distance, m, from the visible surface to the nearest other surface, found by `directions`
+// rays spread evenly over the hemisphere; 0 for background. Multi-threaded.
 std::vector<float> surface_distances(const raytrace::RayScene& rays, const scene::CameraView& camera,
                                      std::uint32_t width, std::uint32_t height, std::uint32_t directions = 512);
 

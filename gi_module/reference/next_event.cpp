@@ -1,0 +1,130 @@
+// Next-event estimation of the reference path tracer: sampling of emitters, and the weights of scattered rays that hit
+// them (E. Veach, 1997, ch. 9).
+#include "gi_module/reference/path.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi::reference {
+namespace {
+
+constexpr float shadow_shortening = 1e-4f; // fraction of a shadow ray's length that is left out at its end
+
+// Emitters of mirrored meshes have their second and third corner swapped.
+vec3 textured_emission(const raytrace::RayScene& rays, const Emitter& emitter, const EmittedPoint& point) {
+    const bool mirrored = glm::determinant(mat3(emitter.matrix)) < 0.0f;
+    return rays.emission_at(emitter.entity, point.triangle, mirrored ? point.v : point.u, mirrored ? point.u : point.v);
+}
+
+} // namespace
+
+// A point on an emitter, as a path vertex receives its light.
+struct PathTracer::EmitterSample {
+    vec3 to_light{0.0f};
+    vec3 position{0.0f};  // unless distant
+    vec3 light{0.0f};     // radiance or its equivalent, divided by the density
+    float density = 0.0f; // per solid angle; 0 for lights that scattered rays cannot hit
+    bool distant = false; // directional light or environment
+};
+
+// MIS-weighted radiance of the environment along a scattered ray that hit nothing. pdf: of the ray.
+vec3 PathTracer::environment_found(vec3 direction, float pdf, bool delta) const {
+    vec3 sum(0.0f);
+    for (const Emitter& emitter : environments_) {
+        float other = 0.0f;
+        if (emitter.map.image && !delta)
+            other = float(double(luminance(emitter.flux)) / cumulative_.back()) *
+                    emitter.map.image->density(emitter.map.to_image(direction));
+        sum += emitter.environment_radiance(direction) * (other > 0.0f ? power_heuristic(pdf, other) : 1.0f);
+    }
+    return sum;
+}
+
+// Density, per solid angle, with which direct_light would have sampled the point that a scattered ray has hit.
+float PathTracer::emitter_density(const raytrace::SurfacePoint& point, vec3 direction, float distance) const {
+    const auto found = area_emitters_.find(point.entity);
+    const float cosine = -glm::dot(point.geometric_normal, direction);
+    if (found == area_emitters_.end() || cosine <= 0.0f)
+        return 0.0f;
+    const Emitter& emitter = emitters_[found->second];
+    const float chosen = float(double(luminance(emitter.flux)) / cumulative_.back());
+    return chosen / emitter.area * distance * distance / cosine;
+}
+
+// Point, spot and area kinds. `probability`: of the emitter.
+PathTracer::EmitterSample PathTracer::sample_near(const Emitter& emitter, const EmittedPoint& point, float probability,
+                                                  vec3 receiver) const {
+    EmitterSample sample;
+    sample.position = point.position;
+    sample.to_light = point.position - receiver;
+    const float squared = std::max(glm::dot(sample.to_light, sample.to_light), 1e-12f);
+    const vec3 direction = sample.to_light / std::sqrt(squared);
+    if (emitter.kind == EmitterKind::point) {
+        sample.light = emitter.intensity / (squared * probability);
+        return sample;
+    }
+    if (emitter.kind == EmitterKind::spot) {
+        float scale, offset;
+        spot_cone(emitter, scale, offset);
+        const float falloff = std::clamp(-glm::dot(direction, point.normal) * scale + offset, 0.0f, 1.0f);
+        sample.light = emitter.intensity * (falloff * falloff / (squared * probability));
+        return sample;
+    }
+    const float cosine = -glm::dot(direction, point.normal);
+    if (cosine <= 0.0f)
+        return sample;
+    sample.density = probability / emitter.area * squared / cosine;
+    const bool textured = emitter.kind == EmitterKind::mesh && emitter.textured;
+    sample.light = (textured ? textured_emission(rays_, emitter, point) : emitter.radiance) / sample.density;
+    return sample;
+}
+
+// Emitters are chosen by flux.
+PathTracer::EmitterSample PathTracer::sample_emitter(Path& path, vec3 receiver) const {
+    const float choice = path.random.next(), u = path.random.next(), v = path.random.next();
+    EmitterSample sample;
+    if (emitters_.empty())
+        return sample;
+    const double target = double(choice) * cumulative_.back();
+    const std::size_t index = std::min<std::size_t>(
+        std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()),
+        emitters_.size() - 1);
+    const Emitter& emitter = emitters_[index];
+    const float probability = float(double(luminance(emitter.flux)) / cumulative_.back());
+    const EmittedPoint point = sample_emitter_point(emitter, u, v);
+    if (emitter.kind != EmitterKind::environment && emitter.kind != EmitterKind::directional)
+        return sample_near(emitter, point, probability, receiver);
+    sample.distant = true;
+    if (emitter.kind == EmitterKind::directional) {
+        sample.to_light = -2.1f * emitter.scene_radius * point.normal;
+        sample.light = emitter.intensity / probability;
+        return sample;
+    }
+    const scene::EnvironmentImage::Draw drawn = emitter.map.image->draw(u, v);
+    sample.to_light = 2.1f * emitter.scene_radius * emitter.map.to_world(drawn.direction);
+    sample.density = probability * drawn.density;
+    sample.light = sample.density > 0.0f ? emitter.map_scale * drawn.radiance / sample.density : vec3(0.0f);
+    return sample;
+}
+
+vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
+    const EmitterSample sample = sample_emitter(path, vertex.position);
+    if (luminance(sample.light) <= 0.0f)
+        return vec3(0.0f);
+    const vec3 direction = glm::normalize(sample.to_light);
+    const vec3 incoming = vertex.frame.to_local(direction);
+    if (incoming.z <= 0.0f || glm::dot(direction, vertex.geometric_normal) <= 0.0f)
+        return vec3(0.0f);
+    const vec3 scattered = vertex.bsdf.evaluate(vertex.outgoing, incoming) * incoming.z;
+    if (luminance(scattered) <= 0.0f)
+        return vec3(0.0f);
+    ++path.rays;
+    const vec3 origin = vertex.position + offset_distance * vertex.geometric_normal;
+    const vec3 target = sample.distant ? origin + sample.to_light : sample.position;
+    if (rays_.occluded(raytrace::Ray{origin, target - origin, 0.0f, 1.0f - shadow_shortening, path.salt}))
+        return vec3(0.0f);
+    const float weight =
+        sample.density > 0.0f ? power_heuristic(sample.density, vertex.bsdf.density(vertex.outgoing, incoming)) : 1.0f;
+    return sample.light * scattered * weight;
+}
+
+} // namespace sunfleck::gi::reference

@@ -1,0 +1,68 @@
+// A path of the reference path tracer while it is traced. For the files that implement PathTracer.
+#pragma once
+
+#include "engine/core/random.h"
+#include "gi_module/reference/bsdf.h"
+#include "gi_module/reference/path_tracer.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi::reference {
+
+inline constexpr float offset_distance = 1e-4f; // m: offset of ray origins from their surface
+
+// Of multiple importance sampling: weight of the technique with density `a` against that with density `b`.
+inline float power_heuristic(float a, float b) {
+    const float a2 = a * a, b2 = b * b;
+    return a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+}
+
+struct Frame {
+    explicit Frame(vec3 n) : normal(n) { orthonormal_basis(n, tangent, bitangent); }
+    vec3 to_local(vec3 v) const { return {glm::dot(v, tangent), glm::dot(v, bitangent), glm::dot(v, normal)}; }
+    vec3 to_world(vec3 v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+    vec3 tangent, bitangent, normal;
+};
+
+// A path vertex: a surface that scatters light, seen from the side that the path came from.
+struct PathTracer::Vertex {
+    vec3 position;
+    vec3 geometric_normal;
+    Frame frame;   // of the shading normal
+    vec3 outgoing; // local
+    Bsdf bsdf;
+    bool entering = true; // glass: the path comes from outside
+
+    // `direction`: in which the path arrives.
+    static Vertex at(const raytrace::SurfacePoint& point, vec3 direction, const Bsdf& bsdf) {
+        const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
+        const Frame frame(front ? point.shading_normal : -point.shading_normal);
+        const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
+        Vertex vertex{point.position, normal, frame, frame.to_local(-direction), bsdf, front};
+        // A shading normal that faces away from the viewer would make the surface black.
+        vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
+        return vertex;
+    }
+};
+
+struct PathTracer::Path {
+    RandomSequence random;
+    std::uint32_t bounces;  // reflections still allowed after the first vertex
+    std::uint32_t salt = 0; // of its rays
+    vec3 throughput{1.0f};
+    std::vector<vec3>* by_bounce = nullptr; // if set, contributions are added here, by number of reflections
+    bool skip_direct = false;
+    bool skip_indirect = false;
+    vec3 result{0.0f};
+    std::uint64_t rays = 0;
+
+    void add(std::uint32_t reflections, vec3 light) {
+        if ((reflections == 0 && skip_direct) || (reflections > 0 && skip_indirect))
+            return;
+        result += light;
+        if (by_bounce != nullptr)
+            (*by_bounce)[reflections] += light;
+    }
+};
+
+} // namespace sunfleck::gi::reference
