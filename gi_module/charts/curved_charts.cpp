@@ -10,21 +10,21 @@
 namespace sunfleck::gi {
 namespace {
 
-// Small things change their light within their size, thin ones within their thickness: so many texels along and across
-// them, but no finer than a share of the side that large surfaces have.
+// On small objects light varies within their size, on thin ones within their thickness: so many texels along and across
+// them, but no finer than this fraction of the texels of large surfaces.
 constexpr float texels_along = 32.0f, texels_across = 16.0f, finest_share = 0.125f;
 constexpr std::uint32_t max_columns = 256;
-constexpr float outside = 1.5f;     // texels: so far beyond its rim a surface still gives its nearest point
-constexpr float same_layer = 0.1f;  // texels: triangles that meet give the same height within this
-constexpr int margin = 1;           // texels around a chart
-constexpr float min_height_range = 8.0f; // of heights, in texels: nearly flat charts still tell steps from slopes
+constexpr float outside = 1.5f;          // texels: texels so far beyond a surface's rim get its nearest point
+constexpr float same_layer = 0.1f;       // texels: height differences of adjacent triangles are less
+constexpr int margin = 1;                // texels around a chart
+constexpr float min_height_range = 8.0f; // texels: so that nearly flat charts still distinguish steps from slopes
 
 struct Triangle {
     std::array<vec3, 3> corners, normals; // world space; normals of any length
     vec3 geometric{0.0f};                 // unit
 };
 
-// What of an instance's mesh has no light maps.
+// The part of an instance's mesh that has no light maps.
 struct CurvedMesh {
     ecs::Entity entity;
     std::vector<Triangle> triangles;
@@ -69,14 +69,14 @@ CurvedMesh curved_part(ecs::Entity entity, const scene::Mesh& mesh, const mat4& 
     return part;
 }
 
-// A chart's grid before its surface is found: as large as its triangles.
+// The grid of a chart, as large as its triangles, before points are found.
 struct Grid {
-    std::vector<std::uint32_t>
-        triangles; // of the mesh: as they are seen from outside, those of sheets from behind, too
+    std::vector<std::uint32_t> triangles; // of the mesh, front faces; of open meshes (sheets) also back faces
     std::uint32_t direction = 0;
-    vec3 low{std::numeric_limits<float>::max()}, high{-std::numeric_limits<float>::max()}; // of places of the corners
-    vec3 origin{0.0f};                                                                     // place of texel (0, 0)
-    float texel = 0.0f;                                                                    // m
+    vec3 low{std::numeric_limits<float>::max()},
+        high{-std::numeric_limits<float>::max()}; // chart coordinates of the corners
+    vec3 origin{0.0f};                            // chart coordinates of texel (0, 0)
+    float texel = 0.0f;                           // m
     std::uint32_t columns = 0, rows = 0;
 };
 
@@ -111,7 +111,7 @@ void lay_out(Grid& grid, float texel_side) {
     grid.origin = vec3(vec2(grid.low) - 0.5f * room, grid.low.z);
 }
 
-// A point on a triangle that a texel may take.
+// A point on a triangle that a texel may use.
 struct Candidate {
     float distance = std::numeric_limits<float>::max(); // texels from the texel to the triangle's projection; 0: within
     float height = 0.0f;                                // m
@@ -123,7 +123,7 @@ struct Candidate {
     }
 };
 
-// The nearest point of a flat triangle, as barycentric weights.
+// The nearest point of a 2D triangle, as barycentric weights.
 vec3 nearest_weights(const std::array<vec2, 3>& corners, vec2 point) {
     vec3 best(1.0f, 0.0f, 0.0f);
     float least = std::numeric_limits<float>::max();
@@ -142,7 +142,7 @@ vec3 nearest_weights(const std::array<vec2, 3>& corners, vec2 point) {
     return best;
 }
 
-// Calls visit(texel, candidate) for the texels that lie in a triangle's projection or near it.
+// Calls visit(texel, candidate) for the texels in or near a triangle's projection.
 template <typename Visit>
 void visit_texels(const CurvedMesh& mesh, const Grid& grid, std::uint32_t number, const Visit& visit) {
     const Triangle& triangle = mesh.triangles[number];
@@ -200,8 +200,8 @@ shared::CurvedPoint point_of(const Triangle& triangle, std::uint32_t direction, 
     return point;
 }
 
-// Each texel's point on the outermost surface. Nothing where another surface is so near below it that pixels on either
-// could not tell whose texels they find.
+// Each texel's point on the outermost surface; none where another surface is so close below that pixels could not tell
+// which of the two the texel belongs to.
 std::vector<shared::CurvedPoint> find_points(const CurvedMesh& mesh, const Grid& grid) {
     std::vector<Candidate> best(std::size_t(grid.columns) * grid.rows);
     for (const std::uint32_t triangle : grid.triangles)
@@ -209,25 +209,22 @@ std::vector<shared::CurvedPoint> find_points(const CurvedMesh& mesh, const Grid&
             if (candidate.better_than(best[texel]))
                 best[texel] = candidate;
         });
-    std::vector<std::uint8_t> doubtful(best.size(), 0);
+    std::vector<std::uint8_t> ambiguous(best.size(), 0);
     for (const std::uint32_t triangle : grid.triangles)
         visit_texels(mesh, grid, triangle, [&](std::uint32_t texel, const Candidate& candidate) {
             const float below = (best[texel].height - candidate.height) / grid.texel;
             if (candidate.distance == 0.0f && below > same_layer && below < shared::curved_cell_span)
-                doubtful[texel] = 1;
+                ambiguous[texel] = 1;
         });
     std::vector<shared::CurvedPoint> points(best.size());
     for (std::size_t i = 0; i < best.size(); ++i)
-        if (best[i].distance <= outside && !doubtful[i])
+        if (best[i].distance <= outside && !ambiguous[i])
             points[i] = point_of(mesh.triangles[best[i].triangle], grid.direction, best[i]);
     return points;
 }
 
-} // namespace
-
-void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes, const SurfacePatches& patches,
-                         float texel_side, std::uint64_t max_points) {
-    *this = {};
+std::vector<CurvedMesh> curved_parts(ecs::Registry& registry, const scene::MeshStore& meshes,
+                                     const SurfacePatches& patches) {
     std::vector<CurvedMesh> parts;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
@@ -236,23 +233,53 @@ void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes
             parts.push_back(curved_part(entity, meshes[instance.mesh], world.matrix, patches));
         });
     std::erase_if(parts, [](const CurvedMesh& part) { return part.triangles.empty(); });
+    return parts;
+}
 
-    std::vector<std::array<Grid, shared::curved_directions>> grids(parts.size());
+using Grids = std::array<Grid, shared::curved_directions>;
+
+// One set of grids per part, with texels so large that there are at most `max_points`.
+std::vector<Grids> make_grids(const std::vector<CurvedMesh>& parts, const SurfacePatches& patches, float texel_side,
+                              std::uint64_t max_points) {
+    std::vector<Grids> grids(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i)
         for (std::uint32_t direction = 0; direction < shared::curved_directions; ++direction)
             grids[i][direction] = find_facing(parts[i], patches.is_closed(parts[i].entity), direction);
     std::uint64_t total = 0;
     do {
         total = 0;
-        for (std::size_t i = 0; i < parts.size(); ++i) {
-            for (Grid& grid : grids[i]) {
+        for (Grids& of_part : grids)
+            for (Grid& grid : of_part) {
                 lay_out(grid, texel_side);
                 total += std::uint64_t(grid.columns) * grid.rows;
             }
-        }
         texel_side *= 1.25f;
     } while (total > max_points && texel_side < 1e3f);
+    return grids;
+}
 
+CurvedChart chart_of(const Grid& grid, std::size_t surface, std::size_t first_point) {
+    CurvedChart chart;
+    chart.surface = std::uint32_t(surface);
+    chart.direction = grid.direction;
+    chart.first_point = std::uint32_t(first_point);
+    chart.columns = grid.columns;
+    chart.rows = grid.rows;
+    if (grid.columns > 0) {
+        chart.row.place = vec4(grid.origin, 1.0f / grid.texel);
+        const float range = std::max(grid.high.z - grid.low.z, min_height_range * grid.texel);
+        chart.row.size = vec4(grid.columns, grid.rows, chart.first_point, shared::curved_max_height / range);
+    }
+    return chart;
+}
+
+} // namespace
+
+void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes, const SurfacePatches& patches,
+                         float texel_side, std::uint64_t max_points) {
+    *this = {};
+    const std::vector<CurvedMesh> parts = curved_parts(registry, meshes, patches);
+    const std::vector<Grids> grids = make_grids(parts, patches, texel_side, max_points);
     std::unordered_map<ecs::Entity, std::vector<std::uint32_t>> leaves;
     for (std::uint32_t node = 0; node < patches.nodes().size(); ++node)
         if (patches.nodes()[node].is_leaf())
@@ -261,20 +288,11 @@ void CurvedCharts::build(ecs::Registry& registry, const scene::MeshStore& meshes
         nodes_.push_back(leaves[parts[i].entity]);
         first_chart_[parts[i].entity] = std::uint32_t(charts_.size());
         for (const Grid& grid : grids[i]) {
-            CurvedChart chart;
-            chart.surface = std::uint32_t(i);
-            chart.direction = grid.direction;
-            chart.first_point = std::uint32_t(points_.size());
-            chart.columns = grid.columns;
-            chart.rows = grid.rows;
-            if (grid.columns > 0) {
-                chart.row.place = vec4(grid.origin, 1.0f / grid.texel);
-                const float range = std::max(grid.high.z - grid.low.z, min_height_range * grid.texel);
-                chart.row.size = vec4(grid.columns, grid.rows, chart.first_point, shared::curved_max_height / range);
-                const std::vector<shared::CurvedPoint> points = find_points(parts[i], grid);
-                points_.insert(points_.end(), points.begin(), points.end());
-            }
-            charts_.push_back(chart);
+            charts_.push_back(chart_of(grid, i, points_.size()));
+            if (grid.columns == 0)
+                continue;
+            const std::vector<shared::CurvedPoint> points = find_points(parts[i], grid);
+            points_.insert(points_.end(), points.begin(), points.end());
         }
     }
 }

@@ -1,11 +1,11 @@
-// Where baked light has texels on static surfaces that are not flat (the thesis's light maps, sec. 4.3.2, lie on flat
-// patches alone).
+// Texels of baked light on static surfaces that are not flat (the thesis's light maps, sec. 4.3.2, cover flat patches
+// only).
 //
-// What of a mesh lies in no flat chart, or is flat but shaded as if it was curved, is looked at along the six
-// directions of the world's axes. Each direction has a chart: a grid of points of the outermost surface that it sees. A
-// pixel reads the chart nearest to its geometric normal, whose points may be up to 66 degrees off, so that neighbouring
-// charts overlap. Surfaces further in, steps between two surfaces and places where two are close together are left out:
-// pixels there find a height that is not theirs.
+// The parts of a mesh that lie in no flat chart, or are flat but smooth-shaded, are projected along the six directions
+// of the world axes. Each direction has a chart: a grid of points on the outermost surface that it sees. A pixel reads
+// the chart whose direction is nearest to its geometric normal; a chart covers normals up to 66 degrees off, so
+// neighbouring charts overlap. Surfaces further in, steps between two surfaces and places where two surfaces are close
+// together are left out: pixels there find a height that does not match theirs.
 #pragma once
 
 #include "engine/ecs/registry.h"
@@ -20,27 +20,27 @@
 namespace sunfleck::gi {
 
 struct CurvedChart {
-    std::uint32_t surface = 0; // whose nodes light it: see nodes()
+    std::uint32_t surface = 0; // whose nodes light it, see nodes()
     std::uint32_t direction = 0;
-    shared::CurvedChartRow row{};  // first texel: the first of its points
-    std::uint32_t first_point = 0; // rows of columns
+    shared::CurvedChartRow row{};  // its first texel is its first point
+    std::uint32_t first_point = 0; // in row-major order
     std::uint32_t columns = 0, rows = 0;
 };
 
 class CurvedCharts {
 public:
-    // Finds the charts of all static instances. Those with normal maps have none: points know vertex normals alone.
-    // `texel_side`, m: of large surfaces, smaller ones have finer texels; larger if there would be more than
+    // Makes the charts of all static instances, except those with normal maps: points only have vertex normals.
+    // `texel_side`, m: for large surfaces, while small ones get finer texels; increased if there would be more than
     // `max_points`.
     void build(ecs::Registry& registry, const scene::MeshStore& meshes, const SurfacePatches& patches, float texel_side,
                std::uint64_t max_points);
 
-    // `shared::curved_directions` in a row for an instance; empty charts have no columns.
+    // `shared::curved_directions` consecutive charts per instance; empty charts have no columns.
     const std::vector<CurvedChart>& charts() const { return charts_; }
     const std::vector<shared::CurvedPoint>& points() const { return points_; }
-    // Of the database: all that points of a chart's surface may lie on.
+    // Nodes of the database on which points of the chart's surface may lie.
     std::span<const std::uint32_t> nodes(const CurvedChart& chart) const { return nodes_[chart.surface]; }
-    // shared::no_node if the entity has none.
+    // shared::no_node if the entity has no charts.
     std::uint32_t first_chart(ecs::Entity entity) const;
 
 private:

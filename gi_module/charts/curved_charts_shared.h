@@ -1,4 +1,4 @@
-// Charts of curved surfaces: how a pixel finds its texels. See curved_charts.h.
+// Charts of curved surfaces as shaders read them. See curved_charts.h.
 #ifndef SUNFLECK_GI_MANY_LIGHT_CURVED_CHARTS_SHARED_H
 #define SUNFLECK_GI_MANY_LIGHT_CURVED_CHARTS_SHARED_H
 #include "engine/core/shader_language.h"
@@ -9,7 +9,7 @@ SHARED_CONSTANT uint curved_directions = 6u; // charts of an instance: along +x,
 // A texel's point of the surface, world space.
 struct CurvedPoint {
     vec4 position;
-    uint normal; // that shades; pack_normal
+    uint normal; // shading normal, see pack_normal
     uint geometric_normal;
     uint exists; // 0: no surface here
     uint unused;
@@ -17,15 +17,15 @@ struct CurvedPoint {
 
 // By chart.
 struct CurvedChartRow {
-    vec4 place; // where texel (0, 0) is and what height 0 stands for, m; texels per m
-    vec4 size;  // columns, rows (0: an empty chart), first texel, units of height per m
+    vec4 place; // position of texel (0, 0) and of height 0, m; texels per m
+    vec4 size;  // columns and rows (0: empty chart), first texel, height units per m
 };
 
-// Heights are in [0, 1/2] within a chart; rough cells have this instead.
+// Heights within a chart are in [0, 1/2]; rough cells have this value instead.
 SHARED_CONSTANT float curved_rough = 1.0f;
 SHARED_CONSTANT float curved_max_height = 0.5f;
-// Charts hold surfaces that are up to 66 degrees off their direction, 2.25 m of height per m. Over the diagonal of a
-// cell that is 3.2 cells; more is a step. From the mean of a cell's corners it is half of that.
+// Charts contain surfaces that are up to 66 degrees off their direction, a slope of 2.25. Over the diagonal of a cell
+// that is a height of 3.2 cells; more is a step. From the mean of a cell's corners it is half of that.
 SHARED_CONSTANT float curved_min_cosine = 0.4f;
 SHARED_CONSTANT float curved_cell_span = 3.3f;
 SHARED_CONSTANT float curved_point_span = 1.7f;
@@ -40,7 +40,7 @@ SHARED_FUNCTION uint curved_direction(vec3 n) {
     return n.z >= 0.0f ? 4u : 5u;
 }
 
-// Place on the chart's plane and height above it, m.
+// Coordinates on the chart's plane and height above it, m.
 SHARED_FUNCTION vec3 curved_place(uint direction, vec3 p) {
     float side = (direction & 1u) == 0u ? 1.0f : -1.0f;
     if (direction < 2u)

@@ -6,9 +6,9 @@
 namespace sunfleck::gi {
 namespace {
 
-// Of an invocation's loops in all: llvmpipe ends a shader's loops, silently, after 65,535.
+// Loop iterations of an invocation in total: llvmpipe silently ends a shader's loops after 65,535.
 constexpr std::uint32_t max_iterations = 40000;
-constexpr std::size_t max_changed_intensities = 64; // that are followed; with more, all is summed anew
+constexpr std::size_t max_changed_intensities = 64; // with more, all samples are summed from scratch
 
 } // namespace
 
@@ -36,7 +36,7 @@ void LightMapJobs::add(shared::LightMapJob job, bool clear) {
     jobs_.push_back(job);
 }
 
-// A job's invocations take turns at its texels; each goes through all changes at every texel.
+// A job's invocations process its texels in turn, and all changes at every texel.
 void LightMapJobs::split(std::uint32_t invocations) {
     std::vector<shared::LightMapJob> parts;
     for (shared::LightMapJob job : jobs_) {

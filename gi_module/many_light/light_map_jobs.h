@@ -1,4 +1,5 @@
-// Work for the kernels that sum samples into light maps: which patches, which samples are added or taken away.
+// Jobs for the kernels that sum samples (VPLs) into light maps: for which patches, and which samples are added or
+// subtracted.
 #pragma once
 
 #include "gi_module/many_light/light_maps_shared.h"
@@ -15,7 +16,7 @@ namespace sunfleck::gi {
 class LightMapJobs {
 public:
     void clear();
-    // A job for a patch's whole map: what is there is cleared or kept. Changes added next are its own.
+    // A job for a patch's whole map, which is cleared first or kept. Changes added next belong to this job.
     void add(const SurfacePatch& patch, const shared::NodeRow& row, bool clear) { add(job_of(patch, row), clear); }
     void add(shared::LightMapJob job, bool clear);
     static shared::LightMapJob job_of(const SurfacePatch& patch, const shared::NodeRow& row);
@@ -23,7 +24,8 @@ public:
         changes_.push_back(change);
         ++jobs_.back().change_count;
     }
-    // After the last change: work groups of `invocations` at a time; large maps with many changes become several jobs.
+    // Call after the last change: splits large maps with many changes into several jobs, for work groups of
+    // `invocations`.
     void split(std::uint32_t invocations);
 
     bool empty() const { return jobs_.empty(); }
@@ -35,19 +37,19 @@ private:
     std::vector<std::uint32_t> changes_;
 };
 
-// Whether light maps hold a sample's light: point and spot lights have no bound, directional ones need no map, and
-// every change of those that move or vary would touch all maps that they reach.
+// Whether light maps contain a sample's light: point and spot lights have no bound, directional ones need no light map,
+// and every change of a dynamic sample would affect all maps that it reaches.
 inline bool held_by_light_maps(const LightSample& sample) {
     return sample.kind == SampleKind::surface && !sample.dynamic;
 }
 
-// Whether any of a sample's light comes to a patch.
+// Whether any of a sample's light reaches a patch.
 inline bool reaches(PairState state) {
     return state == PairState::none || state == PairState::partial;
 }
 
-// Finds the held samples whose strength alone changed since `before`. False if something else changed, or the strengths
-// of more samples than it pays to follow.
+// Finds the samples in light maps of which only the intensity changed since `before`. False if anything else changed,
+// or if so many intensities changed that summing from scratch is cheaper.
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
                         std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed);
 

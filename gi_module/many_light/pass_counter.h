@@ -1,4 +1,4 @@
-// Counts the render passes that a renderer with a few lights a pass would need for the frame (thesis sec. 4.3.5); see
+// Counts the render passes that a renderer with a few lights per pass would need for the frame (thesis sec. 4.3.5); see
 // pass_grouping.h.
 #pragma once
 
@@ -12,7 +12,7 @@ namespace sunfleck::gi {
 
 class PassCounter {
 public:
-    // Nodes that left the view are drawn no longer; the rest keeps its elements from frame to frame.
+    // Nodes that left the view are dropped; the others keep their elements from frame to frame.
     void count(const VisibilityDatabase& database, const mat4& view_projection, const ManyLightSettings& settings);
     // Null unless the last frame was counted.
     const PassGrouping* passes() const { return passes_.get(); }

@@ -6,7 +6,7 @@
 namespace sunfleck::gi {
 namespace {
 
-// How far the maintained cover may fall behind before all is grouped anew.
+// How much worse the maintained cover may get before everything is grouped from scratch.
 constexpr double max_decay = 1.15;
 
 std::uint32_t shared_count(const LightSet& a, const LightSet& b) {
@@ -36,7 +36,7 @@ PassCover::Open PassCover::open(std::uint32_t object) const {
     return {object, lights.needed, lights.harmless};
 }
 
-// With lights that the object tolerates: those that it needs are drawn once and not again, the others harm never.
+// With lights that the object tolerates. Needed lights must be drawn exactly once; harmless ones stay tolerated.
 void PassCover::draw(Open& object, const LightSet& lights) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
         object.tolerated[i] &= ~(object.left[i] & lights[i]);
@@ -44,11 +44,11 @@ void PassCover::draw(Open& object, const LightSet& lights) {
     }
 }
 
-// Pairs that a draft covers with one object more, if its lights are chosen anew: the largest counts of those allowed.
+// Pairs that a draft covers with one more object, if its lights are chosen again: the largest counts of those allowed.
 std::uint32_t PassCover::covered_with(const Draft& draft, const Open& object) const {
     histogram_.assign(draft.members.size() + 2, 0);
     for (std::size_t i = 0; i < draft.allowed.size(); ++i) {
-        const std::uint64_t allowed = draft.allowed[i] & object.tolerated[i] & (draft.wanted[i] | object.left[i]);
+        const std::uint64_t allowed = draft.allowed[i] & object.tolerated[i] & (draft.needed[i] | object.left[i]);
         for_each_light(allowed & object.left[i], i, [&](std::size_t light) { ++histogram_[draft.counts[light] + 1]; });
         for_each_light(allowed & ~object.left[i], i, [&](std::size_t light) { ++histogram_[draft.counts[light]]; });
     }
@@ -61,25 +61,25 @@ std::uint32_t PassCover::covered_with(const Draft& draft, const Open& object) co
     return covered;
 }
 
-// The open object that adds most pairs, at least `min_gain_`. None can add more than it has lights left that are
-// allowed, nor than a pass has room for: those that could add most are tried first, and few have to be.
+// The open object that adds most pairs, at least `min_gain_`. An upper bound is the number of its remaining lights that
+// are allowed, or the room in a pass; candidates are tried in the order of this bound, so few have to be.
 std::optional<std::size_t> PassCover::best_addition(const Draft& draft, const std::vector<Open>& open_objects,
                                                     const std::vector<char>& is_member) {
     candidates_.clear();
     for (std::size_t i = 0; i < open_objects.size(); ++i) {
         if (is_member[i] != 0)
             continue;
-        const std::uint32_t most = std::min(shared_count(open_objects[i].left, draft.allowed), room());
-        if (most >= min_gain_)
-            candidates_.push_back({i, most});
+        const std::uint32_t bound = std::min(shared_count(open_objects[i].left, draft.allowed), room());
+        if (bound >= min_gain_)
+            candidates_.push_back({i, bound});
     }
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.most != b.most ? a.most > b.most : a.member < b.member;
+        return a.bound != b.bound ? a.bound > b.bound : a.member < b.member;
     });
     std::optional<std::size_t> best;
     std::uint32_t most = draft.covered + min_gain_ - 1;
     for (const Candidate& candidate : candidates_) {
-        if (draft.covered + candidate.most <= most)
+        if (draft.covered + candidate.bound <= most)
             break;
         const std::uint32_t covered = covered_with(draft, open_objects[candidate.member]);
         if (covered > most) {
@@ -96,16 +96,16 @@ void PassCover::add(Draft& draft, const std::vector<Open>& open_objects, std::si
     draft.members.push_back(member);
     for (std::size_t i = 0; i < draft.allowed.size(); ++i) {
         draft.allowed[i] &= object.tolerated[i];
-        draft.wanted[i] |= object.left[i];
+        draft.needed[i] |= object.left[i];
         for_each_light(object.left[i], i, [&](std::size_t light) { ++draft.counts[light]; });
     }
 }
 
-// As many as there is room for; of equals, the first.
+// As many as there is room for; ties go to the first.
 LightSet PassCover::best_lights(const Draft& draft) const {
     std::vector<std::size_t> lights;
     for (std::size_t i = 0; i < draft.allowed.size(); ++i)
-        for_each_light(draft.allowed[i] & draft.wanted[i], i, [&](std::size_t light) { lights.push_back(light); });
+        for_each_light(draft.allowed[i] & draft.needed[i], i, [&](std::size_t light) { lights.push_back(light); });
     std::stable_sort(lights.begin(), lights.end(),
                      [&](std::size_t a, std::size_t b) { return draft.counts[a] > draft.counts[b]; });
     lights.resize(std::min(lights.size(), std::size_t(room())));
@@ -126,7 +126,7 @@ void PassCover::cover(std::vector<Open>& open_objects) {
         });
         Draft draft;
         draft.allowed.assign(most->left.size(), ~std::uint64_t(0));
-        draft.wanted.assign(most->left.size(), 0);
+        draft.needed.assign(most->left.size(), 0);
         draft.counts.assign(most->left.size() * 64, 0);
         std::vector<char> is_member(open_objects.size(), 0);
         for (std::optional<std::size_t> next = std::size_t(most - open_objects.begin()); next;
@@ -153,10 +153,10 @@ void PassCover::rebuild() {
     for (const auto& [object, lights] : objects_)
         open_objects.push_back(open(object));
     cover(open_objects);
-    share_when_rebuilt_ = objects_.empty() ? 1.0 : double(passes()) / double(passes_unoptimised());
+    ratio_when_rebuilt_ = objects_.empty() ? 1.0 : double(passes()) / double(passes_unoptimised());
 }
 
-// An object joins the elements that it fits in, those first that draw most of what it needs: that costs no pass.
+// An object joins elements whose lights it tolerates, those that draw most of what it needs first: that costs no pass.
 void PassCover::join_elements(Open& object) {
     for (;;) {
         PassElement* best = nullptr;
@@ -182,7 +182,7 @@ void PassCover::regroup(const std::map<std::uint32_t, PassLights>& changed) {
             std::erase_if(element.objects, [&](std::uint32_t object) { return changed.contains(object); });
         if (erased == 0)
             continue;
-        // Lights that only they needed go.
+        // Lights that no other object needs are removed.
         LightSet wanted(element.lights.size(), 0);
         for (const std::uint32_t object : element.objects)
             for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -197,7 +197,7 @@ void PassCover::regroup(const std::map<std::uint32_t, PassLights>& changed) {
             join_elements(open_objects.back());
         }
     cover(open_objects);
-    if (double(passes()) > max_decay * share_when_rebuilt_ * double(passes_unoptimised()))
+    if (double(passes()) > max_decay * ratio_when_rebuilt_ * double(passes_unoptimised()))
         rebuild();
 }
 

@@ -1,10 +1,10 @@
-// A grouping of render passes that draws objects also for lights that they do not need, where that is harmless.
+// A grouping of render passes that also draws objects with lights that they do not need, where that is harmless.
 //
-// The thesis merges pairs of elements, so its passes end up with fewer lights than they have room for. Here the pairs
-// of object and light that are needed are covered by full passes: from the object with most lights left, a pass takes
-// in the object that adds most pairs, again and again, while its lights, as many as there is room for, are chosen anew
-// from those that none of its objects minds. An object that adds fewer pairs than `min_gain` waits for another pass:
-// a larger one costs passes, a smaller one fill rate.
+// The thesis merges pairs of elements, so its passes end up with fewer lights than they have room for. Here the needed
+// pairs of object and light are covered by full passes, greedily: a pass starts with the object that has most lights
+// left and repeatedly adds the object that adds most pairs, while its lights, as many as there is room for, are chosen
+// again each time from those that all of its objects tolerate. An object that adds fewer pairs than `min_gain` is left
+// to another pass: a larger value costs passes, a smaller one fill rate.
 #pragma once
 
 #include "gi_module/many_light/pass_grouping.h"
@@ -21,22 +21,22 @@ public:
     void rebuild() override;
 
 private:
-    struct Open { // an object that still needs lights
+    struct Open { // an object with lights that are not drawn yet
         std::uint32_t object = 0;
         LightSet left;      // not yet drawn
-        LightSet tolerated; // may be drawn now: what is left, and what it never needed and does not mind
+        LightSet tolerated; // may be drawn now: those left, and those that it never needed but that are harmless
     };
-    // A pass in the making.
+    // A pass under construction.
     struct Draft {
         std::vector<std::size_t> members;  // of the open objects
-        LightSet allowed;                  // lights that no member minds
-        LightSet wanted;                   // by any member
-        std::vector<std::uint32_t> counts; // members that want it, by light
+        LightSet allowed;                  // lights that all members tolerate
+        LightSet needed;                   // by any member
+        std::vector<std::uint32_t> counts; // members that need it, by light
         std::uint32_t covered = 0;         // pairs, with the best lights
     };
     struct Candidate {
         std::size_t member = 0;
-        std::uint32_t most = 0; // pairs that it can add
+        std::uint32_t bound = 0; // of the pairs that it can add
     };
     void regroup(const std::map<std::uint32_t, PassLights>& changed) override;
     std::uint32_t room() const { return 2 * lights_per_pass_; }
@@ -51,7 +51,7 @@ private:
     LightSet best_lights(const Draft& draft) const;
 
     std::uint32_t min_gain_;
-    double share_when_rebuilt_ = 1.0; // of the passes that are left
+    double ratio_when_rebuilt_ = 1.0; // of passes to unoptimised passes
     mutable std::vector<std::uint32_t> histogram_;
     std::vector<Candidate> candidates_;
 };

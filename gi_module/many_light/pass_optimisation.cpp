@@ -49,7 +49,7 @@ void PassOptimiser::merge(std::size_t a, std::size_t b) {
     elements_.push_back(std::move(merged));
     best_.push_back({});
     const std::size_t fresh = elements_.size() - 1;
-    // Whoever counted on one of the two looks again, and all look at the new element.
+    // Elements whose best partner was one of the two search again, and all consider the new element.
     for (std::size_t i = 0; i < fresh; ++i)
         if (i == a || i == b || (best_[i].saved > 0 && (best_[i].partner == a || best_[i].partner == b)))
             find_best(i);

@@ -1,5 +1,5 @@
-// The thesis's grouping of render passes: elements that share lights are merged, those first that save most passes.
-// Thesis sec. 4.3.5, fig. 4-10. It shares only lights that all of an element's objects need.
+// The thesis's grouping of render passes: elements that share lights are merged, the pair that saves most passes first.
+// Thesis sec. 4.3.5, fig. 4-10. Elements only share lights that all of their objects need.
 #pragma once
 
 #include "gi_module/many_light/pass_grouping.h"
@@ -25,7 +25,7 @@ private:
     void merge_all();
     void remove_empty();
 
-    std::vector<Best> best_; // of each element: the partner (with any number) that saves most
+    std::vector<Best> best_; // by element: the partner that saves most passes, at a higher or lower index
 };
 
 } // namespace sunfleck::gi

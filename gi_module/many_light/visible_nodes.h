@@ -1,4 +1,4 @@
-// Which nodes of the visibility database a view may show, and with which lights they need shadow tests.
+// Which nodes of the visibility database a view may show, and which lights need shadow tests there.
 #pragma once
 
 #include "gi_module/many_light/pass_grouping.h"
@@ -7,8 +7,8 @@
 
 namespace sunfleck::gi {
 
-// Of the leaves and movers that the view may show: the samples in state "partial", and with `extras` those that are
-// harmless to test besides (all but the blocked ones), by node.
+// By leaf or mover that the view may show: the samples in state "partial", and with `extras` those that are harmless to
+// test in addition (all but the blocked ones).
 std::map<std::uint32_t, PassLights> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
                                                                    const mat4& view_projection, bool extras);
 
