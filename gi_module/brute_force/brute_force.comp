@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Every light sample, with its shadow map, at every pixel: thesis sec. 4.3, the equation of L(x) without A(x). This is
-// the baseline that each optimisation must equal in picture and beat in time, so it takes the fastest shape that we know:
-// several pixels an invocation share each light's loads, and a batch has one class of lights, so the loop has no branch.
+// Every light sample (VPL), with its shadow map, at every pixel: thesis sec. 4.3, the equation of L(x) without A(x).
+// This is the baseline that each optimisation must match in the picture and beat in time, so it is made as fast as we
+// know how: the pixels of an invocation share each light's loads, and a batch has one class of lights, so the loop does
+// not branch.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/brute_force/brute_force_shared.h"
@@ -27,7 +28,7 @@ layout(set = 0, binding = 3) uniform Lights { LightRow uniform_lights[lights_per
 layout(set = 0, binding = 4) readonly buffer StoredLights { LightRow stored_lights[]; };
 layout(set = 0, binding = 5) uniform samplerBuffer map_texels;
 layout(set = 0, binding = 6) readonly buffer MapWords { uint map_words[]; };
-layout(set = 0, binding = 7) buffer Accumulation { vec4 accumulation[]; }; // rgb W/m2; a: clamped away, luminance
+layout(set = 0, binding = 7) buffer Accumulation { vec4 accumulation[]; }; // rgb: W/m2; a: luminance clamped off
 layout(set = 0, binding = 8) writeonly uniform image2D output_image;
 layout(set = 0, binding = 9) buffer ClampedSums { vec4 clamped_sums[]; }; // a work group: flux W, irradiance, pixels, area
 layout(push_constant) uniform Constants { BruteForceConstants constants; };
@@ -49,7 +50,7 @@ float map_side() { return float(constants.map_resolution); }
 
 #include "gi_module/shadows/shadowed_light.glsl"
 
-// Area of the surface that a pixel shows, m2.
+// Area of the surface visible in a pixel, m2.
 float pixel_area(Pixel pixel, vec2 centre) {
     const vec3 ray = camera_ray(camera, centre);
     const float distance_along = dot(pixel.position - camera.position.xyz, camera.axis.xyz);
@@ -118,7 +119,7 @@ void main() {
     }
     if (count_clamped == 0 || constants.last_batch == 0u)
         return;
-    // One order of summation whatever the device: the first invocation adds the group's sums one by one.
+    // The same order of summation on every device: the first invocation adds up the sums of the work group.
     group_sums[gl_LocalInvocationIndex] = sums;
     barrier();
     if (gl_LocalInvocationIndex == 0) {

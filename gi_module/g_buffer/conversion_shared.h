@@ -4,7 +4,7 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-SHARED_CONSTANT uint conversion_side = 8u; // pixels of a work group
+SHARED_CONSTANT uint conversion_side = 8u; // side of a work group, in pixels
 
 struct DepthConversionConstants { // scene::DepthMapping
     vec2 slope;
@@ -14,13 +14,13 @@ struct DepthConversionConstants { // scene::DepthMapping
     uint width, height;
 };
 
-// How a normal is written.
-SHARED_CONSTANT uint normal_missing = 0u;  // geometric normals only: they are derived
+// Encodings of normals.
+SHARED_CONSTANT uint normal_missing = 0u;  // geometric normals only: derived from depth
 SHARED_CONSTANT uint normal_unsigned = 1u; // 0.5 * normal + 0.5
 SHARED_CONSTANT uint normal_signed = 2u;
 
 struct NormalConversionConstants {
-    float depth_step; // of near / distance: what the depth format cannot tell apart
+    float depth_step; // resolution of near / distance in the depth format
     uint width, height;
 };
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The depth of any perspective projection as near / distance along the camera's axis.
+// Converts the depth of any perspective projection to near / distance along the view axis.
 #include "gi_module/g_buffer/conversion_shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -15,7 +15,8 @@ void main() {
         return;
     const float depth = texelFetch(host_depth, pixel, 0).r;
     const vec2 ndc = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
-    // The background first: with forward Z the difference is exact where a sum with the offset would lose digits.
+    // Subtract the background first: with forward Z the difference is exact, while a sum with the offset would lose
+    // digits.
     const float rest = (depth - constants.background) + constants.offset + dot(constants.slope, ndc);
     imageStore(depth_image, pixel, vec4(depth == constants.background ? 0.0 : max(rest * constants.scale, 0.0)));
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Shading and geometric normals of the host, packed, on the camera's side. Geometric normals that the host does not
-// have follow from depth.
+// Packs the host's shading and geometric normals, flipped towards the camera. Geometric normals that the host does not
+// provide are derived from depth.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/g_buffer/conversion_shared.h"
@@ -17,8 +17,8 @@ layout(set = 0, binding = 3) uniform sampler2D geometric_normals;
 layout(set = 0, binding = 4) writeonly uniform uimage2D normals_image;
 layout(push_constant) uniform Constants { NormalConversionConstants constants; };
 
-// Radians by which a shading normal may be off its triangle's and still count as the same: normals of 8 bits a
-// component are exact to about 0.005.
+// Angle, radians, up to which a shading normal counts as equal to that of its triangle: normals with 8 bits per
+// component are accurate to about 0.005.
 const float same_normal = 0.01;
 
 vec3 decoded(vec3 value, uint encoding) { return encoding == normal_unsigned ? value * 2.0 - 1.0 : value; }
@@ -27,8 +27,9 @@ float depth_at(ivec2 pixel) {
     return texelFetch(depth_image, clamp(pixel, ivec2(0), ivec2(constants.width, constants.height) - 1), 0).r;
 }
 
-// What depth gains from the pixel to the next one along `across`. Depth is linear in the picture on a plane: of the
-// neighbours on either side, the pair counts whose line leads to this pixel, so that no difference spans an edge.
+// Change of depth from the pixel to the next one along `across`. On a plane, depth is linear in screen space: of the
+// two neighbours on either side, those are used whose line extrapolates better to this pixel, so that no difference
+// spans an edge.
 float depth_slope(ivec2 pixel, ivec2 across, float depth) {
     const float before = depth_at(pixel - across), after = depth_at(pixel + across);
     const float miss_before = abs(2.0 * before - depth_at(pixel - 2 * across) - depth);
@@ -40,8 +41,8 @@ float depth_slope(ivec2 pixel, ivec2 across, float depth) {
     return take_after ? after - depth : depth - before;
 }
 
-// The plane through this pixel's surface, from its neighbours: near * dot(plane, ray) is the depth at every pixel. Its
-// direction is that of the normal, its length one over the camera's distance from the plane.
+// The plane of this pixel's surface, from its neighbours: near * dot(plane, ray) is the depth at every pixel. Its
+// direction is the normal, its length the reciprocal of the camera's distance from the plane.
 vec3 plane_of(ivec2 pixel, float depth) {
     const vec3 ray = camera_ray(camera, vec2(pixel) + 0.5);
     const vec3 right = camera.right.xyz * (2.0 / camera.forward.w), down = camera.down.xyz * (2.0 / camera.right.w);
@@ -50,8 +51,8 @@ vec3 plane_of(ivec2 pixel, float depth) {
     return sum / (dot(ray, cross(right, down)) * camera.position.w);
 }
 
-// Light leaks where a plane is tilted by mistake: by the steps of the depth format, or at what is a pixel thin. So the
-// shading normal is taken where the two are the same but for that noise, and where they are far apart.
+// Light leaks where the plane is tilted by error: by quantised depth, or on surfaces that are one pixel wide. So the
+// shading normal is used if the two differ by no more than that noise, and if they are far apart.
 vec3 derived_normal(ivec2 pixel, float depth, vec3 to_camera, inout vec3 shading) {
     const vec3 plane = plane_of(pixel, depth);
     vec3 normal = normalize(plane);

@@ -1,5 +1,5 @@
-// Adds a technique's light to the picture. The including shader declares `picture`, an image that is read and written,
-// whose format GLSL must know.
+// Adds a technique's light to the picture. The including shader declares the image `picture`, which is read and
+// written, so that GLSL requires its format.
 #include "engine/scene/instance_shared.h"
 #include "gi_module/light_sum/light_sum_shared.h"
 

@@ -1,4 +1,4 @@
-// What light_sum.glsl and the CPU agree on.
+// Constants that light_sum.glsl shares with the CPU.
 #ifndef SUNFLECK_GI_LIGHT_SUM_LIGHT_SUM_SHARED_H
 #define SUNFLECK_GI_LIGHT_SUM_LIGHT_SUM_SHARED_H
 #include "engine/core/shader_language.h"
@@ -6,10 +6,10 @@ SHARED_BEGIN
 
 SHARED_CONSTANT uint light_sum_side = 8u; // of a work group, in pixels
 
-// How a pixel of the picture changes.
+// What is done with a pixel of the picture.
 SHARED_CONSTANT uint light_sum_clear = 0u;   // no light; alpha 1 where there is a surface
-SHARED_CONSTANT uint light_sum_add = 1u;     // the layer's light is added, on receivers of the wanted kinds
-SHARED_CONSTANT uint light_sum_replace = 2u; // where the layer has alpha, its receiver is the layer's alone
+SHARED_CONSTANT uint light_sum_add = 1u;     // the layer's light is added, on receivers of the given kinds
+SHARED_CONSTANT uint light_sum_replace = 2u; // where the layer's alpha is not 0, its light replaces the picture's
 
 // Kinds of receivers, as bits.
 SHARED_CONSTANT uint receiver_fixed = 1u;
@@ -21,7 +21,7 @@ struct LightSumConstants {
     uint width;
     uint height;
     uint mode;
-    uint receivers; // wanted kinds
+    uint receivers; // kinds
 };
 
 SHARED_END

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The pixels that the reconstruction marked for repair, by masks of cells, as groups; block after block of 8x8 cells.
+// Compacts the pixels that the reconstruction marked for repair, in masks of cells, into pixel groups; in blocks of 8x8
+// cells.
 #include "gi_module/low_resolution/low_resolution_shared.h"
 
 layout(local_size_x = 8) in;

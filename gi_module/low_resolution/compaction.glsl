@@ -1,10 +1,11 @@
-// Compaction: marked entries as groups of 64, neighbours together, in three steps: count by block, prefix sum, list. No
-// atomics, so the order never varies.
+// Stream compaction of marked entries into pixel groups of 64, neighbours together, in three steps: count per block,
+// prefix sum, list. There are no atomics, so the order is deterministic.
 //
-// The including shader declares before: local_size_x 8; `action` (compaction_...), `units_per_block` as constants;
-// buffers block_entries[] (marked entries of a block; after the prefix sum, those of all blocks before it), commands[]
-// (the indirect commands to write) and listed[]; block_count(); group_capacity(); marked_in(block, i, unit), the mask of
-// what is marked in a block's unit number i, and which unit of all that is; listed_value(unit, bit), what to list.
+// The including shader first declares: local_size_x 8; the constants `action` (compaction_...) and `units_per_block`;
+// the buffers block_entries[] (marked entries in a block; after the prefix sum, in all blocks before it), commands[]
+// (the indirect commands to write) and listed[]; and the functions block_count(); group_capacity(); marked_in(block, i,
+// unit), the mask of marked entries in unit i of a block, and the index of that unit; listed_value(unit, bit), what to
+// list.
 const uint compaction_count = 0u, compaction_offsets = 1u, compaction_list = 2u;
 
 shared uint chunk_entries[8];
@@ -23,10 +24,10 @@ void sum_blocks() {
     const uint lane = gl_LocalInvocationID.x;
     const uint length = (block_count() + 7u) / 8u;
     const uint begin = min(lane * length, block_count()), end = min(begin + length, block_count());
-    uint wanted = 0u;
+    uint marked = 0u;
     for (uint block = begin; block < end; ++block)
-        wanted += block_entries[block];
-    chunk_entries[lane] = wanted;
+        marked += block_entries[block];
+    chunk_entries[lane] = marked;
     barrier();
     uint first = 0u, total_entries = 0u;
     for (uint i = 0; i < 8u; ++i) {

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists a stage's pixels where no contributor does it beside other work, and clears their sums. Low-resolution pixels
-// are subsampled from the full G-buffer: each stands for the pixel in the middle of its block.
+// Lists a stage's pixels and clears their sums, unless a contributor already does so in a pass of its own.
+// Low-resolution pixels are subsampled from the full G-buffer: each takes the pixel in the middle of its block.
 #include "gi_module/low_resolution/low_resolution_shared.h"
 
 layout(local_size_x = 64) in;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// The full picture from the low-resolution one (thesis sec. 4.3.3). An invocation handles a cell: the pixels between
-// four low-resolution pixels. A pixel takes the blend of those of the four that lie on its own plane; where none does,
-// or those that do differ too much, it is marked to be lit again.
+// Upsamples the low-resolution picture (thesis sec. 4.3.3). An invocation processes a cell: the pixels between four
+// low-resolution pixels. A pixel blends those of the four that lie on its own plane; if none does, or if they differ
+// too much, it is marked to be lit again at full resolution.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/low_resolution/low_resolution_shared.h"
@@ -11,11 +11,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int scale = 4;
-layout(constant_id = 1) const uint to_buffer = 0; // 1: the picture goes to a buffer, which is copied
+layout(constant_id = 1) const uint to_buffer = 0; // 1: the picture is written to a buffer, which is copied
 
-// Where the valid neighbours' bilinear weights sum to less, the pixel lies beyond them, at a crease or a silhouette:
-// what they say would be extrapolated.
-const float least_share = 0.3;
+// If the valid neighbours' bilinear weights sum up to less, the pixel lies beyond them, at a crease or a silhouette,
+// and blending would extrapolate.
+const float min_weight_sum = 0.3;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -26,14 +26,15 @@ layout(set = 0, binding = 5) writeonly buffer CellMasks { uvec2 cell_masks[]; };
 layout(set = 0, binding = 6) writeonly buffer Picture { uint picture_halves[]; };
 layout(push_constant) uniform Constants { LowResolutionConstants constants; };
 
-// On a plane, depth (near / distance along the view) is linear in the picture: a neighbour's plane is three numbers.
+// On a plane, depth (near / distance along the view axis) is linear in screen space: three numbers describe the plane
+// of a neighbour.
 struct Neighbour {
     vec3 irradiance;
     vec2 normal; // octahedral
     uint packed_normal;
-    bool flat_shaded; // shaded by the normal of its plane
-    vec3 depth_plane; // depth at the cell's first pixel, and what a pixel to the right and one down add
-    float height;     // of the camera over the plane, m
+    bool flat_shaded; // its shading normal is that of its plane
+    vec3 depth_plane; // depth at the cell's first pixel, and its change per pixel to the right and down
+    float height;     // of the camera above the plane, m
     bool exists;
 };
 
@@ -50,11 +51,11 @@ Neighbour neighbour_at(ivec2 low, vec2 first) {
     result.packed_normal = normals.x;
     result.normal = unpackSnorm2x16(normals.x);
     const vec3 geometric_normal = unpack_normal(normals.y);
-    const vec3 bend = unpack_normal(normals.x) - geometric_normal;
-    result.flat_shaded = dot(bend, bend) < flat_shaded_limit;
+    const vec3 difference = unpack_normal(normals.x) - geometric_normal;
+    result.flat_shaded = dot(difference, difference) < flat_shaded_limit;
     const vec3 to_point = camera_ray(camera, vec2(pixel) + 0.5) * (camera.position.w / max(depth, 1e-7));
     result.height = dot(geometric_normal, to_point);
-    // near * dot(n, ray) / dot(n, point - camera), in the picture's coordinates.
+    // near * dot(n, ray) / dot(n, point - camera), in screen coordinates.
     const float over = camera.position.w / (abs(result.height) > 1e-6 ? result.height : 1e-6);
     result.depth_plane = vec3(dot(geometric_normal, camera_ray(camera, first)),
                               dot(geometric_normal, camera.right.xyz) * 2.0 / camera.forward.w,
@@ -75,7 +76,7 @@ vec3 blend(Neighbour neighbours[4], vec4 shares) {
            neighbours[2].irradiance * shares[2] + neighbours[3].irradiance * shares[3];
 }
 
-// Whether the four lie on one plane, within `distance` (times depth) all over the cell, and are shaded as one.
+// Whether the four lie on one plane, within `distance` (times depth) all over the cell, and have the same normal.
 bool on_one_plane(Neighbour neighbours[4], float distance) {
     bool same = neighbours[0].flat_shaded && neighbours[0].exists;
     [[unroll]] for (int i = 1; i < 4; ++i) {
@@ -88,10 +89,10 @@ bool on_one_plane(Neighbour neighbours[4], float distance) {
     return same;
 }
 
-// Half-precision bits of what is not negative, rounded down.
+// Half-precision bits of a non-negative value, rounded down.
 uint half_bits(float value) {
     const uint bits = floatBitsToUint(min(value, 65504.0));
-    const uint small = floatBitsToUint(value + 0.5) - floatBitsToUint(0.5); // below 2^-14, halves have one step
+    const uint small = floatBitsToUint(value + 0.5) - floatBitsToUint(0.5); // below 2^-14, halves have a fixed step
     return value < 6.1035156e-5 ? small : (bits - 0x38000000u) >> 13;
 }
 
@@ -117,7 +118,7 @@ void main() {
     const ivec2 first = cell * scale - scale / 2;
     [[unroll]] for (int i = 0; i < 4; ++i)
         neighbours[i] = neighbour_at(cell - 1 + ivec2(i & 1, i >> 1), vec2(first) + 0.5);
-    // Tolerance for surfaces that are not quite planes: a part of a low-resolution pixel's size, in units of distance.
+    // Tolerance for surfaces that are not quite planar: a fraction of a low-resolution pixel's size, as a distance.
     const float pixel_size = length(camera.right.xyz) * 2.0 / camera.forward.w;
     const float tolerance = camera.position.w * (0.15 * float(scale) * pixel_size + 2e-4);
     vec4 bright, heights;
@@ -131,9 +132,10 @@ void main() {
     const float darkest = min(min(bright.x, bright.y), min(bright.z, bright.w));
     const bool all_differ = brightest - darkest > constants.contrast * brightest;
 
-    // Most pixels lie on a flat surface with all four neighbours: their planes are one within half the tolerance, and
-    // the pixel is on it within the other half; its normal need not be read. The rest waits for the loop after this one:
-    // a CPU device runs both sides of a branch, but a loop only while there is something to do.
+    // The common case: the pixel and all four neighbours lie on a flat surface. The neighbours' planes are the same
+    // within half the tolerance, and the pixel is on it within the other half; its normal need not be read. The other
+    // pixels are left to the loop after this one: a CPU device runs both sides of a branch, but a loop only while it
+    // has work.
     const bool flat_cell = on_one_plane(neighbours, 0.5 * tolerance);
     const float height = max(max(heights.x, heights.y), max(heights.z, heights.w));
     const vec3 plane = neighbours[0].depth_plane;
@@ -141,7 +143,7 @@ void main() {
     const vec2 picture = vec2(constants.width, constants.height);
     for (int y = 0; y < scale; y += 2) {
         [[unroll]] for (int x = 0; x < scale; x += 2) {
-            // Four pixels at once: below, below right, right, and the pixel itself.
+            // Four pixels at once, in the order of textureGather: below, below right, right, and the pixel itself.
             const vec4 depths = textureGather(depth_image, (vec2(first + ivec2(x, y)) + 1.0) / picture);
             [[unroll]] for (int i = 0; i < 4; ++i) {
                 const ivec2 inside = ivec2(x + (i == 1 || i == 2 ? 1 : 0), y + (i < 2 ? 1 : 0));
@@ -172,10 +174,10 @@ void main() {
         const float depth = texelFetch(depth_image, pixel, 0).r;
         const uint packed_normal = texelFetch(normals_image, pixel, 0).r;
         const vec4 weights = weights_at(vec2(inside));
-        // Octahedral places stand for angles: 1 is 55 to 90 degrees. Across a fold they are too far apart, and the
-        // pixel is lit again.
+        // Distances in the octahedral encoding approximate angles: 1 is 55 to 90 degrees. Across a fold they are too
+        // large, and the pixel is lit again.
         const vec2 normal = unpackSnorm2x16(packed_normal);
-        vec4 off_plane, apart; // distance from the neighbours' planes, times depth; of the normals, squared
+        vec4 off_plane, apart; // distance from the neighbours' planes, times depth; squared distance of the normals
         bvec4 same_normal;
         [[unroll]] for (int i = 0; i < 4; ++i) {
             off_plane[i] = heights[i] * abs(dot(neighbours[i].depth_plane, vec3(1.0, vec2(inside))) - depth);
@@ -192,8 +194,8 @@ void main() {
             const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
             const float highest = max(max(high.x, high.y), max(high.z, high.w));
             const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-            again = sum < least_share || highest - lowest > constants.contrast * highest;
-            shares = sum == 0.0 ? weights : shares / sum; // in case it cannot be lit again after all
+            again = sum < min_weight_sum || highest - lowest > constants.contrast * highest;
+            shares = sum == 0.0 ? weights : shares / sum; // in case there is no room to light it again
         }
         const bool surface = depth > 0.0;
         if (surface && again)

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Writes a stage's sums to the picture where no contributor does it beside other work.
+// Writes a stage's sums to the picture, unless a contributor already does so in a pass of its own.
 #include "gi_module/low_resolution/low_resolution_shared.h"
 
 layout(local_size_x = 64) in;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Adds and subtracts samples in baked light, with the shadows of static geometry where they are partly occluded: a work
-// group for each job, several texels an invocation, so that they share each sample's loads. Contributions are rounded one
-// by one, as in light_maps.comp.
+// Adds and subtracts samples (VPLs) in baked light, shadow-tested against static geometry where they are partially
+// occluded. One work group per job and several texels per invocation, which share each sample's loads. Contributions
+// are rounded one by one, as in light_maps.comp.
 #include "engine/core/octahedral.h"
 #include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"

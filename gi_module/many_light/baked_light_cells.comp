@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Baked light as pixels read it, and which cells between four texels are rough.
+// Converts baked light to the format that pixels read, and marks rough cells: those between four texels that cannot be
+// interpolated.
 #include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 
@@ -17,7 +18,7 @@ vec3 light_at(LightMapJob job, ivec2 texel) {
     return vec3(sums[job.first_texel + uint(texel.y) * job.columns + uint(texel.x)].xyz);
 }
 
-// By how much a texel is off the line between its neighbours, compared with the brightest of them.
+// Whether a texel is too far off the line between its neighbours, relative to the brightest of the three.
 bool bends(vec3 before, vec3 here, vec3 after) {
     const vec3 most = max(max(before, here), after);
     return any(greaterThan(abs(before - 2.0 * here + after), constants.roughness_limit * most + 2.0));
@@ -27,7 +28,7 @@ bool differ(vec3 a, vec3 b) {
     return any(greaterThan(abs(a - b), constants.roughness_limit * max(a, b) + 2.0));
 }
 
-// Whether a texel of the map, or of the chart's surface, is there.
+// Whether the texel is in the map and, in a chart, on the surface.
 bool exists(LightMapJob job, ivec2 texel) {
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(job.columns, job.rows))))
         return false;
@@ -45,7 +46,7 @@ bool is_rough(LightMapJob job, ivec2 cell) {
             if (before && after) {
                 rough = rough || bends(light_at(job, texel - step), here, light_at(job, texel + step));
             } else if (job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u) {
-                // A curved surface's rim, or the patch's only cell along this axis.
+                // The rim of a curved surface, or the only cell of a patch along this axis.
                 rough = rough || differ(light_at(job, before ? texel - step : texel + step), here);
             }
         }
@@ -57,7 +58,7 @@ float height_at(LightMapJob job, ivec2 texel) {
     return dot(job.height, points[job.first_point + uint(texel.y) * job.columns + uint(texel.x)].position);
 }
 
-// The mean height of a curved surface's cell; curved_rough if it is not all there, or has a step.
+// The mean height of a curved surface's cell; curved_rough if a corner is missing or there is a step.
 float cell_height(LightMapJob job, ivec2 cell) {
     float low = 1e30, high = -1e30, sum = 0.0;
     bool whole = true;

@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// The list of a group whose pixels took baked light: samples of one batch that meet a mover at any of their nodes, and
-// that a mover may shadow in the sphere around the pixels. First those that static geometry may block, too; then, from
-// the end, the rest. An invocation a group, as in classify.comp.
+// Light culling for a pixel group whose pixels use baked light: samples of one batch whose light meets a mover on its
+// way to any of the group's nodes, and that a mover may shadow in the sphere around the pixels. Samples that static
+// geometry may block, too, come first; the rest is filled in from the end. One invocation per group, as in
+// classify.comp.
 #include "engine/scene/camera_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/transport/light_row_shared.h"
@@ -11,30 +12,30 @@
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 layout(local_size_x = 8) in;
-layout(constant_id = 0) const uint indirect = 0; // 1: the number of groups is in the commands
+layout(constant_id = 0) const uint indirect = 0; // 1: the number of pixel groups is in the commands
 
 layout(set = 0, binding = 0) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 1) readonly buffer NodeOfEntry { uint entry_nodes[]; };
 layout(set = 0, binding = 2) readonly buffer Rows { uint rows[]; };
 layout(set = 0, binding = 3) buffer Slots { uint entry_local_nodes[]; };
-layout(set = 0, binding = 4) writeonly buffer Entries { uint entries[]; };
+layout(set = 0, binding = 4) writeonly buffer Entries { uint light_list[]; };
 layout(set = 0, binding = 5) writeonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 6) readonly buffer Commands { uint commands[]; };
 layout(set = 0, binding = 7) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 8) uniform sampler2D depth_image;
 layout(set = 0, binding = 9) uniform Lights { LightRow light_rows[lights_per_batch]; };
-layout(set = 0, binding = 10) readonly buffer Movers { vec4 movers[]; }; // spheres around what casts shadows
+layout(set = 0, binding = 10) readonly buffer Movers { vec4 movers[]; }; // bounding spheres of those that cast shadows
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
-// A pixel's nodes beyond these are not looked up: every sample is on the list. Neither is wrong, only slow.
+// If the pixels are on more nodes, every sample is put on the list: conservative, only slower.
 const uint max_nodes = 16u;
 const uint max_words = lights_per_batch / 32u + 1u;
 
-// Whether a mover, where it is or where the sample's map may still show it, can shadow anything of the group.
-bool may_be_shadowed(LightRow light, vec3 middle, float radius) {
+// Whether a mover, where it is or where the sample's stale map may still show it, may shadow any of the group's pixels.
+bool may_be_shadowed(LightRow light, vec3 centre, float radius) {
     bool found = constants.mover_count > max_culled_movers;
     for (uint i = 0; i < constants.mover_count && !found; ++i)
-        found = shadow_cone_distance(light.position_bound.xyz, middle, radius, movers[i].xyz) <= movers[i].w + light.bitangent.w;
+        found = shadow_cone_distance(light.position_bound.xyz, centre, radius, movers[i].xyz) <= movers[i].w + light.bitangent.w;
     return found;
 }
 
@@ -86,10 +87,10 @@ void main() {
         low = min(low, position);
         high = max(high, position);
     }
-    const vec3 middle = 0.5 * (low + high);
+    const vec3 centre = 0.5 * (low + high);
     const float radius = 0.5 * length(high - low) * 1.0001 + 1e-4;
     const uint first = group * constants.list_stride;
-    uint tested = 0u, free = 0u;
+    uint tested = 0u, untested = 0u;
     for (uint i = 0; i < (any_meets ? max_words : 0u); ++i) {
         uint left = meets[i];
         while (left != 0u) {
@@ -99,13 +100,13 @@ void main() {
             if (sample_index < constants.batch_first || sample_index >= end)
                 continue;
             const uint in_batch = sample_index - constants.batch_first;
-            if (!may_be_shadowed(light_rows[in_batch], middle, radius))
+            if (!may_be_shadowed(light_rows[in_batch], centre, radius))
                 continue;
             if ((blocked[i] >> bit & 1u) != 0u)
-                entries[first + tested++] = in_batch;
+                light_list[first + tested++] = in_batch;
             else
-                entries[first + constants.list_stride - 1u - free++] = in_batch;
+                light_list[first + constants.list_stride - 1u - untested++] = in_batch;
         }
     }
-    counts[group] = LightListCounts(tested, free);
+    counts[group] = LightListCounts(tested, untested);
 }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Fills groups: which pixel each entry is, which node it lies on, and what its light map holds there. Low-resolution
-// pixels are subsampled from the full G-buffer (thesis sec. 4.3.3): each stands for the pixel in the middle of its block.
+// Fills pixel groups: the pixel of each entry, the node that it lies on, and the light of its light map. Low-resolution
+// pixels are subsampled from the full G-buffer (thesis sec. 4.3.3): each takes the pixel in the middle of its block.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
@@ -10,7 +10,7 @@
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint from_list = 0; // 0: tiles of the low-resolution picture, 1: the pixels are given
+layout(constant_id = 0) const uint from_list = 0; // 0: tiles of the low-resolution picture, 1: listed pixels
 layout(constant_id = 1) const uint light_maps = 1;
 layout(constant_id = 2) const uint baked = 0;
 
@@ -18,7 +18,8 @@ layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform usampler2D surface_image;
-// Tables as texels, which a CPU device reads faster than storage buffers; of uints, since floats may lose their bits.
+// Tables as texel buffers, which a CPU device reads faster than storage buffers; as uints, since reading floats may
+// change bits that are no float.
 layout(set = 0, binding = 4) uniform usamplerBuffer instances; // SurfaceInstances
 layout(set = 0, binding = 5) uniform usamplerBuffer charts;    // SurfaceCharts
 layout(set = 0, binding = 6) uniform usamplerBuffer cells;
@@ -65,7 +66,7 @@ uint find_node(SurfaceInstance instance, vec3 position, vec3 geometric_normal) {
     return texelFetch(cells, int(chart_cell(chart, position))).r;
 }
 
-// Where a point lies in a patch's grid of texels.
+// Position in a patch's grid of texels.
 struct TexelPlace {
     uint first; // of the four around it
     vec2 weight;
@@ -79,7 +80,7 @@ TexelPlace texel_place(NodeRow row, vec3 position) {
     return TexelPlace(row.first_texel + corner.y * row.columns + corner.x, texel - vec2(corner));
 }
 
-// Bilinear, within the patch: patches share the values on their borders where they share their samples.
+// Bilinear within the patch; neighbouring patches have equal values on their border if the same samples light them.
 vec3 light_map(NodeRow row, TexelPlace place) {
     const uint first = place.first;
     const vec3 low = mix(vec3(light_map_texels[first].xyz), vec3(light_map_texels[first + 1u].xyz), place.weight.x);
@@ -88,7 +89,7 @@ vec3 light_map(NodeRow row, TexelPlace place) {
     return mix(low, high, place.weight.y) / constants.fixed_point;
 }
 
-// a: 0 where it may be used.
+// a: 0 if it may be used.
 vec4 baked_light(NodeRow row, TexelPlace place) {
     const int first = int(place.first), below = first + int(row.columns);
     const vec4 corner = texelFetch(baked_texels, first);
@@ -97,7 +98,8 @@ vec4 baked_light(NodeRow row, TexelPlace place) {
     return vec4(mix(low, high, place.weight.y), corner.a);
 }
 
-// The same on a curved surface, in the chart that its normal looks to. Rough, too, what is not on the chart's surface.
+// The same on a curved surface, from the chart that its normal selects. Points that are not on the chart's surface are
+// rough, too.
 vec4 curved_light(uint first_chart, vec3 position, vec3 geometric_normal) {
     const uint direction = curved_direction(geometric_normal);
     const int chart = int(first_chart + direction) * 2;
@@ -142,19 +144,20 @@ void main() {
         const vec3 geometric_normal = unpack_normal(normals.g);
         const SurfaceInstance instance = instance_at(surface_row(surface));
         node = find_node(instance, position, geometric_normal);
-        bool curved = false; // or shaded so
+        bool curved = false; // or smooth-shaded
         if (light_maps != 0 && node != no_node) {
             const NodeRow row = node_row_at(node);
             if (row.first_texel != no_light_map) {
                 const TexelPlace place = texel_place(row, position);
-                const vec3 bend = unpack_normal(normals.r) - geometric_normal;
+                const vec3 difference = unpack_normal(normals.r) - geometric_normal;
                 const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
-                const bool bent = dot(bend, bend) >= flat_shaded_limit; // texels know the patch's normal alone
-                bool unshadowed = !bent && light.a != 0.0;
-                node |= bent ? node_normal_differs : unshadowed ? 0u : node_baked;
-                sum = bent ? vec3(0.0) : light.rgb;
-                curved = bent && baked != 0 && instance.first_curved_chart != no_node;
-                // A loop of one turn at most: unlike a branch, a CPU device leaves it out where no pixel needs it.
+                // Texels are lit with the patch's normal.
+                const bool differs = dot(difference, difference) >= flat_shaded_limit;
+                bool unshadowed = !differs && light.a != 0.0;
+                node |= differs ? node_normal_differs : unshadowed ? 0u : node_baked;
+                sum = differs ? vec3(0.0) : light.rgb;
+                curved = differs && baked != 0 && instance.first_curved_chart != no_node;
+                // A loop of at most one iteration: unlike a branch, a CPU device skips it if no pixel needs it.
                 while (unshadowed) {
                     sum = light_map(row, place);
                     unshadowed = false;

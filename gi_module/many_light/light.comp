@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-// Lights the pixels of a group by its lists: samples that need a shadow test, then those that do not. As in the
-// baseline, an invocation lights several pixels on a CPU, so that they share each sample's loads.
+// Lights the pixels of a pixel group from its light lists: samples (VPLs) that need a shadow test, then those that do
+// not. As in brute_force.comp, an invocation on a CPU lights several pixels, which share each sample's loads.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/many_light/many_light_shared.h"
@@ -28,7 +28,7 @@ layout(set = 0, binding = 3) uniform Lights { LightRow light_rows[lights_per_bat
 layout(set = 0, binding = 4) uniform samplerBuffer map_texels;
 layout(set = 0, binding = 5) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 6) readonly buffer Slots { uint entry_local_nodes[]; };
-layout(set = 0, binding = 7) readonly buffer Entries { uint entries[]; };
+layout(set = 0, binding = 7) readonly buffer Entries { uint light_list[]; };
 layout(set = 0, binding = 8) readonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 10) writeonly uniform image2D output_image;
@@ -37,19 +37,19 @@ layout(set = 0, binding = 12) readonly buffer RoughEntries { uint rough_entries[
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 float map_side() { return float(constants.map_resolution); }
-bool ask_static_maps = false; // a constant wherever a map is read
+bool use_static_maps = false; // a constant wherever a map is read, so that it is folded
 float map_value(uint slot, ivec2 texel) {
     const int side = int(constants.map_resolution);
     const int place = (int(slot) * side + texel.y) * side + texel.x;
-    return ask_static_maps ? texelFetch(static_map_texels, place).r : texelFetch(map_texels, place).r;
+    return use_static_maps ? texelFetch(static_map_texels, place).r : texelFetch(map_texels, place).r;
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 
-// Share of a sample's light that movers alone keep from a pixel.
-float taken_by_movers(LightRow light, Pixel pixel, float visibility) {
-    ask_static_maps = true;
+// Fraction of a sample's light that movers block from a pixel, in addition to static geometry.
+float mover_occlusion(LightRow light, Pixel pixel, float visibility) {
+    use_static_maps = true;
     const float before = map_visibility(light, pixel);
-    ask_static_maps = false;
+    use_static_maps = false;
     return max(before - visibility, 0.0);
 }
 
@@ -57,10 +57,10 @@ void main() {
     const uint group = gl_WorkGroupID.x;
     const LightListCounts count = counts[group];
     if (to_image == 0 && count.tested + count.untested == 0u)
-        return; // what the sums hold is all
+        return; // nothing to add
     Pixel surface[pixels_per_invocation];
     vec4 sum[pixels_per_invocation];
-    uint slot[pixels_per_invocation], entry_of[pixels_per_invocation];
+    uint local_node[pixels_per_invocation], entry_of[pixels_per_invocation];
     ivec2 place[pixels_per_invocation];
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
         const uint i = group * pixel_group_size + k * lanes + gl_LocalInvocationID.x;
@@ -76,43 +76,43 @@ void main() {
         surface[k].position = camera_position_at(camera, vec2(inside) + 0.5, max(depth, 1e-7));
         surface[k].normal = unpack_normal(normals.x);
         surface[k].geometric_normal = unpack_normal(normals.y);
-        slot[k] = entry_local_nodes[i] & (entry_on_mover - 1u);
+        local_node[k] = entry_local_nodes[i] & (entry_on_mover - 1u);
         surface[k].on_mover = (entry_local_nodes[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
         if (phase == phase_baked && (entry_local_nodes[i] & entry_is_baked) == 0u)
-            surface[k].normal = vec3(0.0); // no sample lights it
+            surface[k].normal = vec3(0.0); // so that no sample lights it
         sum[k] = sums[entry];
     }
     const uint first = group * constants.list_stride;
     for (uint i = 0; i < count.tested; ++i) {
-        const uint entry = entries[first + i];
-        const LightRow light = light_rows[entry & list_sample_mask];
+        const uint element = light_list[first + i];
+        const LightRow light = light_rows[element & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
             const LightFactor factor = light_factor(light, surface[k], true);
             if (phase == phase_baked) {
-                sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * taken_by_movers(light, surface[k], factor.visibility));
+                sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * mover_occlusion(light, surface[k], factor.visibility));
             } else {
-                const float value = float((entry >> (slot[k] + list_values_shift)) & 1u);
-                const bool asks = ((entry >> (slot[k] + list_tests_shift)) & 1u) != 0u;
-                sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (asks ? factor.visibility - value : value));
+                const float value = float((element >> (local_node[k] + list_values_shift)) & 1u);
+                const bool tests = ((element >> (local_node[k] + list_tests_shift)) & 1u) != 0u;
+                sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (tests ? factor.visibility - value : value));
             }
         }
     }
     const uint last = first + constants.list_stride - 1u;
     for (uint i = 0; i < count.untested; ++i) {
-        const uint entry = entries[last - i];
-        const LightRow light = light_rows[entry & list_sample_mask];
+        const uint element = light_list[last - i];
+        const LightRow light = light_rows[element & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-            if (phase == phase_baked) { // no static geometry is in the way
+            if (phase == phase_baked) { // static geometry does not block it
                 const LightFactor factor = light_factor(light, surface[k], true);
                 sum[k].rgb -= light.intensity_slot.rgb * (factor.unshadowed * (1.0 - factor.visibility));
             } else {
-                const float wanted = float((entry >> (slot[k] + list_values_shift)) & 1u);
-                sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * wanted);
+                const float value = float((element >> (local_node[k] + list_values_shift)) & 1u);
+                sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * value);
             }
         }
     }
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        // What the light map interpolates may exceed what is subtracted, by a little: never below darkness.
+        // Slightly more may be subtracted than the interpolated light map holds: never below zero.
         if (to_image != 0) {
             if (place[k].x >= 0)
                 imageStore(output_image, place[k], sum[k].a > 0.0 ? vec4(max(sum[k].rgb, vec3(0.0)), 1.0) : vec4(0.0));

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Adds and subtracts unshadowed samples in light maps, a work group for each job. Each contribution is rounded to a
-// fixed point by itself, so what was added can be taken away to the last bit.
+// Adds and subtracts unshadowed samples (VPLs) in light maps, one work group per job. Each contribution is rounded to
+// fixed point on its own, so that it can be subtracted again exactly.
 #include "gi_module/many_light/light_maps_shared.h"
 #include "gi_module/transport/light_row_shared.h"
 

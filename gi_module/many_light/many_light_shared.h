@@ -1,8 +1,11 @@
-// What the kernels of the many-light system and the CPU agree on.
+// Constants and structs that the kernels of the many-light system share with the CPU.
 //
-// Pixels are lit in groups of 64: tiles of 8x8 pixels of the low-resolution picture, or 64 pixels of one region that
-// are lit again at full resolution. A group's pixels lie on few nodes (surface patches, movers); the visibility rows of
-// those nodes are merged into two lists of samples: those that somewhere need a shadow test, and those that do not.
+// Pixels are lit in pixel groups of 64: tiles of 8x8 pixels of the low-resolution picture, or 64 pixels of one region
+// that are lit again at full resolution (repaired). The pixels of a group lie on few nodes (surface patches, movers),
+// the group's local nodes; the visibility rows of these are merged into two light lists: samples (VPLs) that need a
+// shadow test at some of the pixels, and samples that need none.
+//
+// An entry is a place for a pixel in a group: entry / 64 is the group.
 #ifndef SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #define SUNFLECK_GI_MANY_LIGHT_MANY_LIGHT_SHARED_H
 #include "engine/core/shader_language.h"
@@ -11,44 +14,46 @@
 #include "gi_module/transport/light_row_shared.h"
 SHARED_BEGIN
 
-// Nodes of a group have slots 0 to 9. Slot 10 is for pixels of any further node, or of none: every sample is tested.
+// Local nodes 0 to 9 of a pixel group are nodes of its own. Number 10 collects pixels on further nodes or on none:
+// there every sample is tested.
 SHARED_CONSTANT uint local_node_count = 11u;
 SHARED_CONSTANT uint other_nodes = 10u;
-SHARED_CONSTANT uint entry_on_mover = 256u;    // beside the slot: the pixel shows a mover
-SHARED_CONSTANT uint entry_is_baked = 512u;    // beside the slot, in lists for baked light: they are for this pixel
-SHARED_CONSTANT uint node_baked = 0x80000000u; // beside an entry's node: its light comes from baked light
-SHARED_CONSTANT uint node_normal_differs = 0x40000000u;  // shaded by another normal than its light map knows, which is not used
+SHARED_CONSTANT uint entry_on_mover = 256u;    // flag of an entry's local node: the pixel shows a mover
+SHARED_CONSTANT uint entry_is_baked = 512u;    // the same, in passes for baked light: the list applies to this pixel
+SHARED_CONSTANT uint node_baked = 0x80000000u; // flag of an entry's node: the pixel uses baked light
+SHARED_CONSTANT uint node_normal_differs = 0x40000000u; // the shading normal is not that of its light map: unusable
 SHARED_CONSTANT uint node_mask = 0x3fffffffu;
 
-// A list entry: sample (of the batch) in bits 0 to 8; then two bits for each slot, so that what lights a pixel does not
-// depend on its company. From bit 20: whether the slot's pixels ask the shadow map. From bit 9: for those that ask,
-// whether the slot's light map holds the sample's unshadowed light, so that only what is blocked is subtracted; for the
-// others, whether the sample's light is still to be added.
+// An element of a light list: index of the sample in the batch in bits 0 to 8, then two bits per local node, so that
+// the light of a pixel does not depend on the other pixels of its group. From bit 20 (tests): whether the local node's
+// pixels are shadow-tested. From bit 9 (values): if so, whether the node's light map already contains the sample's
+// unshadowed light, so that only the blocked part is subtracted; if not, whether the sample's light is still to be
+// added.
 SHARED_CONSTANT uint list_sample_mask = 0x1ffu;
 SHARED_CONSTANT uint list_values_shift = 9u;
 SHARED_CONSTANT uint list_tests_shift = 20u;
 
-// By node: where its light map is.
+// By node: its light map.
 struct NodeRow {
-    vec4 place; // planar: lowest u, v and extents in its chart
+    vec4 place; // planar nodes: lowest u, v and extents in the chart
     uint chart;
-    uint first_texel; // of its light map; no_light_map if it has none
-    uint columns;     // of texels; the first and last lie on the patch's border
+    uint first_texel; // no_light_map if it has none
+    uint columns;     // of texels; the first and the last lie on the patch's border
     uint rows;
 };
 SHARED_CONSTANT uint no_light_map = 0xffffffffu;
 
-// A group's lists for one batch.
+// Lengths of a pixel group's light lists for one batch.
 struct LightListCounts {
     uint tested;
     uint untested;
 };
 
-// Which pixels of a stage's groups a pass is for. With baked light, the rough ones are gathered into groups of their
-// own and lit first; then corrections follow for those that took baked light.
-SHARED_CONSTANT uint phase_plain = 0u; // every pixel of the stage's groups
-SHARED_CONSTANT uint phase_rough = 1u; // a list of entries without baked light
-SHARED_CONSTANT uint phase_baked = 2u; // pixels with baked light, in the stage's groups
+// Which pixels of a stage's pixel groups a pass processes. With baked light, rough pixels are gathered into groups of
+// their own and lit first; then follow corrections for the pixels that use baked light.
+SHARED_CONSTANT uint phase_plain = 0u; // all pixels of the stage's groups
+SHARED_CONSTANT uint phase_rough = 1u; // the list of entries without baked light
+SHARED_CONSTANT uint phase_baked = 2u; // pixels with baked light in the stage's groups
 
 struct ManyLightConstants {
     uint width; // to cell_columns: as in LowResolutionConstants
@@ -60,30 +65,30 @@ struct ManyLightConstants {
     uint group_count;
     uint group_capacity;
     uint cell_columns;
-    uint list_stride; // entries that a group may have
-    uint batch_first; // sample
+    uint list_stride; // list elements per pixel group
+    uint batch_first; // first sample of the batch
     uint batch_count;
     uint words_per_row; // of the visibility database, see VisibilityDatabase::rows
     uint state_words;
     uint flag_words;
     uint map_resolution;
-    float fixed_point; // steps of a light map a W/m2
+    float fixed_point; // light map steps per W/m2
     uint node_count;
     uint first_mover;  // nodes from here on are movers
-    uint entry_blocks; // blocks of groups, for the list of rough entries
+    uint entry_blocks; // blocks of pixel groups, for the list of rough entries
     uint mover_count;
 };
 SHARED_CONSTANT uint pixel_groups_per_block = 4u;
-SHARED_CONSTANT uint max_culled_movers = 32u; // that lists are culled by; with more, they are not
+SHARED_CONSTANT uint max_culled_movers = 32u; // with more, light lists are not culled by movers
 
-// What show.comp shows in place of the irradiance.
+// False colours that show.comp shows in place of the irradiance.
 SHARED_CONSTANT uint show_nothing = 0u;
-SHARED_CONSTANT uint show_tiles = 1u;      // red: samples with a shadow test, green: without, as shares of all
+SHARED_CONSTANT uint show_tiles = 1u;      // red: samples with a shadow test, green: without, as fractions of all
 SHARED_CONSTANT uint show_repaired = 2u;   // pixels that are lit again at full resolution
 SHARED_CONSTANT uint show_visibility = 3u; // red: partial, green: none, blue: full
-SHARED_CONSTANT uint show_staleness = 4u;  // age of the shadow maps that a surface needs: blue fresh, red eight frames
+SHARED_CONSTANT uint show_staleness = 4u;  // mean age of the shadow maps needed: blue fresh, red eight frames
 SHARED_CONSTANT uint show_light_maps = 5u; // W/m2
-// Green: from baked light, with blue where movers change that; red: lit by all samples; with brightness by the light.
+// Green: baked light, plus blue where movers shadow it; red: lit by all samples. Brightness follows the light.
 SHARED_CONSTANT uint show_baked = 6u;
 
 SHARED_END

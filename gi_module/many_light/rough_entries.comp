@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The entries of a stage's groups that did not take baked light, as groups of their own.
+// Compacts the rough entries of a stage's pixel groups, those that do not use baked light, into pixel groups of their
+// own.
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 layout(local_size_x = 8) in;
 layout(constant_id = 0) const uint action = 0;   // compaction_...
-layout(constant_id = 1) const uint indirect = 0; // 1: the number of the stage's groups is in its commands
+layout(constant_id = 1) const uint indirect = 0; // 1: the number of the stage's pixel groups is in its commands
 
 layout(set = 0, binding = 0) buffer BlockEntries { uint block_entries[]; };
 layout(set = 0, binding = 1) buffer Commands { uint commands[]; };

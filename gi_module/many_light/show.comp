@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// False colours of what the many-light system knows and does, in place of the irradiance.
+// Debug views of the many-light system: false colours in place of the irradiance.
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
@@ -12,7 +12,7 @@ layout(set = 0, binding = 1) readonly buffer Rows { uint rows[]; };
 layout(set = 0, binding = 2) readonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 3) readonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 4) readonly buffer CellMasks { uvec2 cell_masks[]; };
-layout(set = 0, binding = 5) readonly buffer Ages { uint ages[]; }; // by sample: frames that its shadow map is out of date
+layout(set = 0, binding = 5) readonly buffer Ages { uint ages[]; }; // by sample: frames since its map is stale
 layout(set = 0, binding = 6) writeonly uniform image2D output_image;
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
@@ -23,7 +23,7 @@ vec3 colour_of(uint number) {
     return vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
 }
 
-// Red: share of the samples that need a shadow test; green: that need none; blue: that are blocked.
+// Fractions of the samples. Red: shadow test needed; green: not needed; blue: blocked.
 vec3 visibility(uint node) {
     vec3 count = vec3(0.0);
     for (uint i = 0; i < constants.list_stride; ++i) {
@@ -34,7 +34,7 @@ vec3 visibility(uint node) {
     return count / all * 0.85 + colour_of(node) * 0.15;
 }
 
-// How old the maps of the samples are that need one here.
+// Mean age of the shadow maps that are needed here.
 vec3 staleness(uint node) {
     float age = 0.0, tested = 0.0;
     for (uint i = 0; i < constants.list_stride; ++i) {

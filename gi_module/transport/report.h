@@ -28,7 +28,7 @@ struct DebugView {
     std::string_view unit;   // of what is shown; "" if colours are categories
     std::string_view group;
     std::uint32_t code = 0;   // for the owner's use
-    bool every_pixel = false; // shown at full resolution, whatever light is evaluated at
+    bool every_pixel = false; // shown at full resolution even if light is not
 };
 
 // The numbers of one frame. Counters that were not set read 0.

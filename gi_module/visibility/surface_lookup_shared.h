@@ -1,5 +1,5 @@
-// How a pixel finds the visibility node it belongs to: instance row -> charts -> cell -> node. Nothing of it comes from
-// the host but position, geometric normal and surface id.
+// How a pixel finds the visibility node that it belongs to: instance row -> charts -> cell -> node. The only inputs
+// from the G-buffer are position, geometric normal and surface id.
 #ifndef SUNFLECK_GI_VISIBILITY_SURFACE_LOOKUP_SHARED_H
 #define SUNFLECK_GI_VISIBILITY_SURFACE_LOOKUP_SHARED_H
 #include "engine/core/shader_language.h"
@@ -11,14 +11,13 @@ SHARED_CONSTANT uint no_node = 0xffffffffu;
 struct SurfaceInstance {
     uint first_chart;
     uint chart_count;
-    uint first_box_node; // for what lies in no chart; no_node if there is none
-    uint octants;        // 1: eight box nodes, by the octant about `centre`
+    uint first_box_node; // for points in no chart; no_node if there is none
+    uint octants;        // 1: eight box nodes, by octant around `centre`
     vec3 centre;
-    uint first_curved_chart; // of baked light (curved_charts.h); no_node if there is none. Filled in by whoever uploads
-                             // it
+    uint first_curved_chart; // of baked light (curved_charts.h); no_node if there is none. Filled in by the uploader
 };
 
-// A flat rectangle: place (u, v) in [0, 1]^2 = (dot(u_axis, (p, 1)), dot(v_axis, (p, 1))).
+// A planar rectangle: coordinates (u, v) in [0, 1]^2 = (dot(u_axis, (p, 1)), dot(v_axis, (p, 1))).
 struct SurfaceChart {
     vec4 plane; // dot(xyz, p) + w = 0, xyz towards the lit side
     vec4 u_axis;
@@ -29,19 +28,19 @@ struct SurfaceChart {
     uint unused;
 };
 
-// Bits of a pair in a visibility row, sixteen pairs a word.
-SHARED_CONSTANT uint pair_full = 0u;    // no light arrives: blocked
-SHARED_CONSTANT uint pair_none = 1u;    // nothing is in the way
-SHARED_CONSTANT uint pair_partial = 2u; // something may be in the way: the shadow map must tell
-SHARED_CONSTANT uint pair_unlit = 3u;   // no light arrives: facing away
+// State of a pair of node and sample in a visibility row, two bits each, sixteen pairs per word.
+SHARED_CONSTANT uint pair_full = 0u;    // blocked: no light arrives
+SHARED_CONSTANT uint pair_none = 1u;    // unblocked
+SHARED_CONSTANT uint pair_partial = 2u; // may be blocked: the shadow map decides
+SHARED_CONSTANT uint pair_unlit = 3u;   // facing away: no light arrives
 SHARED_CONSTANT uint pairs_per_word = 16u;
 
 // Tolerances of a pixel's reconstructed position and packed normal.
 SHARED_CONSTANT float chart_distance = 2e-3f; // m, from the chart's plane
 SHARED_CONSTANT float chart_cosine = 0.999f;
-SHARED_CONSTANT float chart_margin = 1e-3f; // of the chart's sides, beyond its border
+SHARED_CONSTANT float chart_margin = 1e-3f; // beyond the border, as a fraction of the chart's sides
 
-// Whether a point with this geometric normal lies on the chart; its place is clamped to the chart.
+// Whether a point with this geometric normal lies on the chart.
 SHARED_FUNCTION bool on_chart(SurfaceChart chart, vec3 position, vec3 geometric_normal) {
     float u = dot(vec3(chart.u_axis), position) + chart.u_axis.w;
     float v = dot(vec3(chart.v_axis), position) + chart.v_axis.w;
@@ -50,6 +49,7 @@ SHARED_FUNCTION bool on_chart(SurfaceChart chart, vec3 position, vec3 geometric_
            abs(u - 0.5f) < 0.5f + chart_margin && abs(v - 0.5f) < 0.5f + chart_margin;
 }
 
+// The cell of a point on the chart; the point is clamped to the chart.
 SHARED_FUNCTION uint chart_cell(SurfaceChart chart, vec3 position) {
     float u = dot(vec3(chart.u_axis), position) + chart.u_axis.w;
     float v = dot(vec3(chart.v_axis), position) + chart.v_axis.w;
