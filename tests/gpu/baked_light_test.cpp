@@ -1,6 +1,6 @@
 // Baked light against rays: what its texels hold, what smooth cells say between them, and what movers leave of it.
-#include "tests/support/gpu_world.h"
 #include "gi_module/many_light/many_light_settings.h"
+#include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
 
 #include <glm/gtc/packing.hpp>

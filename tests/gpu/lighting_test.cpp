@@ -1,6 +1,6 @@
 // Brute force against closed forms.
-#include "tests/support/gpu_world.h"
 #include "gi_module/brute_force/brute_force_settings.h"
+#include "tests/support/gpu_world.h"
 #include "tests/support/test_size.h"
 
 #include "gi_module/reference/path_tracer.h"

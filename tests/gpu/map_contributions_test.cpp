@@ -39,8 +39,8 @@ std::vector<float> light_that_movers_decide(GpuWorld& world, const scene::Camera
                 glm::dot(point.geometric_normal, towards) < 0.0f ? -point.geometric_normal : point.geometric_normal;
             const bool on_mover = !scene::is_static(world.renderer->registry(), point.entity);
             for (const gi::LightSample& sample : lighting.samples()) {
-                const gi::Arrival light = gi::arrival(lighting.sample_set().rows()[sample.index], gi::light_class(sample.kind),
-                                                      point.position, 100.0f);
+                const gi::Arrival light = gi::arrival(lighting.sample_set().rows()[sample.index],
+                                                      gi::light_class(sample.kind), point.position, 100.0f);
                 const float cosine = glm::dot(normal, glm::normalize(light.to_light));
                 if (cosine <= 0.0f)
                     continue;
