@@ -47,28 +47,34 @@ Result<Accumulation> start_or_resume(const std::string& state_file, std::uint64_
     return accumulation;
 }
 
-} // namespace
-
-Status reference(const ReferenceOptions& options) {
-    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
-    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
-    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+// Everything that is loaded to trace one frame.
+struct TracedScene {
     ecs::Registry registry;
     scene::MeshStore meshes;
     scene::TextureStore textures;
-    SUNFLECK_TRY(io::load_scene(path, registry, meshes, textures, import_options(options.scene)));
-    SUNFLECK_TRY(apply_environment(options.scene, registry));
-    viewer::add_default_light(registry);
-    const std::uint32_t last_frame = options.scene.warmup + options.scene.frames - 1;
-    simulation::set_movers_to_step(registry, step_of_frame(options.scene, last_frame));
-    SUNFLECK_ASSIGN(const auto rays, raytrace::RayScene::create());
-    scene::deform_meshes(registry, meshes);
-    SUNFLECK_TRY(rays->update(registry, meshes, &textures));
-    const Bounds bounds = viewer::scene_bounds(registry, meshes);
-    SUNFLECK_ASSIGN(const scene::CameraView start, viewer::find_camera(registry, bounds, options.scene.camera));
-    const scene::CameraView camera = camera_of_frame(start, options.scene, last_frame);
-    const PathTracer tracer(*rays, gi::collect_emitters(registry, meshes, bounds));
+    std::unique_ptr<raytrace::RayScene> rays;
+    Bounds bounds;
+    scene::CameraView camera;
+    std::uint32_t last_frame = 0;
+};
 
+Status load(const ReferenceOptions& options, const std::filesystem::path& path, TracedScene& scene) {
+    SUNFLECK_TRY(io::load_scene(path, scene.registry, scene.meshes, scene.textures, import_options(options.scene)));
+    SUNFLECK_TRY(apply_environment(options.scene, scene.registry));
+    viewer::add_default_light(scene.registry);
+    scene.last_frame = options.scene.warmup + options.scene.frames - 1;
+    simulation::set_movers_to_step(scene.registry, step_of_frame(options.scene, scene.last_frame));
+    SUNFLECK_ASSIGN(scene.rays, raytrace::RayScene::create());
+    scene::deform_meshes(scene.registry, scene.meshes);
+    SUNFLECK_TRY(scene.rays->update(scene.registry, scene.meshes, &scene.textures));
+    scene.bounds = viewer::scene_bounds(scene.registry, scene.meshes);
+    SUNFLECK_ASSIGN(const scene::CameraView start,
+                    viewer::find_camera(scene.registry, scene.bounds, options.scene.camera));
+    scene.camera = camera_of_frame(start, options.scene, scene.last_frame);
+    return {};
+}
+
+Result<ReferenceSettings> settings_of(const ReferenceOptions& options, Size size) {
     gi::Settings lighting;
     for (const auto& [name, value] : options.scene.lighting)
         SUNFLECK_TRY(lighting.set(name, value));
@@ -82,48 +88,75 @@ Status reference(const ReferenceOptions& options) {
                     : options.view == "direct"   ? ReferenceView::direct
                     : options.view == "indirect" ? ReferenceView::indirect
                                                  : ReferenceView::radiance;
-    SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
-    const std::string state_file = options.output + ".state";
-    const std::uint64_t hash =
-        hash_text(scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" +
-                  options.view + "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
-                  std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
-                  std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
-    SUNFLECK_ASSIGN(Accumulation accumulation, start_or_resume(state_file, hash));
+    return settings;
+}
 
+// Of all that decides the picture; a state with another hash is not resumed.
+Result<std::uint64_t> hash_of(const ReferenceOptions& options, const std::filesystem::path& path,
+                              const ReferenceSettings& settings, std::uint32_t last_frame) {
+    SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
+    return hash_text(scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" +
+                     options.view + "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
+                     std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
+                     std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
+}
+
+// Traces until there are options.samples a pixel; false if the user stopped it. Returns the seconds that it took.
+Result<double> trace(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
+                     Accumulation& accumulation, bool& complete) {
+    const PathTracer tracer(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds));
     const auto began = std::chrono::steady_clock::now();
+    const auto seconds = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    };
     const std::uint64_t rays_before = accumulation.rays;
     Progress progress("reference");
-    while (accumulation.samples < options.samples) {
+    complete = true;
+    while (accumulation.samples < options.samples && complete) {
         // Few samples first, so that an early interrupt has something to show.
         const std::uint32_t batch =
             std::min({std::max(1u, accumulation.samples), 16u, options.samples - accumulation.samples});
-        const bool complete = tracer.accumulate(accumulation, camera, settings, batch, interrupted);
-        const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - began;
+        complete = tracer.accumulate(accumulation, scene.camera, settings, batch, interrupted);
         char detail[96];
         std::snprintf(detail, sizeof detail, "%u of %u spp, %.2f million rays/s", accumulation.samples, options.samples,
-                      double(accumulation.rays - rays_before) / elapsed.count() * 1e-6);
+                      double(accumulation.rays - rays_before) / seconds() * 1e-6);
         progress.show(double(accumulation.samples) / options.samples, detail);
-        if (!complete) {
-            SUNFLECK_TRY(save_accumulation(state_file, accumulation, hash));
-            return Error{"interrupted; the same command goes on from '" + state_file + "'"};
-        }
     }
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    const float ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(registry);
+    return seconds();
+}
+
+} // namespace
+
+Status reference(const ReferenceOptions& options) {
+    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
+    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    TracedScene scene;
+    SUNFLECK_TRY(load(options, path, scene));
+    SUNFLECK_ASSIGN(const ReferenceSettings settings, settings_of(options, size));
+    SUNFLECK_ASSIGN(const std::uint64_t hash, hash_of(options, path, settings, scene.last_frame));
+    const std::string state_file = options.output + ".state";
+    SUNFLECK_ASSIGN(Accumulation accumulation, start_or_resume(state_file, hash));
+    const std::uint64_t rays_before = accumulation.rays;
+    bool complete = false;
+    SUNFLECK_ASSIGN(const double seconds, trace(options, scene, settings, accumulation, complete));
+    if (!complete) {
+        SUNFLECK_TRY(save_accumulation(state_file, accumulation, hash));
+        return Error{"interrupted; the same command goes on from '" + state_file + "'"};
+    }
+    const float ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(scene.registry);
     SUNFLECK_TRY(io::write_picture(options.output, to_picture(accumulation, kind == io::PictureKind::png,
                                                               settings.view != ReferenceView::radiance, ev100)));
     std::error_code code;
     std::filesystem::remove(state_file, code);
-    if (!options.statistics.empty()) {
-        const Json json = {{"scene", options.scene.scene},
-                           {"samples_per_pixel", accumulation.samples},
-                           {"seconds", seconds},
-                           {"rays", accumulation.rays},
-                           {"rays_per_second", double(accumulation.rays - rays_before) / seconds}};
-        SUNFLECK_TRY(write_file(options.statistics, json.dump(2) + "\n"));
-    }
-    return {};
+    if (options.statistics.empty())
+        return {};
+    const Json json = {{"scene", options.scene.scene},
+                       {"samples_per_pixel", accumulation.samples},
+                       {"seconds", seconds},
+                       {"rays", accumulation.rays},
+                       {"rays_per_second", double(accumulation.rays - rays_before) / seconds}};
+    return write_file(options.statistics, json.dump(2) + "\n");
 }
 
 } // namespace sunfleck::command_line

@@ -96,27 +96,26 @@ Result<const gpu::Pipeline*> BruteForce::pipeline(std::uint32_t light_class, con
     return pipelines_.compute(description);
 }
 
-Status BruteForce::add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
-                            const ShadowMaps& maps, std::span<const LightBatch> batches,
-                            const BruteForceOptions& options, bool first, bool last, gpu::ResourceId output) {
+Status BruteForce::add_pass(const BruteForceFrame& frame, std::span<const LightBatch> batches,
+                            const BruteForceOptions& options, bool first, bool last) {
     for (std::size_t i = 0; i < batches.size(); ++i) {
-        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline(batches[i].light_class, options, maps.bits()));
+        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline(batches[i].light_class, options, frame.maps.bits()));
         shared::BruteForceConstants constants{};
-        constants.width = g_buffer.width;
-        constants.height = g_buffer.height;
+        constants.width = frame.g_buffer.width;
+        constants.height = frame.g_buffer.height;
         constants.light_count = batches[i].count;
-        constants.map_resolution = maps.resolution();
+        constants.map_resolution = frame.maps.resolution();
         constants.first_batch = first && i == 0;
         constants.last_batch = last && i + 1 == batches.size();
-        constants.group_columns = group_columns(g_buffer.width, shape_.pixels);
-        add_bands({graph, g_buffer, camera, maps, output}, *kernel, batches[i], constants);
+        constants.group_columns = group_columns(frame.g_buffer.width, shape_.pixels);
+        add_bands(frame, *kernel, batches[i], constants);
     }
     if (options.count_clamped && last)
-        readback_.add_pass(graph, *clamped_sums_, serial_);
+        readback_.add_pass(frame.graph, *clamped_sums_, serial_);
     return {};
 }
 
-void BruteForce::add_bands(const Frame& frame, const gpu::Pipeline& kernel, const LightBatch& batch,
+void BruteForce::add_bands(const BruteForceFrame& frame, const gpu::Pipeline& kernel, const LightBatch& batch,
                            shared::BruteForceConstants constants) {
     const gpu::Buffer& texels = frame.maps.texels() ? frame.maps.texels() : unused_texels_;
     const bool accumulates = constants.first_batch == 0 || constants.last_batch == 0;

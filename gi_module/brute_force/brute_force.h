@@ -31,6 +31,15 @@ struct ClampedLight {
     std::uint64_t serial = 0;   // frame that it belongs to; 0: none yet
 };
 
+// What the frame's dispatches read and write.
+struct BruteForceFrame {
+    gpu::FrameGraph& graph;
+    const GBufferInput& g_buffer;
+    const gpu::UploadSlice& camera; // a CameraRow
+    const ShadowMaps& maps;
+    gpu::ResourceId output;
+};
+
 class BruteForce {
 public:
     static Result<std::unique_ptr<BruteForce>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
@@ -47,9 +56,8 @@ public:
 
     // Adds one dispatch for each batch. `first` and `last` tell where this call stands among those of the frame: sums
     // start with the first and reach `output` with the last. There is at least one batch; it may be empty.
-    Status add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
-                    const ShadowMaps& maps, std::span<const LightBatch> batches, const BruteForceOptions& options,
-                    bool first, bool last, gpu::ResourceId output);
+    Status add_pass(const BruteForceFrame& frame, std::span<const LightBatch> batches, const BruteForceOptions& options,
+                    bool first, bool last);
 
     const ClampedLight& clamped() const { return clamped_; }
 
@@ -58,15 +66,8 @@ private:
         : device_(device), pipelines_(pipelines),
           readback_(device, "clamped flux", VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) {}
     // What the passes of one frame share.
-    struct Frame {
-        gpu::FrameGraph& graph;
-        const GBufferInput& g_buffer;
-        const gpu::UploadSlice& camera;
-        const ShadowMaps& maps;
-        gpu::ResourceId output;
-    };
     // Large pictures go in bands of rows, a pass each, so that a band's sums fit one storage binding.
-    void add_bands(const Frame& frame, const gpu::Pipeline& kernel, const LightBatch& batch,
+    void add_bands(const BruteForceFrame& frame, const gpu::Pipeline& kernel, const LightBatch& batch,
                    shared::BruteForceConstants constants);
     void collect(std::uint64_t completed_serial);
     Result<const gpu::Pipeline*> pipeline(std::uint32_t light_class, const BruteForceOptions& options,

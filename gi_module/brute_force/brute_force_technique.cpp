@@ -76,8 +76,8 @@ Status BruteForceTechnique::add_passes(gpu::FrameGraph& graph, Services& service
             SUNFLECK_TRY(kernel_->begin_frame(target.g_buffer.width, target.g_buffer.height,
                                               shared_slots || batches.size() > 1, services.input.serial,
                                               services.input.completed_serial, services.resources));
-        SUNFLECK_TRY(kernel_->add_pass(graph, target.g_buffer, target.camera, shadows.maps(), batches, options,
-                                       first == 0, first + count == total, target.irradiance));
+        SUNFLECK_TRY(kernel_->add_pass({graph, target.g_buffer, target.camera, shadows.maps(), target.irradiance},
+                                       batches, options, first == 0, first + count == total));
     }
     return {};
 }

@@ -6,8 +6,8 @@
 // and two systems can light one registry.
 //
 // Samples are sorted by light class, then static before dynamic ones, then by path (direct, first bounce, later
-// bounces). A sample's index is its position in this order; shadow map, visibility rows and GPU rows follow it. Samples,
-// indices and rows are stable until generation() changes.
+// bounces). A sample's index is its position in this order; shadow map, visibility rows and GPU rows follow it.
+// Samples, indices and rows are stable until generation() changes.
 #pragma once
 
 #include "engine/scene/gpu_scene.h"
@@ -84,7 +84,7 @@ private:
     scene::ChangeCursor emitter_cursor_; // of emitters_ and dynamic_emitters_
     Bounds emitter_bounds_;              // of the scene that they were found in
     bool emitters_as_static_ = false;    // and whether movers counted as static geometry
-    SampleRequest sampled_; // what the samples were generated for
+    SampleRequest sampled_;              // what the samples were generated for
     std::uint32_t slots_ = 1;
     bool valid_ = false;
     std::uint64_t generation_ = 0, geometry_generation_ = 0, emitter_hash_ = 0;

@@ -180,10 +180,10 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<cons
     }
 }
 
-Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
-                          std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
-                          bool static_maps_changed, gpu::FrameResources& resources) {
-    if (light_maps.counters().texels + curved.points().size() > device_.traits().max_texel_elements) {
+Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed,
+                          gpu::FrameResources& resources) {
+    const VisibilityDatabase& database = scene.database;
+    if (light_maps.counters().texels + scene.curved.points().size() > device_.traits().max_texel_elements) {
         forget();
         return {};
     }
@@ -195,14 +195,14 @@ Status BakedLight::update(const VisibilityDatabase& database, const LightMaps& l
     std::vector<std::uint32_t> changed;
     const bool first = generation_ != database.generation();
     const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
-                      find_changed_intensities(samples, baked_rows_, rows, changed);
-    if (!same || !follow_strengths(database, rows, changed)) {
+                      find_changed_intensities(scene.samples, baked_rows_, scene.rows, changed);
+    if (!same || !follow_strengths(database, scene.rows, changed)) {
         jobs_.clear();
         finish_.clear();
         job_rows_.clear();
-        SUNFLECK_TRY(start_anew(database, light_maps, curved, rows, resources));
+        SUNFLECK_TRY(start_anew(database, light_maps, scene.curved, scene.rows, resources));
     }
-    bake_waiting(database, samples, first ? max_first_evaluations : max_evaluations);
+    bake_waiting(database, scene.samples, first ? max_first_evaluations : max_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(invocations);
     finish_.split(invocations);

@@ -16,6 +16,7 @@
 #include "gi_module/charts/curved_charts.h"
 #include "gi_module/many_light/light_map_jobs.h"
 #include "gi_module/many_light/light_maps.h"
+#include "gi_module/many_light/many_light_scene.h"
 #include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/visibility/visibility_database.h"
@@ -34,9 +35,8 @@ public:
     // Follows the light maps, whose update comes first. Not in use afterwards if the device's texel buffers are too
     // small for them. `curved` are charts of the database's generation. `static_maps_changed`: a static shadow map of a
     // held sample is redrawn in this frame, and all is baked anew.
-    Status update(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
-                  std::span<const LightSample> samples, std::span<const shared::LightRow> rows,
-                  bool static_maps_changed, gpu::FrameResources& resources);
+    Status update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed,
+                  gpu::FrameResources& resources);
     // Nothing is baked, nor used until the next update: shadow maps do not hold what is needed.
     void forget();
     bool in_use() const { return in_use_; }

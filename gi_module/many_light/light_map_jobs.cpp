@@ -51,7 +51,7 @@ void LightMapJobs::split(std::uint32_t invocations) {
 }
 
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
-                        std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
+                              std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
     if (now.size() != before.size())
         return false;
     for (std::uint32_t i = 0; i < now.size(); ++i) {

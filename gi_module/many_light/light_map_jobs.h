@@ -51,6 +51,6 @@ inline bool reaches(PairState state) {
 // Finds the samples in light maps of which only the intensity changed since `before`. False if anything else changed,
 // or if so many intensities changed that summing from scratch is cheaper.
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
-                        std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed);
+                              std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed);
 
 } // namespace sunfleck::gi

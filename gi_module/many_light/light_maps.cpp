@@ -10,7 +10,7 @@ namespace {
 // A near sample's light changes over the radius within which it is clamped: so many texels along it, and limits in m.
 constexpr float texels_per_radius = 10.0f, smallest_texel = 0.02f, largest_texel = 0.10f;
 constexpr std::uint32_t max_samples = 60000; // with more, a single texel would take too many
-constexpr std::uint32_t invocations = 64;     // of a work group: light_maps.comp
+constexpr std::uint32_t invocations = 64;    // of a work group: light_maps.comp
 constexpr std::uint32_t max_texels = 256;    // along a patch's side
 constexpr std::uint64_t max_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits

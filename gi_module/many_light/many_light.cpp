@@ -34,8 +34,7 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
     if (options.light_maps && options.visibility)
         SUNFLECK_TRY(light_maps_->update(database, scene.samples, scene.rows, resources));
     if (options.baked_light && options.light_maps && options.visibility && options.shadows)
-        SUNFLECK_TRY(baked_light_->update(database, *light_maps_, scene.curved, scene.samples, scene.rows,
-                                          options.static_maps_changed, resources));
+        SUNFLECK_TRY(baked_light_->update(scene, *light_maps_, options.static_maps_changed, resources));
     else
         baked_light_->forget();
     shared::NodeRow bare{};
@@ -57,7 +56,7 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
     mover_count_ = std::uint32_t(spheres.size());
     spheres.resize(std::clamp<std::size_t>(spheres.size(), 1, shared::max_culled_movers));
     SUNFLECK_ASSIGN(movers_, resources.upload(std::span<const vec4>(spheres)));
-    return tables_.update(device_, database, scene.curved, scene.gpu_scene, node_rows_, changed, resources);
+    return tables_.update(device_, scene, node_rows_, changed, resources);
 }
 
 Status ManyLight::make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,

@@ -10,6 +10,7 @@
 #include "gi_module/low_resolution/low_resolution.h"
 #include "gi_module/many_light/baked_light.h"
 #include "gi_module/many_light/light_maps.h"
+#include "gi_module/many_light/many_light_scene.h"
 #include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/transport/light_batch.h"
@@ -26,15 +27,6 @@ struct ManyLightOptions {
     bool simplified_movers = false;            // in the maps
     bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
     std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
-};
-
-// What is lit, and by what.
-struct ManyLightScene {
-    VisibilityDatabase& database;
-    const CurvedCharts& curved;
-    const scene::GpuScene& gpu_scene;
-    std::span<const LightSample> samples;
-    std::span<const shared::LightRow> rows;
 };
 
 // What the frame's passes read besides. Must live until the graph was executed, but for the spans.

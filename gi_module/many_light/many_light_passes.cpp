@@ -81,8 +81,8 @@ Status ManyLight::add_gather(const Frame& frame) {
 // The entries of a stage's groups that did not take baked light, as groups of their own.
 Status ManyLight::add_rough_list(Frame& frame) {
     const bool repair = frame.stage.repair;
-    frame.constants.entry_blocks =
-        divide_up(repair ? frame.constants.group_capacity : frame.constants.group_count, shared::pixel_groups_per_block);
+    frame.constants.entry_blocks = divide_up(repair ? frame.constants.group_capacity : frame.constants.group_count,
+                                             shared::pixel_groups_per_block);
     for (std::uint32_t action = 0; action < 3; ++action) {
         SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("rough_entries.comp", {action, repair}));
         const std::string name = repair ? "repair rough pixels " : "rough pixels ";

@@ -4,9 +4,10 @@
 
 namespace sunfleck::gi {
 
-Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, const CurvedCharts& curved,
-                             const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows,
-                             bool node_rows_changed, gpu::FrameResources& resources) {
+Status SurfaceTables::update(gpu::Device& device, const ManyLightScene& scene,
+                             std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
+                             gpu::FrameResources& resources) {
+    VisibilityDatabase& database = scene.database;
     const SurfacePatches& patches = database.patches();
     const bool fresh = generation_ != database.generation();
     generation_ = database.generation();
@@ -29,15 +30,15 @@ Status SurfaceTables::update(gpu::Device& device, VisibilityDatabase& database, 
                                                         std::as_bytes(std::span(database.rows())).size()));
     SUNFLECK_TRY(upload_rows(database, fresh || rows_grew, resources));
 
-    std::vector<shared::SurfaceInstance> instances(std::max<std::size_t>(scene.draws().size(), 1));
-    for (const scene::DrawItem& item : scene.draws()) {
+    std::vector<shared::SurfaceInstance> instances(std::max<std::size_t>(scene.gpu_scene.draws().size(), 1));
+    for (const scene::DrawItem& item : scene.gpu_scene.draws()) {
         shared::SurfaceInstance& row = instances[item.row];
         row.first_box_node = shared::no_node;
         if (const shared::SurfaceInstance* known = patches.instance(item.entity); known != nullptr && item.is_static)
             row = *known;
         else
             row.first_box_node = database.mover_node(item.entity);
-        row.first_curved_chart = item.is_static ? curved.first_chart(item.entity) : shared::no_node;
+        row.first_curved_chart = item.is_static ? scene.curved.first_chart(item.entity) : shared::no_node;
     }
     return upload_instances(device, std::move(instances), resources);
 }

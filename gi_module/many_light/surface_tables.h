@@ -5,6 +5,7 @@
 #include "engine/gpu/uploaded_buffer.h"
 #include "engine/scene/gpu_scene.h"
 #include "gi_module/charts/curved_charts.h"
+#include "gi_module/many_light/many_light_scene.h"
 #include "gi_module/many_light/many_light_shared.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -14,9 +15,8 @@ class SurfaceTables {
 public:
     // Uploads what changed in the database. `node_rows` are by node; a change of their number or of the database's
     // generation uploads all.
-    Status update(gpu::Device& device, VisibilityDatabase& database, const CurvedCharts& curved,
-                  const scene::GpuScene& scene, std::span<const shared::NodeRow> node_rows, bool node_rows_changed,
-                  gpu::FrameResources& resources);
+    Status update(gpu::Device& device, const ManyLightScene& scene, std::span<const shared::NodeRow> node_rows,
+                  bool node_rows_changed, gpu::FrameResources& resources);
     void add_passes(gpu::FrameGraph& graph);
     // The next update uploads everything.
     void restart();

@@ -26,14 +26,6 @@ bool has_cone_map(const ShadowRequest& request) {
     return request.light_class == shared::light_class_point && request.light.position_bound.w > 0.0f;
 }
 
-// Largest value of dot(axis, p - origin) over the box.
-float support(const Bounds& bounds, vec3 origin, vec3 axis) {
-    const vec3 corner(axis.x > 0 ? bounds.maximum.x : bounds.minimum.x,
-                      axis.y > 0 ? bounds.maximum.y : bounds.minimum.y,
-                      axis.z > 0 ? bounds.maximum.z : bounds.minimum.z);
-    return glm::dot(axis, corner - origin);
-}
-
 } // namespace
 
 // Everything that one pair of passes (draw, copy) needs; lives in the passes' closures.
@@ -132,32 +124,6 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     slots_ = slots;
     movers_shown_.assign(slots, {}); // of maps that hold nothing yet: their static part comes first
     return true;
-}
-
-std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bounds& bounds) {
-    const shared::LightRow& light = request.light;
-    if (request.light_class == shared::light_class_directional)
-        return 1;
-    const vec3 origin(light.position_bound);
-    const vec3 axes[3] = {vec3(light.tangent_scale), vec3(light.bitangent), vec3(light.normal_offset)};
-    if (has_cone_map(request)) {
-        for (const vec3 side : {axes[0], -axes[0], axes[1], -axes[1]})
-            if (support(bounds, origin, axes[2] - light.position_bound.w * side) <= 0.0f)
-                return 0;
-        return support(bounds, origin, axes[2]) > 0.0f ? 1u << shared::cone_face : 0;
-    }
-    // Whether the box reaches the negative and the positive side of each axis.
-    bool reaches[3][2];
-    for (int i = 0; i < 3; ++i) {
-        reaches[i][0] = support(bounds, origin, axes[i]) > 0.0f;
-        reaches[i][1] = support(bounds, origin, -axes[i]) > 0.0f;
-    }
-    std::uint32_t faces = 0;
-    const std::uint32_t count = request.light_class == shared::light_class_surface ? 4 : 8;
-    for (std::uint32_t face = 0; face < count; ++face)
-        if (reaches[0][face & 1] && reaches[1][(face >> 1) & 1] && reaches[2][(face >> 2) & 1])
-            faces |= 1u << face;
-    return faces;
 }
 
 Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,

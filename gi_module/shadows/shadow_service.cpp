@@ -179,7 +179,7 @@ Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& 
 }
 
 Status ShadowService::add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
-                                std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources) {
+                                    std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources) {
     std::vector<std::uint32_t> drawn(count);
     for (std::uint32_t i = 0; i < count; ++i)
         drawn[i] = first + i;

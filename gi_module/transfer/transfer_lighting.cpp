@@ -47,7 +47,7 @@ vec3 irradiance(const TransferData& transfer, std::size_t vertex, const Environm
 } // namespace
 
 bool TransferLighting::supports(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
-                             std::uint32_t mesh) {
+                                std::uint32_t mesh) {
     if (item.is_static || item.kind == scene::surface_kind_holes || meshes.revision(mesh) != 0)
         return false;
     const scene::Mesh& shape = meshes[mesh];

@@ -29,7 +29,7 @@ public:
 
     // Whether a mover is supported: rigid, opaque, uniformly scaled, and complex enough.
     static bool supports(const scene::DrawItem& item, const mat4& matrix, const scene::MeshStore& meshes,
-                      std::uint32_t mesh);
+                         std::uint32_t mesh);
 
     // Once a frame: makes the draws of all supported movers. Meshes are precomputed when they first appear.
     Status update(const ecs::Registry& registry, const scene::MeshStore& meshes, const ProbeScene& scene,

@@ -13,7 +13,7 @@ constexpr VkFormat drawn_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 // The pixels that the boxes of all draws may cover; the whole picture if one reaches behind the camera.
 PixelArea covered(const std::vector<TransferDraw>& draws, const gpu::UploadSlice& camera,
-                                       const GBufferInput& g_buffer) {
+                  const GBufferInput& g_buffer) {
     shared::CameraRow row;
     std::memcpy(&row, camera.data, sizeof row);
     vec2 low(1e9f), high(-1e9f);
@@ -63,20 +63,20 @@ void TransferPass::add_passes(gpu::FrameGraph& graph, const std::vector<Transfer
         .read(target.g_buffer.depth, gpu::Usage::sampled)
         .read(target.g_buffer.surface, gpu::Usage::sampled)
         .write(target.irradiance, gpu::Usage::colour_attachment)
-        .execute([this, &scene = target.gpu_scene, g_buffer = target.g_buffer, camera = target.camera, &draws,
-                  drawn = target.irradiance, area = target.area](gpu::PassContext& context) {
-            const VkRect2D rectangle{{int(area.x), int(area.y)}, {area.width, area.height}};
-            return draw(context, scene, g_buffer, camera, draws, drawn, rectangle);
+        .execute([this, &draws, gpu_scene = &target.gpu_scene, g_buffer = target.g_buffer, camera = target.camera,
+                  irradiance = target.irradiance, area = target.area](gpu::PassContext& context) {
+            return draw(context, {*gpu_scene, g_buffer, camera, irradiance, area}, draws);
         });
 }
 
-Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene, const GBufferInput& g_buffer,
-                          const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws,
-                          gpu::ResourceId target, const VkRect2D& area) const {
+Status TransferPass::draw(gpu::PassContext& context, const LightTarget& target,
+                          const std::vector<TransferDraw>& draws) const {
+    const scene::GpuScene& scene = target.gpu_scene;
+    const GBufferInput& g_buffer = target.g_buffer;
     const VkRenderingAttachmentInfo colour =
-        gpu::rendering_attachment(context.graph.view(target), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        gpu::rendering_attachment(context.graph.view(target.irradiance), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    rendering.renderArea = area;
+    rendering.renderArea = {{int(target.area.x), int(target.area.y)}, {target.area.width, target.area.height}};
     rendering.layerCount = 1;
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &colour;
@@ -88,7 +88,7 @@ Status TransferPass::draw(gpu::PassContext& context, const scene::GpuScene& scen
     vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
     Status status;
     for (const TransferDraw& draw : draws) {
-        const gpu::Binding bindings[] = {gpu::Binding::uniform(camera), gpu::Binding::storage(scene.rows()),
+        const gpu::Binding bindings[] = {gpu::Binding::uniform(target.camera), gpu::Binding::storage(scene.rows()),
                                          gpu::Binding::storage(draw.irradiance),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.depth), sampler_),
                                          gpu::Binding::sampled_image(context.graph.view(g_buffer.surface), sampler_)};

@@ -20,9 +20,7 @@ public:
 
 private:
     explicit TransferPass(gpu::Device& device) : device_(device) {}
-    Status draw(gpu::PassContext& context, const scene::GpuScene& scene, const GBufferInput& g_buffer,
-                const gpu::UploadSlice& camera, const std::vector<TransferDraw>& draws, gpu::ResourceId target,
-                const VkRect2D& area) const;
+    Status draw(gpu::PassContext& context, const LightTarget& target, const std::vector<TransferDraw>& draws) const;
 
     gpu::Device& device_;
     VkSampler sampler_ = VK_NULL_HANDLE;

@@ -18,7 +18,7 @@ constexpr Counter technique_counters[] = {vertices, memory};
 
 bool supports(const scene::DrawItem& mover, const ecs::Registry& registry, const scene::MeshStore& meshes) {
     return TransferLighting::supports(mover, registry.get<scene::WorldTransform>(mover.entity).matrix, meshes,
-                                   registry.get<scene::MeshInstance>(mover.entity).mesh);
+                                      registry.get<scene::MeshInstance>(mover.entity).mesh);
 }
 
 } // namespace

@@ -197,9 +197,9 @@ TEST_F(BakedLightTest, CurvedChartsAreFoundWhenWanted) {
     ASSERT_GT(points, 1000u);
     const Baked baked = read_baked(world);
     const auto first = baked.texels.end() - std::ptrdiff_t(points);
-    EXPECT_GT(
-        std::count_if(first, baked.texels.end(), [](const vec4& texel) { return texel.a <= shared::curved_max_height; }),
-        500);
+    EXPECT_GT(std::count_if(first, baked.texels.end(),
+                            [](const vec4& texel) { return texel.a <= shared::curved_max_height; }),
+              500);
 }
 
 // While a host draws the first maps over many frames, nothing is baked that would be baked again; then all is, once.

@@ -44,9 +44,10 @@ const Layers& allowed() {
         {"gi_module/light_sum", with(foundation, {"gi_module/transport"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
-                                        "gi_module/shadows", "gi_module/visibility", "gi_module/low_resolution",
-                                        "gi_module/light_sum", "gi_module/g_buffer", "gi_module/charts", "gi_module/harmonics"})},
+        {"gi_module",
+         with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
+                           "gi_module/visibility", "gi_module/low_resolution", "gi_module/light_sum",
+                           "gi_module/g_buffer", "gi_module/charts", "gi_module/harmonics"})},
     };
     return layers;
 }
@@ -102,8 +103,8 @@ TEST(Layers, IncludesPointDownOnly) {
 TEST(Layers, TheModuleUsesNoWindowImageOrGuiLibrary) {
     const fs::path root = SUNFLECK_SOURCE_DIR;
     const std::regex foreign("#include <(GLFW|OpenImageIO|imgui|tiny_gltf|nlohmann|CLI|spdlog|glslang)");
-    for (const char* top : {"engine/core", "engine/ecs", "engine/statistics", "engine/gpu", "engine/scene", "engine/raytrace",
-                            "gi_module"})
+    for (const char* top : {"engine/core", "engine/ecs", "engine/statistics", "engine/gpu", "engine/scene",
+                            "engine/raytrace", "gi_module"})
         for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
             if (!entry.is_regular_file())
                 continue;
