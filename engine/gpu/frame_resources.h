@@ -102,7 +102,7 @@ public:
 
     // Keeps `object` (a shared_ptr to a Buffer or Image, say) until the current frame is complete on the GPU.
     template <typename T>
-    void retire(T&& object) {
+    void retire(T object) {
         retired_.push_back({serial_, std::make_shared<T>(std::move(object))});
     }
 

@@ -190,7 +190,7 @@ TEST_F(ComputePassTest, AWrongBindingIsAnErrorThatNamesShaderAndBinding) {
         EXPECT_NE(text.find("doubling.comp"), std::string::npos) << text;
         EXPECT_NE(text.find("wrong pass"), std::string::npos) << text;
     };
-    expect(message([&](auto& pass) { pass.storage_write(slot->buffer).push(2.0f); }), "2 bindings, but 1");
+    expect(message([&](auto& pass) { pass.storage_read_write(slot->buffer).push(2.0f); }), "2 bindings, but 1");
     expect(message([&](auto& pass) { pass.uniform(slice).storage_write(slot->buffer).push(2.0f); }), "binding 0");
     expect(message([&](auto& pass) { pass.storage_read_write(slot->buffer).storage_read(slot->buffer).push(2.0f); }),
            "may write binding 1");
