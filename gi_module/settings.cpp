@@ -166,8 +166,10 @@ Result<LightPlan> Settings::light_plan() const {
 
 SampleRequest Settings::sample_request(const LightPlan& light_plan) const {
     SampleRequest request(*this);
-    request.direct = light_plan.lights_any(cells_where([](LightCell cell) { return cell.path == PathPart::direct; }));
-    request.indirect = light_plan.lights_any(cells_where([](LightCell cell) { return cell.path != PathPart::direct; }));
+    const CellSet direct_cells = cells_where([](LightCell cell) { return cell.path == PathPart::direct; });
+    const bool all = sampled_light == SampledLight::all;
+    request.direct = all || light_plan.lights_any(direct_cells);
+    request.indirect = all || light_plan.lights_any(~direct_cells);
     request.movers_are_static = movers == movers_static;
     return request;
 }

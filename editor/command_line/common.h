@@ -1,5 +1,5 @@
 // What the commands share: where built-in scenes are, options of scene and camera, the statistics' JSON, progress.
-// CLI11 stays in main.cpp and the full JSON header in the files that use it: each costs seconds in every file.
+// CLI11 stays in program.cpp and the full JSON header in the files that use it: each costs seconds in every file.
 #pragma once
 
 #include "engine/statistics/summary.h"

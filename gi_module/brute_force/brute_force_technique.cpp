@@ -83,7 +83,7 @@ Status BruteForceTechnique::add_passes(gpu::FrameGraph& graph, Services& service
 }
 
 void BruteForceTechnique::report(Report& report) const {
-    report.set(light_batch_counter, double(batches_));
+    report.add(light_batch_counter, double(batches_));
     report.set(clamped_flux, kernel_->clamped().flux);
     report.set(clamped_irradiance, kernel_->clamped().mean_irradiance);
 }

@@ -32,7 +32,11 @@ std::vector<Field> sampling_fields() {
         SUNFLECK_FIELD(SamplingSettings, candidates, "", 1, 1024,
                        "Reflected samples are clustered from this many times as many; 1: no clustering"),
         SUNFLECK_FIELD(SamplingSettings, spread, "", 0, 1,
-                       "How clusters are subdivided: 0 by their flux, 1 by the surface that they cover")};
+                       "How clusters are subdivided: 0 by their flux, 1 by the surface that they cover"),
+        SUNFLECK_CHOICE(SamplingSettings, sampled_light,
+                        "Light that samples are made for: what some technique lights, or all of it, so that pictures "
+                        "of parts of the light have the samples of the whole",
+                        "used", "all")};
     for (Field& field : fields)
         field = field.flagged(needs_new_samples);
     return fields;

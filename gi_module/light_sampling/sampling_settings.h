@@ -11,6 +11,9 @@ inline constexpr std::uint32_t needs_new_samples = 1u << 0;
 
 enum class Sequence : std::uint32_t { pseudo_random, sobol };
 enum class Termination : std::uint32_t { bounce_limit, russian_roulette };
+// used: direct samples only where a technique lights direct light, and reflected ones likewise, so that none is wasted.
+// all: both, whatever the light plan says, so that plans can be compared by the same samples.
+enum class SampledLight : std::uint32_t { used, all };
 
 struct SamplingSettings {
     std::uint32_t source = 0;   // index into sample_sources() (sample_source.h)
@@ -25,6 +28,7 @@ struct SamplingSettings {
     // So many times the reflected samples are drawn and then clustered (sample_clusters.h); 1: no clustering.
     std::uint32_t candidates = 64;
     float spread = 0.5f; // of the clusters: 0 by flux, 1 by surface
+    SampledLight sampled_light = SampledLight::used;
 
     static const TypeDescription& description();
 };

@@ -139,7 +139,7 @@ Status ManyLightTechnique::light_pixels(const PixelStage& stage, Services& servi
 }
 
 void ManyLightTechnique::report(Report& report) const {
-    report.set(light_batch_counter, double(batches_));
+    report.add(light_batch_counter, double(batches_));
     report.set(map_updates, double(lighting_->light_maps().counters().updates));
     report.set(map_texels, double(lighting_->light_maps().counters().texels));
     report.set(baked_updates, double(lighting_->baked_light().counters().updates));

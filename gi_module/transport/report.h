@@ -43,6 +43,8 @@ public:
             }
         values_.push_back({&counter, value});
     }
+    // For what several owners count in one frame.
+    void add(const Counter& counter, double value) { set(counter, (*this)[counter.name] + value); }
     double operator[](std::string_view name) const {
         for (const Value& value : values_)
             if (value.counter->name == name)

@@ -42,7 +42,7 @@ protected:
         return shell("cd " + folder.string() + " && " + before + " " SUNFLECK_TOOL " " + arguments);
     }
     // One line that starts with "error:" and says each of `words`.
-    void expect_clear_error(const Outcome& outcome, std::vector<std::string> words) {
+    void expect_clear_error(const Outcome& outcome, const std::vector<std::string>& words) {
         EXPECT_NE(outcome.status, 0) << outcome.output;
         EXPECT_LT(outcome.status, 128) << "crashed: " << outcome.output;
         for (const std::string& word : words)

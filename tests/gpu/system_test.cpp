@@ -1,0 +1,155 @@
+// gi::System as a whole: several on one registry, and frames that never reach the GPU.
+#include "tests/support/system_frames.h"
+
+#include <cstring>
+
+namespace sunfleck::tests {
+namespace {
+
+class Systems : public GpuTest {};
+
+gi::Settings settings_for(std::string_view technique, std::uint32_t lights = 60) {
+    gi::Settings settings = gi::Settings().all_light_by(technique);
+    settings.lights = lights;
+    settings.shadow_map_resolution = 64;
+    settings.map_budget = 65536;
+    return settings;
+}
+
+// Techniques that can light everything, by name.
+std::vector<std::string_view> techniques_for_all_light() {
+    std::vector<std::string_view> names;
+    for (const std::string_view name : gi::Settings::find("indirect")->choices)
+        if (name != "none")
+            names.push_back(name);
+    return names;
+}
+
+int different_pixels(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+    int different = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        different += std::memcmp(&a[i], &b[i], sizeof(vec4)) != 0;
+    return different;
+}
+
+double largest_difference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, double(glm::length(a[i] - b[i]) / (0.1f + glm::length(b[i]))));
+    return largest;
+}
+
+// The picture after these steps, by one system alone.
+std::vector<vec4> picture_alone(const gi::Settings& settings, std::span<const std::uint64_t> steps) {
+    SystemFrames frames(assets::make_four_pillars);
+    frames.add(settings);
+    for (const std::uint64_t step : steps)
+        frames.settle(step);
+    return frames.picture();
+}
+
+// Two systems with other samples, maps and techniques light the same registry in the same frames.
+TEST_F(Systems, TwoLightOneRegistry) {
+    const std::uint64_t steps[] = {0, 30, 31};
+    const std::vector<std::string_view> names = techniques_for_all_light();
+    const gi::Settings first = settings_for(names.front()), second = settings_for(names.back(), 45);
+    SystemFrames both(assets::make_four_pillars);
+    both.add(first);
+    both.add(second);
+    for (const std::uint64_t step : steps)
+        both.settle(step);
+    const std::vector<vec4> alone[] = {picture_alone(first, steps), picture_alone(second, steps)};
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(different_pixels(both.picture(i), alone[i]), 0)
+            << "system " << i << ", largest difference " << largest_difference(both.picture(i), alone[i]);
+    EXPECT_NE(different_pixels(alone[0], alone[1]), 0);
+}
+
+// A room where all stays but one box.
+void make_room(assets::SceneBuilder& scene) {
+    const vec3 white(0.7f), red(0.7f, 0.3f, 0.3f);
+    scene.room(vec3(-2, 0, -2), vec3(2, 2.5f, 2), white, white, {red, white, white, white},
+               {{"lamp", vec2(0.5f, 0.3f), 0.6f, 0.6f, vec3(9.0f)}});
+    scene.box("pillar", vec3(-0.9f, 0.0f, -0.9f), vec3(-0.6f, 1.8f, -0.6f), assets::diffuse(white));
+    const ecs::Entity box = scene.box("box", vec3(-0.2f), vec3(0.2f), assets::diffuse(vec3(0.3f, 0.5f, 0.7f)));
+    scene.registry().patch<scene::Transform>(box,
+                                             [](scene::Transform& place) { place.position = vec3(0.0f, 0.7f, 0.3f); });
+    scene::Mover line;
+    line.path = scene::MoverPath::line;
+    line.travel = vec3(1.0f, 0.0f, 0.0f);
+    scene.mover(box, line);
+    scene.camera("view", vec3(1.8f, 1.7f, 1.8f), vec3(-0.4f, 0.8f, -0.4f), 65.0f);
+}
+
+// Where in the course of frames one is lost: the first one, one of those in which light is baked, one in which the box
+// moved, and two in a row.
+struct Loss {
+    const char* name;
+    std::vector<std::uint64_t> lost; // frames, by their number
+};
+const Loss losses[] = {{"the first frame", {0}},
+                       {"the second frame", {1}},
+                       {"a frame in motion", {42}},
+                       {"two frames in motion", {42, 43}},
+                       {"first and in motion", {0, 1, 42}}};
+constexpr std::uint64_t first_move = 40, frame_count = 46;
+
+// The box rests until light is baked, then moves on each frame. A lost frame is drawn again at the same step, as a host
+// would; so the frames that reach the GPU are the same ones.
+std::vector<vec4> run(const gi::Settings& settings, const std::vector<std::uint64_t>& lost, Fate fate) {
+    SystemFrames frames(make_room);
+    frames.add(settings);
+    for (std::uint64_t i = 0; i < frame_count; ++i) {
+        const std::uint64_t step = i < first_move ? 0 : 12 * (i - first_move + 1);
+        if (std::find(lost.begin(), lost.end(), i) != lost.end())
+            frames.frame(step, fate);
+        frames.frame(step);
+    }
+    EXPECT_EQ(frames.system().counters()["baked_light_waiting"], 0.0);
+    EXPECT_EQ(frames.system().counters()["shadow_maps_stale"], 0.0);
+    return frames.picture();
+}
+
+class LostFrames : public Systems, public testing::WithParamInterface<Fate> {};
+
+TEST_P(LostFrames, LeaveNoTrace) {
+    for (const std::string_view technique : techniques_for_all_light()) {
+        const gi::Settings settings = settings_for(technique);
+        const std::vector<vec4> undisturbed = run(settings, {}, GetParam());
+        for (const Loss& loss : losses) {
+            const std::vector<vec4> picture = run(settings, loss.lost, GetParam());
+            EXPECT_EQ(different_pixels(picture, undisturbed), 0)
+                << technique << ", lost: " << loss.name << "; largest difference "
+                << largest_difference(picture, undisturbed);
+        }
+    }
+}
+
+// A mover's step that only the lost frame had seen: the box stops there.
+TEST_P(LostFrames, TheLastMoveWasLost) {
+    for (const std::string_view technique : techniques_for_all_light()) {
+        std::vector<vec4> pictures[2];
+        for (const bool loses : {false, true}) {
+            SystemFrames frames(make_room);
+            frames.add(settings_for(technique));
+            frames.settle(0);
+            if (loses)
+                frames.frame(50, GetParam());
+            frames.frame(50);
+            pictures[loses] = frames.picture();
+        }
+        EXPECT_EQ(different_pixels(pictures[0], pictures[1]), 0)
+            << technique << ", largest difference " << largest_difference(pictures[1], pictures[0]);
+    }
+}
+
+std::string fate_name(const testing::TestParamInfo<Fate>& fate) {
+    const char* names[] = {"drawn", "not_declared", "not_executed", "not_submitted"};
+    return names[std::size_t(fate.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Fates, LostFrames,
+                         testing::Values(Fate::not_declared, Fate::not_executed, Fate::not_submitted), fate_name);
+
+} // namespace
+} // namespace sunfleck::tests
