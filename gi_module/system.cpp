@@ -67,11 +67,16 @@ Technique* System::technique(std::string_view name) {
     return nullptr;
 }
 
-bool System::wants_visibility() const {
+// Whether a technique in use requests something of the shared rooms.
+bool System::any_in_use(bool TechniqueEntry::*request) const {
     for (std::size_t i = 0; i < techniques_.size(); ++i)
-        if (techniques()[i].wants_visibility && plan_.uses(std::int32_t(i)))
+        if (techniques()[i].*request && plan_.uses(std::int32_t(i)))
             return true;
     return false;
+}
+
+bool System::wants_visibility() const {
+    return any_in_use(&TechniqueEntry::wants_visibility);
 }
 
 Services System::services() {
@@ -125,7 +130,8 @@ Status System::find_view() {
 Status System::update_samples(const SceneView& scene, bool static_changed) {
     const StageTimer timer(cpu_times_, "light samples");
     samples_.update(scene, settings_.sample_request(plan_));
-    SUNFLECK_TRY(shadows_->configure(settings_, {wants_visibility()}, samples_.size(), resources_));
+    const MapPolicy policy{wants_visibility(), any_in_use(&TechniqueEntry::needs_full_maps)};
+    SUNFLECK_TRY(shadows_->configure(settings_, policy, samples_.size(), resources_));
     samples_.update_rows(scene, settings_, shadows_->slots(), input_.indirect_scale);
     shadows_->follow(samples_, static_changed);
     return {};

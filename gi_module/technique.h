@@ -108,6 +108,9 @@ struct TechniqueEntry {
     bool (*supports)(const scene::DrawItem& mover, const ecs::Registry& registry,
                      const scene::MeshStore& meshes) = nullptr;
     bool wants_visibility = false;
+    // Its shadow test does not allow for movers that maps show simplified: while it is in use, none are
+    // (ShadowSettings::map_detail).
+    bool needs_full_maps = false;
     // It evaluates light pixel by pixel, at low resolution (low_resolution/): light_pixels is called.
     bool lights_pixels = false;
     TechniqueSettings settings;

@@ -34,6 +34,7 @@ const TechniqueEntry& brute_force_technique() {
         .name = "brute_force",
         .tooltip = "The baseline: every light sample with its shadow map at every pixel",
         .can_light = all_diffuse_cells(),
+        .needs_full_maps = true,
         .settings = settings_of<BruteForceSettings>(),
         .counters = technique_counters,
         .shaders = gpu::sunfleck_gi_brute_force_shaders,

@@ -126,7 +126,7 @@ Status ManyLightTechnique::add_passes(gpu::FrameGraph& graph, Services& services
                     make_light_batches(samples, services.shadows, cells_, 0, samples.size(), services.resources));
     batches_ = batches.size();
     options_.show = target.view != nullptr ? target.view->code : shared::show_nothing;
-    options_.simplified_movers = services.settings.map_detail;
+    options_.simplified_movers = services.shadows.simplifies_movers();
     options_.stale_maps = services.settings.shadows && services.shadows.stale() > 0;
     SUNFLECK_TRY(lighting_->add_passes(graph, {services.shadows.maps(), batches, services.shadows.ages()}, options_,
                                        services.resources));

@@ -4,6 +4,7 @@
 #include "gi_module/shadows/map_contributions.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunfleck::gi {
 namespace {
@@ -49,6 +50,7 @@ Status ShadowService::configure(const ShadowSettings& settings, MapPolicy policy
     settings_ = settings;
     policy_ = policy;
     cleared_ = false;
+    redetailed_ = std::exchange(simplified_, simplifies_movers()) != simplifies_movers();
     drawn_ = {};
     if (!settings.shadows)
         return {};
@@ -69,6 +71,8 @@ void ShadowService::follow(const SampleSet& samples, bool static_changed) {
     sample_generation_ = samples.generation();
     for (std::uint32_t sample = 0; cleared_ && sample < samples.size(); ++sample)
         scheduler_.mark_static(sample);
+    for (std::uint32_t sample = 0; redetailed_ && sample < samples.size(); ++sample)
+        scheduler_.mark(sample);
     for (const std::span<const std::uint32_t> changed : {samples.moved(), samples.remapped()})
         for (const std::uint32_t sample : changed)
             scheduler_.mark_static(sample);

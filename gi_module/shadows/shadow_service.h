@@ -19,6 +19,7 @@ namespace sunfleck::gi {
 // are drawn over the static part. Without it (the baseline), every map that a mover may affect is redrawn completely.
 struct MapPolicy {
     bool database = true;
+    bool full_detail = false; // whoever reads the maps needs movers as they are, whatever the settings
 };
 
 struct ScheduleInput {
@@ -75,7 +76,7 @@ public:
     // Upper bound of how far movers are from where the sample's map shows them, m; limited to what can matter.
     float lag(std::uint32_t sample) const { return std::min(scheduler_.lag(sample), lag_limit_); }
     // Whether movers are simplified in the maps.
-    bool simplifies_movers() const { return policy_.database && settings_.map_detail; }
+    bool simplifies_movers() const { return policy_.database && !policy_.full_detail && settings_.map_detail; }
     MapState state(const SampleSet& samples, std::uint32_t sample) const;
 
     static std::span<const Counter> counters();
@@ -99,9 +100,11 @@ private:
     std::vector<std::uint32_t> to_draw_;
     MapScheduler before_; // state before this frame's maps were drawn
     std::uint64_t sample_generation_ = 0;
-    bool cleared_ = false;   // all maps lost their content in configure
-    float lag_limit_ = 0.0f; // m: a mover that has moved farther does not overlap its old position
-    ShadowCounters drawn_;   // in this frame
+    bool cleared_ = false;    // all maps lost their content in configure
+    bool simplified_ = false; // movers, in the maps of the last frame
+    bool redetailed_ = false; // that changed in this frame
+    float lag_limit_ = 0.0f;  // m: a mover that has moved farther does not overlap its old position
+    ShadowCounters drawn_;    // in this frame
 };
 
 } // namespace sunfleck::gi
