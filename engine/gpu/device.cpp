@@ -312,8 +312,6 @@ Result<std::unique_ptr<Device>> Device::adopt(const HostDevice& host) {
     SUNFLECK_TRY(DeviceBuilder::check_features(*device));
     DeviceBuilder::finish(*device);
     device->queue_ = host.queue;
-    // The loader has these functions only for an instance with VK_EXT_debug_utils.
-    device->debug_labels_ = vkCmdBeginDebugUtilsLabelEXT != nullptr;
     return device;
 }
 

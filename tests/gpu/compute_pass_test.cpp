@@ -91,7 +91,7 @@ TEST_F(ComputePassTest, BrokenCodeIsAnErrorOrHarmless) {
     for (std::size_t length = 0; length < words.size() / 4; ++length)
         EXPECT_FALSE(gpu::reflect(std::span(words).first(length), "cut.comp"));
     RandomSequence random(SequenceKind::pseudo_random, 1, 1);
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < 4000; ++i) {
         std::vector<std::uint32_t> changed = words;
         for (int change = 0; change < 3; ++change)
             changed[std::size_t(random.next() * float(changed.size() - 1))] =
