@@ -13,7 +13,7 @@
 // The system conducts: it keeps what techniques share (samples, shadow maps, visibility) and asks each technique of the
 // light plan for its part. It never submits, waits, presents or owns a swapchain, and no frame waits for a read-back.
 // It must be used from one thread at a time; update itself runs on all cores. The device, registry, meshes and GPU
-// scene are the host's and must outlive it. Frames are told apart by serials that rise by one; resources of a frame are
+// scene are the host's and must outlive it. Frames are identified by serials that rise by one; resources of a frame are
 // reused when `completed_serial` has reached it. Several systems may light one registry.
 #pragma once
 

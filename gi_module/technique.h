@@ -42,7 +42,7 @@ struct FrameInput {
     float indirect_scale = 1.0f;
     // Name of a debug view (debug_views()) in place of the irradiance; empty: none.
     std::string_view view{};
-    // Called with the share that is done, 0 to 1, while an update takes long because everything is decided afresh (the
+    // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the
     // first one of a level), from any thread, never concurrently. Returning false ends the update with an error; the
     // next one begins again.
     std::function<bool(float)> progress;

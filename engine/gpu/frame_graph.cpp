@@ -103,7 +103,7 @@ ResourceId FrameGraph::create_image(const std::string& name, VkFormat format, st
     resource.name = name;
     resource.is_image = resource.created = true;
     resource.description = {name, format, width, height, layers, 1, 0, layers > 1};
-    // Images of one name in one frame (two lightings of a scene, say) are told apart by their order.
+    // Images of one name in one frame (two lightings of a scene, say) are distinguished by their order.
     const auto same = std::count_if(resources_.begin(), resources_.end(),
                                     [&](const Resource& other) { return other.created && other.name == name; });
     resource.pool_key = same == 0 ? name : name + " " + std::to_string(same + 1);

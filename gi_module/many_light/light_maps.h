@@ -2,8 +2,8 @@
 // grid of texels. Thesis sec. 4.3.2 and 4.5.2.
 //
 // Sums are kept in fixed point, so that adding and subtracting single samples in any order gives the same bits as
-// summing anew. A texel's first and last columns and rows lie on the patch's border: where neighbouring patches have
-// the same samples, they have the same values there, and no seam shows.
+// summing from the start. A texel's first and last columns and rows lie on the patch's border: where neighbouring
+// patches have the same samples, they have the same values there, and no seam shows.
 //
 // Which samples they hold: held_by_light_maps (light_map_jobs.h).
 #pragma once
@@ -27,9 +27,9 @@ class LightMaps {
 public:
     static Result<std::unique_ptr<LightMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
-    // Follows the database's changes; `rows` are the samples' rows by index. All is summed anew when the database's
-    // generation, the samples or their bound changed; of samples that only changed their strength (doors do that), the
-    // old light is subtracted and the new one added.
+    // Follows the database's changes; `rows` are the samples' rows by index. Everything is summed again when the
+    // database's generation, the samples or their bound changed; of samples that only changed their strength (doors do
+    // that), the old light is subtracted and the new one added.
     Status update(const VisibilityDatabase& database, std::span<const LightSample> samples,
                   std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
     // All is summed again by the next update.

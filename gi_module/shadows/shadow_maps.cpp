@@ -235,10 +235,10 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
     };
     if (!options.keep_static || !static_texels_)
         return in_chunks(requests, Occluders::all, texels_, false);
-    std::vector<ShadowRequest> anew;
-    std::copy_if(requests.begin(), requests.end(), std::back_inserter(anew),
+    std::vector<ShadowRequest> static_stale;
+    std::copy_if(requests.begin(), requests.end(), std::back_inserter(static_stale),
                  [](const ShadowRequest& request) { return request.redraw_static; });
-    SUNFLECK_TRY(in_chunks(anew, Occluders::static_only, static_texels_, false));
+    SUNFLECK_TRY(in_chunks(static_stale, Occluders::static_only, static_texels_, false));
     return in_chunks(requests, Occluders::movers, texels_, true);
 }
 

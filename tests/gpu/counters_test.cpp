@@ -1,4 +1,4 @@
-// Every counter that is declared: told apart, explained, in --stats, and counting something somewhere.
+// Every counter that is declared: distinct, explained, in --stats, and counting something somewhere.
 #include "editor/command_line/common.h"
 #include "gi_module/visibility/scene_visibility.h"
 #include "tests/support/gpu_world.h"

@@ -129,7 +129,7 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
     std::printf("%llu light map updates\n", static_cast<unsigned long long>(updates));
     EXPECT_GT(updates, std::uint64_t(frames) * 20);
     const auto kept = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
-    // Another seed and back: samples, database and light maps are made anew.
+    // Another seed and back: samples, database and light maps are made again.
     settings.seed = 2;
     world.set(settings);
     world.render();

@@ -248,8 +248,8 @@ TEST_F(ShadowMapTest, CopiedAreasLeaveNothingBehind) {
     world.render();
     fresh.render();
     ASSERT_EQ(world.renderer->lighting().counters()["shadow_maps_stale"], 0u);
-    const ShadowMapValues kept(world, 16), anew(fresh, 16);
-    EXPECT_EQ(kept.values, anew.values);
+    const ShadowMapValues kept(world, 16), redrawn(fresh, 16);
+    EXPECT_EQ(kept.values, redrawn.values);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Samples of lights that move, against samples made anew.
+// Samples of lights that move, against samples generated at the new place.
 #include "assets/test_rooms.h"
 #include "gi_module/light_sampling/dynamic_lights.h"
 #include "gi_module/light_sampling/light_sampler.h"

@@ -292,7 +292,7 @@ TEST(SceneFiles, AFullDiskLosesNothing) {
 
 TEST(SceneFiles, TheSchemaInTheDocumentationIsCurrent) {
     EXPECT_EQ(read_file(fs::path(SUNFLECK_SOURCE_DIR) / "docs/scene.schema.json").value(), io::scene_file_schema())
-        << "write it anew: sunfleck info --schema > docs/scene.schema.json";
+        << "write it again: sunfleck info --schema > docs/scene.schema.json";
 }
 
 } // namespace

@@ -55,8 +55,8 @@ struct MeshData {
     std::span<const float> texture_coordinates; // two a vertex, u to the right and v down the texture; may be empty
 };
 
-// Light samples lie on fixed geometry, and patches of it keep light maps: moving it makes all of that anew. What moves
-// receives light and casts shadows.
+// Light samples lie on fixed geometry, and patches of it keep light maps: moving it computes all of that again. What
+// moves receives light and casts shadows.
 enum class Mobility { fixed, moving };
 
 // RGBA of 8 bits, sRGB, rows from the top; repeats outside of 0 to 1. Read before the call returns.
@@ -162,9 +162,9 @@ struct Frame {
     std::uint64_t serial = 1;               // of this frame; rises by one each frame
     std::uint64_t completed_serial = 0;     // all frames up to this one are finished on the GPU
     std::uint32_t map_budget = 0xffffffffu; // shadow maps redrawn in this frame at most
-    // Called with the share that is done, 0 to 1, while an update takes long because all is decided anew (the first one
-    // of a level); from any thread, but by one at a time. Returning false ends the update with an error; the next one
-    // begins again.
+    // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the
+    // first one of a level); from any thread, but by one at a time. Returning false ends the update with an error; the
+    // next one begins again.
     std::function<bool(float)> progress;
     // The commands of the frame recorded last were never submitted. What they would have uploaded and drawn is recorded
     // once more.
