@@ -15,6 +15,9 @@ public:
     Status add_passes(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> techniques,
                       const LightPlan& plan, Services& services, LightTarget target);
 
+    // The frame recorded last was never submitted.
+    void drop_last_counts() { low_resolution_->drop_last_counts(); }
+
     void report(Report& report) const { low_resolution_->report(report); }
 
 private:

@@ -1,6 +1,7 @@
 #include "gi_module/system.h"
 
 #include <chrono>
+#include <utility>
 
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_gi_shaders();
@@ -46,6 +47,7 @@ Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::Pipelin
         SUNFLECK_ASSIGN(std::unique_ptr<Technique> technique, entry.create(device, pipelines));
         system->techniques_.push_back(std::move(technique));
     }
+    system->restarts_.resize(system->techniques_.size());
     SUNFLECK_ASSIGN(system->plan_, system->settings_.light_plan());
     return system;
 }
@@ -91,7 +93,10 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
     restart_ = !recorded_ || input.previous_frame_lost;
     recorded_ = false;
     if (restart_)
-        shadows_->lost_frame();
+        restarts_.assign(techniques_.size(), 1);
+    if (input.previous_frame_lost)
+        composer_->drop_last_counts();
+    shadows_->begin_frame(restart_);
     resources_.begin_frame(input.serial, input.completed_serial);
     SUNFLECK_TRY(find_view());
     const SceneView scene{registry, changes, meshes, gpu_scene, rays};
@@ -161,8 +166,10 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
 Status System::update_techniques(const SceneView& scene) {
     Services shared = services();
     for (std::size_t i = 0; i < techniques_.size(); ++i)
-        if (const CellSet cells = plan_.lit_by(std::int32_t(i)); cells.any())
+        if (const CellSet cells = plan_.lit_by(std::int32_t(i)); cells.any()) {
+            shared.restart = std::exchange(restarts_[i], std::uint8_t(0)) != 0;
             SUNFLECK_TRY(techniques_[i]->update(scene, shared, cells));
+        }
     return {};
 }
 
@@ -177,6 +184,8 @@ Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::
 Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
                           const gpu::UploadSlice& camera, gpu::ResourceId output) {
     const StageTimer timer(cpu_times_, "light lists");
+    if (restart_)
+        graph.add_full_barrier();
     if (!shadows_->slots_are_shared(samples_.size()))
         SUNFLECK_TRY(shadows_->add_passes(graph, gpu_scene, samples_, resources_));
     Services shared = services();

@@ -90,8 +90,9 @@ private:
     const DebugView* view_ = nullptr;
     std::uint64_t settings_generation_ = 1;
     std::uint64_t geometry_generation_ = 0;
-    bool recorded_ = true; // the passes of the last update
-    bool restart_ = false;
+    bool recorded_ = true;               // the passes of the last update
+    bool restart_ = false;               // the last frame never reached the GPU
+    std::vector<std::uint8_t> restarts_; // by technique: it has not been told of such a frame yet
     std::filesystem::path cache_folder_;
     Report report_;
     StageTimes cpu_times_;

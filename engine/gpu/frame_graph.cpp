@@ -140,6 +140,20 @@ FrameGraph::PassBuilder FrameGraph::add_pass(const std::string& name) {
     return PassBuilder(*this, std::uint32_t(passes_.size() - 1));
 }
 
+void FrameGraph::add_full_barrier() {
+    add_pass("full barrier").keep().execute([](PassContext& context) -> Status {
+        VkMemoryBarrier2 memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+        memory.srcStageMask = memory.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+        memory.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+        memory.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+        VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+        info.memoryBarrierCount = 1;
+        info.pMemoryBarriers = &memory;
+        context.device.vk.vkCmdPipelineBarrier2(context.commands, &info);
+        return {};
+    });
+}
+
 void FrameGraph::when_executed(std::function<void()> callback) {
     when_executed_.push_back(std::move(callback));
 }

@@ -98,6 +98,9 @@ public:
     void mark_output(ResourceId id);
 
     PassBuilder add_pass(const std::string& name);
+    // Passes added after this wait for all commands before it, and see what they wrote. For whoever recorded a frame
+    // that was then not submitted: barriers are derived as if it had been.
+    void add_full_barrier();
     // Called once at the end of execute(), if all passes were recorded without an error: for state on the CPU that
     // must not say that a frame's work was done when it was not.
     void when_executed(std::function<void()> callback);

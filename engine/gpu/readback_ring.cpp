@@ -24,6 +24,13 @@ void ReadbackRing::add_pass(FrameGraph& graph, Slot& slot, std::uint64_t serial)
     graph.when_executed([&slot, serial] { slot.serial = serial; });
 }
 
+void ReadbackRing::drop_newest() {
+    const auto newest = std::max_element(slots_.begin(), slots_.end(),
+                                         [](const Slot& a, const Slot& b) { return a.serial < b.serial; });
+    if (newest != slots_.end())
+        newest->serial = 0;
+}
+
 const ReadbackRing::Slot* ReadbackRing::collect(std::uint64_t completed_serial) {
     const Slot* newest = nullptr;
     for (const Slot& slot : slots_)

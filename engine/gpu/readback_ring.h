@@ -29,6 +29,9 @@ public:
     // Adds the pass that makes what frame `serial` wrote to `slot` visible to the CPU. After the pass that writes it.
     void add_pass(FrameGraph& graph, Slot& slot, std::uint64_t serial);
 
+    // The newest frame that has a slot was recorded, but never submitted: what it should have written is not collected.
+    void drop_newest();
+
     // The newest complete slot that was not collected before, or null.
     const Slot* collect(std::uint64_t completed_serial);
     template <typename T>

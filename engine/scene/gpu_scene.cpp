@@ -123,6 +123,7 @@ Status GpuScene::update_vertices(std::uint32_t index, const MeshStore& meshes, g
     if (copy.has_tangents) {
         SUNFLECK_ASSIGN(copy.tangents, resources.upload(std::span<const vec4>(mesh.tangents)));
     }
+    copy.mesh = index;
     copy.first = std::uint32_t(range.vertex_offset);
     copies_.push_back(copy);
     range.revision = meshes.revision(index);
@@ -136,10 +137,12 @@ void GpuScene::add_passes(gpu::FrameGraph& graph) {
         graph.add_pass("mesh upload").keep().execute([this](gpu::PassContext& context) {
             return copy_staged(context);
         });
-    if (!copies_.empty())
-        graph.add_pass("deformed vertices").keep().execute([this](gpu::PassContext& context) {
-            return copy_vertices(context);
-        });
+    if (copies_.empty())
+        return;
+    graph.add_pass("deformed vertices").keep().execute([this](gpu::PassContext& context) {
+        return copy_vertices(context);
+    });
+    graph.when_executed([this] { copies_.clear(); });
 }
 
 // Vertex buffers are no resources of the graph: nothing else writes them. The barriers are here.

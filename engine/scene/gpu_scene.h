@@ -119,7 +119,7 @@ private:
     struct VertexCopy {
         gpu::UploadSlice positions, normals, tangents;
         bool has_tangents = false;
-        std::uint32_t first = 0; // vertex
+        std::uint32_t mesh = 0, first = 0; // vertex
     };
     Status update_vertices(std::uint32_t mesh, const MeshStore& meshes, gpu::FrameResources& resources);
     Status update_deformed(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources);
@@ -150,7 +150,7 @@ private:
     gpu::Buffer positions_, normals_, indices_, texture_coordinates_, tangents_, colours_;
     gpu::UploadSlice materials_;
     bool has_emission_textures_ = false;
-    std::vector<VertexCopy> copies_;
+    std::vector<VertexCopy> copies_; // until they were recorded
     std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;
     bool ranges_changed_ = false; // since the draw list was laid out

@@ -2,6 +2,7 @@
 #include "engine/scene/gpu_scene.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunfleck::scene {
 namespace {
@@ -78,7 +79,6 @@ void describe_surface(const Drawable& drawable, DrawItem& item, shared::Instance
 } // namespace
 
 Status GpuScene::update(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources) {
-    copies_.clear();
     removed_bounds_.clear();
     SUNFLECK_TRY(update_deformed(changes, meshes, resources));
     settle();
@@ -95,7 +95,10 @@ Status GpuScene::update(const SceneChanges& changes, const MeshStore& meshes, gp
     return {};
 }
 
+// Copies of a frame that was not recorded are made again: its upload memory is about to be used for other things.
 Status GpuScene::update_deformed(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources) {
+    for (const VertexCopy& copy : std::exchange(copies_, {}))
+        SUNFLECK_TRY(update_vertices(copy.mesh, meshes, resources));
     const auto update_one = [&](std::uint32_t mesh) -> Status {
         if (mesh >= ranges_.size() || ranges_[mesh].revision == meshes.revision(mesh))
             return {};

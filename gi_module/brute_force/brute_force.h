@@ -59,6 +59,9 @@ public:
     Status add_pass(const BruteForceFrame& frame, std::span<const LightBatch> batches, const BruteForceOptions& options,
                     bool first, bool last);
 
+    // The frame recorded last was never submitted: it counts nothing.
+    void drop_last_counts() { readback_.drop_newest(); }
+
     const ClampedLight& clamped() const { return clamped_; }
 
 private:

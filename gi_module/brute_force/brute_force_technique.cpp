@@ -49,7 +49,9 @@ Result<std::unique_ptr<Technique>> BruteForceTechnique::create(gpu::Device& devi
     return std::unique_ptr<Technique>(std::move(technique));
 }
 
-Status BruteForceTechnique::update(const SceneView&, Services&, CellSet cells) {
+Status BruteForceTechnique::update(const SceneView&, Services& services, CellSet cells) {
+    if (services.input.previous_frame_lost)
+        kernel_->drop_last_counts();
     cells_ = cells;
     batches_ = 0;
     return {};

@@ -33,6 +33,18 @@ void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
     static_stale_.assign(count, 1);
     lags_.assign(count, 0.0f);
+    done_.clear();
+}
+
+// What was marked after it was done stays marked.
+void MapScheduler::begin_frame(bool previous_lost) {
+    if (previous_lost)
+        for (const Done& done : done_) {
+            age_[done.sample] = std::max(age_[done.sample], done.age);
+            static_stale_[done.sample] |= done.static_stale;
+            lags_[done.sample] += done.lag;
+        }
+    done_.clear();
 }
 
 void MapScheduler::advance() {
@@ -96,6 +108,7 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {
     for (const std::uint32_t sample : samples) {
+        done_.push_back({sample, age_[sample], static_stale_[sample], lags_[sample]});
         age_[sample] = 0;
         static_stale_[sample] = 0;
         lags_[sample] = 0.0f;

@@ -36,6 +36,9 @@ public:
                                       std::span<const float> contributions = {}) const;
     // The maps were redrawn and are up to date.
     void done(std::span<const std::uint32_t> samples);
+    // Starts a frame. `previous_lost`: nothing that was done since the last call reached the GPU, and those maps are as
+    // stale as before.
+    void begin_frame(bool previous_lost);
 
     bool is_static_stale(std::uint32_t sample) const { return static_stale_[sample] != 0; }
     // 0: fresh.
@@ -56,6 +59,12 @@ private:
     std::vector<std::uint32_t> age_;
     std::vector<std::uint8_t> static_stale_;
     std::vector<float> lags_;
+    struct Done {
+        std::uint32_t sample, age;
+        std::uint8_t static_stale;
+        float lag;
+    };
+    std::vector<Done> done_; // in this frame, with the state before
 };
 
 } // namespace sunfleck::gi

@@ -71,6 +71,16 @@ Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu:
     return maps;
 }
 
+// A map that was to be redrawn may show movers where the lost frame found them, or still where the frame before did.
+void ShadowMaps::begin_frame(bool previous_lost) {
+    if (previous_lost) {
+        for (const auto& [slot, areas] : shown_before_)
+            movers_shown_[slot].add(areas);
+        staging_.state().layout = VK_IMAGE_LAYOUT_UNDEFINED; // its content is of no use from frame to frame
+    }
+    shown_before_.clear();
+}
+
 Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources& resources) {
     const std::uint32_t layers = layout.keep_static ? 2 : 1;
     const auto most_maps = [&](std::uint32_t resolution) {
@@ -122,6 +132,7 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     SUNFLECK_ASSIGN(staging_, gpu::Image::create(device_, image));
     slots_ = slots;
+    shown_before_.clear();
     movers_shown_.assign(slots, {}); // of maps that hold nothing yet: their static part comes first
     return true;
 }
@@ -251,8 +262,8 @@ void ShadowMaps::find_copied_areas(std::span<const ShadowRequest> requests, bool
             continue;
         }
         MapAreas& shown = movers_shown_[requests[layer].slot];
-        const MapAreas before = std::exchange(shown, areas);
-        areas.add(before);
+        shown_before_.emplace_back(requests[layer].slot, std::exchange(shown, areas));
+        areas.add(shown_before_.back().second);
         if (requests[layer].redraw_static)
             areas.add(MapArea::all(resolution_));
     }

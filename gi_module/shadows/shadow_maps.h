@@ -56,6 +56,9 @@ class ShadowMaps {
 public:
     static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
+    // Starts a frame. `previous_lost`: what was added since the last call never reached the GPU, or not all of it.
+    void begin_frame(bool previous_lost);
+
     // Sets resolution, bits and number of slots. Returns true if any of them changed: the content of all maps is then
     // lost. The number of slots is limited by the request, the memory and the device; with `shrink`, the resolution is
     // lowered instead.
@@ -98,6 +101,7 @@ private:
     const gpu::Pipeline* hole_pipelines_[2] = {}; // 16 bits, 32 bits
     gpu::Buffer texels_, static_texels_;
     std::vector<MapAreas> movers_shown_; // by slot: where the map may differ from its static part
+    std::vector<std::pair<std::uint32_t, MapAreas>> shown_before_; // slots drawn in this frame
     MapLayout layout_;
     gpu::Image staging_;
     std::uint32_t resolution_ = 0, bits_ = 0, slots_ = 0, layers_ = 0;

@@ -43,6 +43,11 @@ Result<std::unique_ptr<ShadowService>> ShadowService::create(gpu::Device& device
     return service;
 }
 
+void ShadowService::begin_frame(bool previous_lost) {
+    maps_->begin_frame(previous_lost);
+    scheduler_.begin_frame(previous_lost);
+}
+
 // With the database every sample keeps a map: if memory does not suffice at full resolution, maps are smaller. With so
 // many samples, each of them is also dimmer.
 Status ShadowService::configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
@@ -92,7 +97,6 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
             scheduler_.choose(samples.samples(), settings_.map_priority, budget, contributions(samples, input, budget));
     }
     budget_.add_frame(input.serial, to_draw_.size());
-    before_ = scheduler_;
 }
 
 // The host's budget is a hard limit; that of the settings is exceeded for maps that are unusable otherwise.
@@ -188,10 +192,6 @@ Status ShadowService::add_map_range(gpu::FrameGraph& graph, const scene::GpuScen
     for (std::uint32_t i = 0; i < count; ++i)
         drawn[i] = first + i;
     return draw(graph, gpu_scene, samples, drawn, resources);
-}
-
-void ShadowService::lost_frame() {
-    scheduler_ = before_;
 }
 
 MapState ShadowService::state(const SampleSet& samples, std::uint32_t sample) const {

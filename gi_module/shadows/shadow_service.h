@@ -1,8 +1,8 @@
 // Shadow maps for all techniques: one store, one scheduler, one budget. A technique that owns light needs maps; which
 // of them are redrawn in a frame is decided here.
 //
-// A frame: configure -> follow -> schedule (CPU, in System::update), add_passes (GPU work). Maps count as drawn from
-// then on, unless the next frame reports that the recorded one never reached the GPU: lost_frame.
+// A frame: begin_frame -> configure -> follow -> schedule (CPU, in System::update), add_passes (GPU work). Maps count
+// as drawn from then on, unless the next begin_frame says that this work never reached the GPU.
 #pragma once
 
 #include "gi_module/light_sampling/sample_set.h"
@@ -42,6 +42,8 @@ class ShadowService {
 public:
     static Result<std::unique_ptr<ShadowService>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
 
+    // `previous_lost`: the passes added since the last call never reached the GPU; maps are as stale as before them.
+    void begin_frame(bool previous_lost);
     // Allocates the maps of `count` samples. Call before SampleSet::update_rows, which needs slots().
     Status configure(const ShadowSettings& settings, MapPolicy policy, std::uint32_t count,
                      gpu::FrameResources& resources);
@@ -59,8 +61,6 @@ public:
     // [first, first + count) over those that used the slots before.
     Status add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                          std::uint32_t first, std::uint32_t count, gpu::FrameResources& resources);
-    // The frame's passes never reached the GPU: maps are as stale as before it.
-    void lost_frame();
 
     const ShadowMaps& maps() const { return *maps_; }
     const ShadowSettings& settings() const { return settings_; }
@@ -98,7 +98,6 @@ private:
     MapPolicy policy_;
     const VisibilityDatabase* database_ = nullptr; // of this frame
     std::vector<std::uint32_t> to_draw_;
-    MapScheduler before_; // state before this frame's maps were drawn
     std::uint64_t sample_generation_ = 0;
     bool cleared_ = false;    // all maps lost their content in configure
     bool simplified_ = false; // movers, in the maps of the last frame

@@ -170,6 +170,22 @@ TEST_F(ComputePassTest, WhatIsUploadedComesBackChangedAndCallbacksRunOnce) {
     EXPECT_EQ(called, 1);
 }
 
+// A frame that was recorded, but never submitted, counts nothing; the one before it still does.
+TEST_F(ComputePassTest, ADroppedFrameIsNotCollected) {
+    gpu::ReadbackRing::Slot* slots[2] = {};
+    for (const std::uint64_t serial : {1u, 2u}) {
+        resources.begin_frame(serial, 0);
+        graph.reset();
+        slots[serial - 1] = *ring.acquire(0, 12);
+        ring.add_pass(graph, *slots[serial - 1], serial);
+        const Status status = run();
+        ASSERT_TRUE(status) << status.error().message;
+    }
+    ring.drop_newest();
+    EXPECT_EQ(ring.collect(2), slots[0]);
+    EXPECT_EQ(*ring.acquire(0, 12), slots[1]);
+}
+
 TEST_F(ComputePassTest, AWrongBindingIsAnErrorThatNamesShaderAndBinding) {
     resources.begin_frame(1, 0);
     gpu::ReadbackRing::Slot* slot = *ring.acquire(0, 12);

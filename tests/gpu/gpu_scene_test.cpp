@@ -93,5 +93,36 @@ TEST_F(GpuSceneTest, FollowingChangesEqualsStartingFromScratch) {
     EXPECT_GT(followed.draws().size(), 20u);
 }
 
+// Vertices of a deformed mesh are copied until a frame that does so was recorded.
+TEST_F(GpuSceneTest, UnrecordedVerticesAreCopiedAgain) {
+    SceneEditor editor;
+    scene::ChangeTracker tracker;
+    gpu::FrameResources resources(device());
+    scene::GpuScene scene(device());
+    const auto submission = gpu::Submission::create(device(), 2).value();
+    std::uint64_t serial = 0;
+    // Whether this frame copies vertices.
+    const auto frame = [&](bool recorded) {
+        resources.begin_frame(++serial, 0);
+        EXPECT_TRUE(scene.stage_meshes(editor.meshes, resources));
+        EXPECT_TRUE(scene.update(tracker.collect(editor.registry, editor.meshes), editor.meshes, resources));
+        gpu::FrameGraph graph(&device());
+        scene.add_passes(graph);
+        EXPECT_TRUE(graph.compile());
+        const auto& passes = graph.compiled();
+        const bool copies = std::any_of(passes.begin(), passes.end(),
+                                        [](const gpu::CompiledPass& pass) { return pass.name == "deformed vertices"; });
+        const auto record = [&](VkCommandBuffer commands) { return graph.execute(commands, resources, nullptr); };
+        EXPECT_TRUE(recorded ? submission->immediate(record) : Status());
+        return copies;
+    };
+    EXPECT_FALSE(frame(true)) << "all meshes are uploaded as they are";
+    editor.meshes.replace(0, triangle(2.0f));
+    EXPECT_TRUE(frame(false));
+    EXPECT_TRUE(frame(false));
+    EXPECT_TRUE(frame(true));
+    EXPECT_FALSE(frame(true));
+}
+
 } // namespace
 } // namespace sunfleck::tests

@@ -143,13 +143,33 @@ TEST_P(LostFrames, TheLastMoveWasLost) {
     }
 }
 
+// Other samples, and more of them, that only an unfinished frame has seen.
+TEST_P(LostFrames, NewSamplesAreNotForgotten) {
+    for (const std::string_view technique : techniques_for_all_light()) {
+        std::vector<vec4> pictures[2];
+        for (const bool loses : {false, true}) {
+            SystemFrames frames(make_room);
+            frames.add(settings_for(technique, 30));
+            frames.settle(0);
+            ASSERT_TRUE(frames.system().set_settings(settings_for(technique, 80)));
+            if (loses)
+                frames.frame(0, GetParam());
+            frames.settle(0);
+            pictures[loses] = frames.picture();
+        }
+        EXPECT_EQ(different_pixels(pictures[0], pictures[1]), 0)
+            << technique << ", largest difference " << largest_difference(pictures[1], pictures[0]);
+    }
+}
+
 std::string fate_name(const testing::TestParamInfo<Fate>& fate) {
-    const char* names[] = {"drawn", "not_declared", "not_executed", "not_submitted"};
+    const char* names[] = {"drawn", "stopped", "not_declared", "not_executed", "not_submitted"};
     return names[std::size_t(fate.param)];
 }
 
 INSTANTIATE_TEST_SUITE_P(Fates, LostFrames,
-                         testing::Values(Fate::not_declared, Fate::not_executed, Fate::not_submitted), fate_name);
+                         testing::Values(Fate::stopped, Fate::not_declared, Fate::not_executed, Fate::not_submitted),
+                         fate_name);
 
 } // namespace
 } // namespace sunfleck::tests

@@ -15,6 +15,7 @@ namespace sunfleck::tests {
 // What becomes of a system's frame.
 enum class Fate {
     drawn,
+    stopped,       // the host ends the update, if that takes long
     not_declared,  // update without add_passes
     not_executed,  // the graph is thrown away; the system finds out
     not_submitted, // recorded, but the commands are thrown away; the next frame is told
@@ -115,8 +116,13 @@ private:
 
     Status run(std::uint64_t step, Fate fate) {
         SUNFLECK_ASSIGN(const VkCommandBuffer commands, submission_->begin());
-        SUNFLECK_TRY(update(step));
+        const Status updated = update(step, fate);
         lost_ = fate == Fate::not_submitted;
+        if (fate == Fate::stopped) {
+            ++lost_serials_;
+            return {};
+        }
+        SUNFLECK_TRY(updated);
         SUNFLECK_ASSIGN(const gpu::UploadSlice camera, resources_.upload_value(camera_row()));
         if (fate == Fate::not_executed || fate == Fate::not_submitted) {
             gpu::FrameGraph thrown_away(&device());
@@ -138,12 +144,14 @@ private:
         SUNFLECK_TRY(submission_->submit());
         return submission_->wait(serial);
     }
-    Status update(std::uint64_t step) {
+    Status update(std::uint64_t step, Fate fate) {
         SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
         gi::FrameInput input;
         input.serial = submission_->serial() + lost_serials_;
         input.completed_serial = completed + lost_serials_;
         input.previous_frame_lost = lost_;
+        if (fate == Fate::stopped)
+            input.progress = [](float) { return false; };
         input.view_projection = camera_row().view_projection;
         resources_.begin_frame(input.serial, input.completed_serial);
         simulation::set_movers_to_step(registry, step);

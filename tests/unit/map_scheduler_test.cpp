@@ -136,6 +136,36 @@ TEST(MapScheduler, ContributionsGoFirstAndNothingComesInBursts) {
     EXPECT_LT(unseen_at_most, 20) << "never all of the budget for those out of sight";
 }
 
+// A lost frame's maps are as stale as before it, a frame older; what was marked in between stays marked.
+TEST(MapScheduler, MapsOfALostFrameAreStaleAgain) {
+    MapScheduler scheduler;
+    scheduler.reset(4);
+    const std::vector<std::uint32_t> all = {0, 1, 2, 3}, some = {1, 2};
+    scheduler.begin_frame(false);
+    scheduler.done(all);
+    scheduler.begin_frame(false); // those were drawn
+    scheduler.advance();
+    scheduler.mark(1, 0.5f);
+    scheduler.mark_static(2);
+    scheduler.done(some);
+    scheduler.mark(3, 0.25f); // by an update that ended with an error
+    scheduler.begin_frame(true);
+    scheduler.advance();
+    EXPECT_EQ(std::vector(scheduler.ages().begin(), scheduler.ages().end()), (std::vector<std::uint32_t>{0, 2, 2, 2}));
+    EXPECT_FALSE(scheduler.is_static_stale(1));
+    EXPECT_TRUE(scheduler.is_static_stale(2));
+    EXPECT_EQ(scheduler.lag(1), 0.5f);
+    scheduler.mark(1, 0.25f);
+    EXPECT_EQ(scheduler.lag(1), 0.75f);
+    scheduler.done(all);
+    scheduler.begin_frame(false);
+    EXPECT_EQ(scheduler.stale(), 0u);
+    scheduler.done(all);
+    scheduler.reset(2); // other samples: maps that were drawn for the old ones do not matter
+    scheduler.begin_frame(true);
+    EXPECT_EQ(scheduler.stale(), 2u);
+}
+
 TEST(MapScheduler, FluxDecidesWhereNothingContributes) {
     std::mt19937 random(5);
     const auto samples = samples_of(100, random);
