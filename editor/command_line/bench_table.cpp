@@ -56,7 +56,7 @@ Json BenchTable::json(const gpu::Device* device) const {
 
 namespace {
 
-// RFC 4180: text with commas or quotes stands in quotes.
+// RFC 4180: text with commas or quotes is quoted.
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos)
         return text;
@@ -100,51 +100,74 @@ double log_log_slope(const std::vector<std::pair<double, double>>& points) {
     return spread > 0 ? (n * sxy - sx * sy) / spread : 0.0;
 }
 
+namespace {
+
+constexpr double plot_width = 640, plot_height = 420, left = 70, right = 20, top = 40, bottom = 55;
+
+// Logarithmic axes.
+struct Axes {
+    double x0 = 1e30, x1 = 0, y0 = 1e30, y1 = 0;
+
+    explicit Axes(const std::vector<PlotSeries>& series) {
+        for (const PlotSeries& s : series)
+            for (const auto& [x, y] : s.points)
+                x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+        if (x1 <= x0)
+            x1 = x0 * 2;
+        y0 *= 0.8, y1 *= 1.25;
+    }
+    double px(double x) const { return left + (plot_width - left - right) * std::log(x / x0) / std::log(x1 / x0); }
+    double py(double y) const {
+        return plot_height - bottom - (plot_height - top - bottom) * std::log(y / y0) / std::log(y1 / y0);
+    }
+};
+
+void draw_axes(std::ostringstream& svg, const Axes& axes) {
+    svg << "<path d=\"M" << left << " " << top << "V" << plot_height - bottom << "H" << plot_width - right
+        << "\" fill=\"none\" stroke=\"#444\"/>";
+    for (double x = std::pow(2.0, std::ceil(std::log2(axes.x0))); x <= axes.x1 * 1.001; x *= 2)
+        svg << "<text x=\"" << axes.px(x) << "\" y=\"" << plot_height - bottom + 18 << "\" text-anchor=\"middle\">" << x
+            << "</text>"
+            << "<path d=\"M" << axes.px(x) << " " << plot_height - bottom << "v5\" stroke=\"#444\"/>";
+    for (double decade = std::pow(10.0, std::floor(std::log10(axes.y0))); decade <= axes.y1; decade *= 10)
+        for (const double m : {1.0, 2.0, 5.0})
+            if (const double y = decade * m; y >= axes.y0 && y <= axes.y1)
+                svg << "<text x=\"" << left - 8 << "\" y=\"" << axes.py(y) + 4 << "\" text-anchor=\"end\">" << y
+                    << "</text>"
+                    << "<path d=\"M" << left << " " << axes.py(y) << "H" << plot_width - right
+                    << "\" stroke=\"#ddd\"/>";
+}
+
+void draw_series(std::ostringstream& svg, const Axes& axes, const PlotSeries& series, std::size_t index) {
+    static const char* colours[] = {"#c0392b", "#2471a3", "#239b56", "#b7950b", "#7d3c98"};
+    const char* colour = colours[index % 5];
+    svg << "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" << colour << "\" points=\"";
+    for (const auto& [x, y] : series.points)
+        svg << axes.px(x) << "," << axes.py(y) << " ";
+    svg << "\"/>";
+    for (const auto& [x, y] : series.points)
+        svg << "<circle cx=\"" << axes.px(x) << "\" cy=\"" << axes.py(y) << "\" r=\"3\" fill=\"" << colour << "\"/>";
+    svg << "<text x=\"" << plot_width - right - 8 << "\" y=\"" << top + 16 * double(index + 1)
+        << "\" text-anchor=\"end\" fill=\"" << colour << "\">" << series.name << "</text>";
+}
+
+} // namespace
+
 std::string plot_svg(const std::string& title, const std::string& x_label, const std::string& y_label,
                      const std::vector<PlotSeries>& series) {
-    constexpr double width = 640, height = 420, left = 70, right = 20, top = 40, bottom = 55;
-    double x0 = 1e30, x1 = 0, y0 = 1e30, y1 = 0;
-    for (const PlotSeries& s : series)
-        for (const auto& [x, y] : s.points) {
-            x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
-        }
-    if (x1 <= x0)
-        x1 = x0 * 2;
-    y0 *= 0.8, y1 *= 1.25;
-    const auto px = [&](double x) { return left + (width - left - right) * std::log(x / x0) / std::log(x1 / x0); };
-    const auto py = [&](double y) {
-        return height - bottom - (height - top - bottom) * std::log(y / y0) / std::log(y1 / y0);
-    };
+    const Axes axes(series);
     std::ostringstream svg;
-    svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height
+    svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << plot_width << "\" height=\"" << plot_height
         << "\" font-family=\"sans-serif\" font-size=\"12\"><rect width=\"100%\" height=\"100%\" fill=\"white\"/>"
-        << "<text x=\"" << width / 2 << "\" y=\"22\" text-anchor=\"middle\" font-size=\"15\">" << title << "</text>"
-        << "<text x=\"" << width / 2 << "\" y=\"" << height - 12 << "\" text-anchor=\"middle\">" << x_label << "</text>"
-        << "<text transform=\"translate(16," << height / 2 << ") rotate(-90)\" text-anchor=\"middle\">" << y_label
+        << "<text x=\"" << plot_width / 2 << "\" y=\"22\" text-anchor=\"middle\" font-size=\"15\">" << title
         << "</text>"
-        << "<path d=\"M" << left << " " << top << "V" << height - bottom << "H" << width - right
-        << "\" fill=\"none\" stroke=\"#444\"/>";
-    for (double x = std::pow(2.0, std::ceil(std::log2(x0))); x <= x1 * 1.001; x *= 2)
-        svg << "<text x=\"" << px(x) << "\" y=\"" << height - bottom + 18 << "\" text-anchor=\"middle\">" << x
-            << "</text>"
-            << "<path d=\"M" << px(x) << " " << height - bottom << "v5\" stroke=\"#444\"/>";
-    for (double decade = std::pow(10.0, std::floor(std::log10(y0))); decade <= y1; decade *= 10)
-        for (const double m : {1.0, 2.0, 5.0})
-            if (const double y = decade * m; y >= y0 && y <= y1)
-                svg << "<text x=\"" << left - 8 << "\" y=\"" << py(y) + 4 << "\" text-anchor=\"end\">" << y << "</text>"
-                    << "<path d=\"M" << left << " " << py(y) << "H" << width - right << "\" stroke=\"#ddd\"/>";
-    static const char* colours[] = {"#c0392b", "#2471a3", "#239b56", "#b7950b", "#7d3c98"};
-    for (std::size_t i = 0; i < series.size(); ++i) {
-        const char* colour = colours[i % 5];
-        svg << "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" << colour << "\" points=\"";
-        for (const auto& [x, y] : series[i].points)
-            svg << px(x) << "," << py(y) << " ";
-        svg << "\"/>";
-        for (const auto& [x, y] : series[i].points)
-            svg << "<circle cx=\"" << px(x) << "\" cy=\"" << py(y) << "\" r=\"3\" fill=\"" << colour << "\"/>";
-        svg << "<text x=\"" << width - right - 8 << "\" y=\"" << top + 16 * double(i + 1)
-            << "\" text-anchor=\"end\" fill=\"" << colour << "\">" << series[i].name << "</text>";
-    }
+        << "<text x=\"" << plot_width / 2 << "\" y=\"" << plot_height - 12 << "\" text-anchor=\"middle\">" << x_label
+        << "</text>"
+        << "<text transform=\"translate(16," << plot_height / 2 << ") rotate(-90)\" text-anchor=\"middle\">" << y_label
+        << "</text>";
+    draw_axes(svg, axes);
+    for (std::size_t i = 0; i < series.size(); ++i)
+        draw_series(svg, axes, series[i], i);
     svg << "</svg>\n";
     return svg.str();
 }

@@ -1,4 +1,4 @@
-// Rows of a benchmark: on the screen, as JSON, as CSV, as a plot.
+// Benchmark results, printed or written as JSON, CSV or a plot.
 #pragma once
 
 #include "editor/command_line/common.h"

@@ -1,4 +1,4 @@
-// sunfleck compare: how much picture A differs from the reference B.
+// sunfleck compare: error metrics of image A against reference image B.
 #include "editor/command_line/commands.h"
 #include "editor/command_line/metrics.h"
 
@@ -7,8 +7,6 @@
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
-namespace {} // namespace
-
 Status compare(const CompareOptions& options) {
     SUNFLECK_ASSIGN(const io::Picture a, io::read_picture(options.a));
     SUNFLECK_ASSIGN(const io::Picture b, io::read_picture(options.b));

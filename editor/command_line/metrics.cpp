@@ -6,7 +6,7 @@
 namespace sunfleck::command_line {
 namespace {
 
-// Scene-linear to display-like values: x / (x + m) keeps order and needs no exposure.
+// Tone-maps scene-linear values by x / (x + m), which is monotonic and needs no exposure.
 io::Picture to_display(const io::Picture& picture, double mean) {
     io::Picture result = picture;
     const float m = float(std::max(mean, 1e-12));
@@ -34,12 +34,18 @@ std::vector<std::uint8_t> counted_pixels(const io::Picture& a, const io::Picture
     return counted;
 }
 
-} // namespace
+void add_channel(Metrics& m, double a, double b) {
+    const double error = std::abs(a - b);
+    m.mean_a += a;
+    m.mean_b += b;
+    m.mean_absolute_error += error;
+    m.maximum_error = std::max(m.maximum_error, error);
+}
 
-Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_linear) {
+// The metrics that are means over pixels; `mean` is the mean length of B's pixels.
+Metrics mean_errors(const io::Picture& a, const io::Picture& b, const std::vector<std::uint8_t>& counted, double mean,
+                    bool scene_linear) {
     Metrics m;
-    const std::vector<std::uint8_t> counted = counted_pixels(a, b);
-    const double mean = mean_length(b, counted);
     double squares = 0, relative = 0, peak = scene_linear ? 0.0 : 1.0;
     for (std::size_t i = 0; i < counted.size(); ++i) {
         if (!counted[i]) {
@@ -50,10 +56,7 @@ Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_
         double pixel_squares = 0, reference_squares = 0;
         for (int c = 0; c < 3; ++c) {
             const double va = double(a.pixels[i][c]), vb = double(b.pixels[i][c]), d = va - vb;
-            m.mean_a += va;
-            m.mean_b += vb;
-            m.mean_absolute_error += std::abs(d);
-            m.maximum_error = std::max(m.maximum_error, std::abs(d));
+            add_channel(m, va, vb);
             pixel_squares += d * d;
             reference_squares += vb * vb;
             peak = std::max(peak, vb);
@@ -71,6 +74,17 @@ Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_
     m.root_mean_square_error = std::sqrt(squares / values);
     m.relative_mean_square_error = relative / double(m.pixels);
     m.peak_signal_to_noise = squares > 0 ? std::min(999.0, 20.0 * std::log10(peak / m.root_mean_square_error)) : 999.0;
+    return m;
+}
+
+} // namespace
+
+Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_linear) {
+    const std::vector<std::uint8_t> counted = counted_pixels(a, b);
+    const double mean = mean_length(b, counted);
+    Metrics m = mean_errors(a, b, counted, mean, scene_linear);
+    if (m.pixels == 0)
+        return m;
     const io::Picture display_a = scene_linear ? to_display(a, mean) : a;
     const io::Picture display_b = scene_linear ? to_display(b, mean) : b;
     m.structural_similarity = structural_similarity(display_a, display_b, counted);

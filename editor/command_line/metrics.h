@@ -1,4 +1,4 @@
-// Picture differences, as numbers.
+// Image error metrics.
 #pragma once
 
 #include "engine/io/image.h"
@@ -6,20 +6,20 @@
 namespace sunfleck::command_line {
 
 struct Metrics {
-    double mean_a = 0, mean_b = 0; // over channels and counted pixels
+    double mean_a = 0, mean_b = 0; // over channels and compared pixels
     double mean_absolute_error = 0, maximum_error = 0, root_mean_square_error = 0;
     // Mean of |A-B|^2 / (|B|^2 + 0.01 m^2), |.|^2 summed over RGB, m the mean of |B|.
     double relative_mean_square_error = 0;
     double peak_signal_to_noise = 0; // dB; the peak is 1 for display values, B's maximum for scene-linear ones
     double structural_similarity = 0;
     double flip = 0;
-    std::uint64_t pixels = 0, left_out = 0;
+    std::uint64_t pixels = 0, left_out = 0; // compared, and ignored because either alpha is 0
 };
 
-// Pictures of one size. `scene_linear`: values are light (EXR), not display values.
+// Images of equal size. `scene_linear`: EXR values rather than display values.
 Metrics compare_pictures(const io::Picture& a, const io::Picture& b, bool scene_linear);
 
-// |A-B| times eight, display values.
+// Eight times |A-B|, as display values.
 io::Picture difference_picture(const io::Picture& a, const io::Picture& b, bool scene_linear);
 
 // Mean structural similarity of luminance, 11x11 Gaussian window of sigma 1.5. Z. Wang et al., "Image Quality

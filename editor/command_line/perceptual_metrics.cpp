@@ -1,10 +1,11 @@
-// SSIM and FLIP, written from their papers (see metrics.h).
+// SSIM and FLIP, implemented from their papers (see metrics.h).
 #include "editor/command_line/metrics.h"
 #include "engine/scene/texture_store.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace sunfleck::command_line {
 namespace {
@@ -14,7 +15,7 @@ struct Extent {
     int width, height;
 };
 
-// Convolution with two one-dimensional kernels of odd size; the border repeats.
+// Convolution with two one-dimensional kernels of odd size; border pixels are repeated.
 Plane convolve(const Plane& source, Extent extent, const std::vector<float>& across, const std::vector<float>& down) {
     Plane half(source.size()), result(source.size());
     const auto pass = [&](const Plane& from, Plane& to, const std::vector<float>& kernel, bool horizontal) {
@@ -92,9 +93,19 @@ float hyab(vec3 a, vec3 b) {
 constexpr float pixels_per_degree = 67.0f;
 constexpr float exponent_colour = 0.7f, exponent_feature = 0.5f, cutoff = 0.4f, cutoff_value = 0.95f;
 
+// exp(-pi^2 x^2 / b), x in degrees.
+std::vector<float> contrast_kernel(float b) {
+    const int radius = int(std::ceil(3.0f * std::sqrt(0.04f / (2.0f * pi * pi)) * pixels_per_degree));
+    std::vector<float> kernel;
+    for (int k = -radius; k <= radius; ++k) {
+        const float x = float(k) / pixels_per_degree;
+        kernel.push_back(std::exp(-pi * pi * x * x / b));
+    }
+    return kernel;
+}
+
 // Contrast sensitivity of one opponent channel: a sum of Gaussians a_i sqrt(pi/b_i) exp(-pi^2 x^2 / b_i), x in degrees.
 Plane filter_contrast(const Plane& plane, Extent extent, std::array<float, 4> p) {
-    const int radius = int(std::ceil(3.0f * std::sqrt(0.04f / (2.0f * pi * pi)) * pixels_per_degree));
     Plane result(plane.size(), 0.0f);
     float total = 0;
     std::vector<std::pair<float, std::vector<float>>> terms;
@@ -102,13 +113,8 @@ Plane filter_contrast(const Plane& plane, Extent extent, std::array<float, 4> p)
         const float a = p[std::size_t(2 * i)], b = p[std::size_t(2 * i + 1)];
         if (a == 0.0f)
             continue;
-        std::vector<float> kernel;
-        float sum = 0;
-        for (int k = -radius; k <= radius; ++k) {
-            const float x = float(k) / pixels_per_degree;
-            kernel.push_back(std::exp(-pi * pi * x * x / b));
-            sum += kernel.back();
-        }
+        std::vector<float> kernel = contrast_kernel(b);
+        const float sum = std::accumulate(kernel.begin(), kernel.end(), 0.0f);
         const float weight = a * pi / b;
         total += weight * sum * sum;
         terms.emplace_back(weight, std::move(kernel));
@@ -126,11 +132,8 @@ struct FlipPicture {
     Plane edges, points;
 };
 
-// First (edges) and second (points) derivatives of a Gaussian, each half normalised to one; sec. 5.3 of the paper.
-void detect_features(const Plane& grey, Extent extent, FlipPicture& picture) {
-    const float sigma = 0.5f * 0.082f * pixels_per_degree;
-    const int radius = int(std::ceil(3.0f * sigma));
-    const std::vector<float> smooth = gaussian(sigma, radius);
+// First and second derivative of a Gaussian, positive and negative weights each normalised to one.
+std::pair<std::vector<float>, std::vector<float>> derivative_kernels(float sigma, int radius) {
     std::vector<float> first, second;
     float positive1 = 0, positive2 = 0, negative2 = 0;
     for (int k = -radius; k <= radius; ++k) {
@@ -145,6 +148,15 @@ void detect_features(const Plane& grey, Extent extent, FlipPicture& picture) {
         value /= positive1;
     for (float& value : second)
         value /= value > 0.0f ? positive2 : negative2;
+    return {first, second};
+}
+
+// First (edges) and second (points) derivatives of a Gaussian; sec. 5.3 of the paper.
+void detect_features(const Plane& grey, Extent extent, FlipPicture& picture) {
+    const float sigma = 0.5f * 0.082f * pixels_per_degree;
+    const int radius = int(std::ceil(3.0f * sigma));
+    const std::vector<float> smooth = gaussian(sigma, radius);
+    const auto [first, second] = derivative_kernels(sigma, radius);
     const auto magnitude = [&](const std::vector<float>& kernel) {
         const Plane x = convolve(grey, extent, kernel, smooth), y = convolve(grey, extent, smooth, kernel);
         Plane result(grey.size());
@@ -204,17 +216,25 @@ double structural_similarity(const io::Picture& a, const io::Picture& b, const s
     return double(mean_of_counted(result, counted));
 }
 
+namespace {
+
+// Colour difference redistributed to 0..1, with the largest possible one at 1.
+float colour_difference(vec3 a, vec3 b, float largest) {
+    const float difference = std::pow(hyab(a, b), exponent_colour);
+    const float knee = cutoff * largest;
+    return difference < knee ? cutoff_value / knee * difference
+                             : cutoff_value + (difference - knee) / (largest - knee) * (1.0f - cutoff_value);
+}
+
+} // namespace
+
 double flip(const io::Picture& a, const io::Picture& b, const std::vector<std::uint8_t>& counted) {
     const FlipPicture fa = prepare(a), fb = prepare(b);
     const float largest =
         std::pow(hyab(hunt_lab_from_linear(vec3(0, 1, 0)), hunt_lab_from_linear(vec3(0, 0, 1))), exponent_colour);
     Plane result(a.pixels.size());
     for (std::size_t i = 0; i < result.size(); ++i) {
-        const float difference = std::pow(hyab(fa.filtered_lab[i], fb.filtered_lab[i]), exponent_colour);
-        const float knee = cutoff * largest;
-        const float colour = difference < knee
-                                 ? cutoff_value / knee * difference
-                                 : cutoff_value + (difference - knee) / (largest - knee) * (1.0f - cutoff_value);
+        const float colour = colour_difference(fa.filtered_lab[i], fb.filtered_lab[i], largest);
         const float feature = std::pow(
             std::max(std::abs(fa.edges[i] - fb.edges[i]), std::abs(fa.points[i] - fb.points[i])) / std::sqrt(2.0f),
             exponent_feature);
