@@ -5,8 +5,6 @@
 #include "engine/simulation/path_movers.h"
 #include "gi_module/frame_times.h"
 
-#include <chrono>
-
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_render_shaders();
 }
@@ -79,25 +77,39 @@ Status SceneRenderer::upload_meshes() {
     return gpu_scene_->update_meshes(meshes_, *submission_);
 }
 
+double SceneRenderer::frame_time() const {
+    return milliseconds_since(frame_start_);
+}
+
+void SceneRenderer::note_scope(const char* name, double begin_ms) {
+    statistics_.cpu_scopes.push_back({name, begin_ms, frame_time()});
+}
+
+void SceneRenderer::note_stage(const char* name, double begin_ms) {
+    note_scope(name, begin_ms);
+    statistics_.cpu_ms[name] = statistics_.cpu_scopes.back().end_ms - begin_ms;
+}
+
 Status SceneRenderer::update(const FrameRequest& request) {
     statistics_.cpu_ms.clear();
-    auto start = Clock::now();
+    statistics_.cpu_scopes.clear();
+    frame_start_ = Clock::now();
     if (request.simulate)
         simulation::set_movers_to_step(registry_, request.step);
-    statistics_.cpu_ms["simulation"] = milliseconds_since(start);
+    note_stage("simulation", 0.0);
     SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
     resources_->begin_frame(submission_->serial(), completed);
     timers_->begin_frame(submission_->serial(), completed);
-    start = Clock::now();
+    double start = frame_time();
     scene::deform_meshes(registry_, meshes_);
     const scene::SceneChanges& changes = change_tracker_.collect(registry_, meshes_);
-    statistics_.cpu_ms["scene changes"] = milliseconds_since(start);
-    start = Clock::now();
+    note_stage("scene changes", start);
+    start = frame_time();
     SUNFLECK_TRY(rays_->update(changes, meshes_, &textures_));
-    statistics_.cpu_ms["ray scene"] = milliseconds_since(start);
-    start = Clock::now();
+    note_stage("ray scene", start);
+    start = frame_time();
     SUNFLECK_TRY(gpu_scene_->update(changes, meshes_, *resources_));
-    statistics_.cpu_ms["gpu scene"] = milliseconds_since(start);
+    note_stage("gpu scene", start);
     gi::FrameInput input;
     input.serial = submission_->serial();
     input.completed_serial = completed;
@@ -107,7 +119,9 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
+    start = frame_time();
     SUNFLECK_TRY(lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input));
+    note_scope("lighting", start);
     return {};
 }
 
@@ -142,7 +156,7 @@ void SceneRenderer::draw_samples() {
 }
 
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
-    const auto start = Clock::now();
+    const double start = frame_time();
     SUNFLECK_TRY(make_output(request));
     shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
     if (has_previous_camera_)
@@ -187,7 +201,7 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
     SUNFLECK_TRY(graph_->compile());
     SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
-    statistics_.cpu_ms["recording"] = milliseconds_since(start);
+    note_stage("recording", start);
     return {};
 }
 
@@ -198,7 +212,9 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
     const std::uint64_t serial = submission_->serial();
     SUNFLECK_TRY(record(commands, request));
     SUNFLECK_TRY(submission_->submit());
+    const double submitted = frame_time();
     SUNFLECK_TRY(submission_->wait(serial));
+    note_scope("waiting for the GPU", submitted);
     statistics_.frame_ms = milliseconds_since(start);
     collect_statistics();
     return {};
@@ -210,6 +226,7 @@ void SceneRenderer::collect_statistics() {
     for (const auto& [stage, time] : lighting_->cpu_times())
         statistics_.cpu_ms[stage] = time;
     statistics_.gpu_ms = timers_->latest().milliseconds;
+    statistics_.gpu_scopes = timers_->latest().scopes;
     statistics_.counters = lighting_->counters();
 }
 

@@ -11,6 +11,7 @@ struct RenderOptions {
     std::string view = "final";
     std::vector<std::string> settings;
     std::string statistics;
+    std::string trace; // file
     bool print_graph = false;
 };
 std::vector<std::string> view_names();

@@ -79,6 +79,8 @@ Command make_render_command(CLI::App& program) {
     app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(view_names()))->capture_default_str();
     app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
     app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
+    app->add_option("--trace", options->trace,
+                    "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
                 watch_interrupts();

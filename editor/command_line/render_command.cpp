@@ -1,5 +1,6 @@
 // sunfleck render: a picture of a scene by the real-time path.
 #include "editor/command_line/commands.h"
+#include "editor/command_line/trace.h"
 
 #include "engine/core/file.h"
 #include "engine/core/log.h"
@@ -47,6 +48,68 @@ Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<
     return settings;
 }
 
+// What the command line and the scene file say about the picture.
+Result<viewer::FrameRequest> make_request(const RenderOptions& options, viewer::SceneRenderer& renderer) {
+    viewer::FrameRequest request;
+    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
+    const Bounds bounds = viewer::scene_bounds(renderer.registry(), renderer.meshes());
+    SUNFLECK_ASSIGN(request.camera, viewer::find_camera(renderer.registry(), bounds, options.scene.camera));
+    request.width = size.width;
+    request.height = size.height;
+    set_view(options.view, request);
+    request.tone_map = kind == io::PictureKind::png;
+    request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer.registry());
+    return request;
+}
+
+struct RenderedFrames {
+    Measurement measurement;
+    Trace trace;
+};
+
+void note_frame(const viewer::FrameStatistics& statistics, bool traced, RenderedFrames& frames) {
+    frames.measurement.frame_ms.push_back(statistics.frame_ms);
+    frames.measurement.cpu_ms.push_back(statistics.cpu_ms);
+    frames.measurement.gpu_ms.push_back(statistics.gpu_ms);
+    frames.measurement.counters = statistics.counters;
+    if (traced)
+        frames.trace.add(statistics);
+}
+
+// Leaves `request` as it was for the last frame.
+Result<RenderedFrames> render_frames(const RenderOptions& options, viewer::SceneRenderer& renderer,
+                                     viewer::FrameRequest& request) {
+    const scene::CameraView start = request.camera;
+    RenderedFrames frames;
+    const std::uint32_t total = options.scene.warmup + options.scene.frames;
+    Progress progress("rendering");
+    for (std::uint32_t frame = 0; frame < total; ++frame) {
+        request.camera = camera_of_frame(start, options.scene, frame);
+        request.step = step_of_frame(options.scene, frame);
+        SUNFLECK_TRY(renderer.render_and_wait(request));
+        if (interrupted())
+            return Error{"interrupted; nothing was written"};
+        if (frame >= options.scene.warmup)
+            note_frame(renderer.statistics(), !options.trace.empty(), frames);
+        if (total > 20)
+            progress.show(double(frame + 1) / total, "");
+    }
+    return frames;
+}
+
+Status write_statistics(const RenderOptions& options, viewer::SceneRenderer& renderer,
+                        const viewer::FrameRequest& request, gpu::Device& device, Measurement measurement) {
+    // What the GPU counted reaches the CPU one frame later.
+    SUNFLECK_TRY(renderer.render_and_wait(request));
+    measurement.counters.take_gpu_counts(renderer.statistics().counters);
+    measurement.scene = options.scene.scene;
+    measurement.settings = renderer.lighting().settings();
+    measurement.size = {request.width, request.height};
+    measurement.memory = device.memory().usage();
+    return write_file(options.statistics, measurement_json(device, measurement).dump(2) + "\n");
+}
+
 } // namespace
 
 std::vector<std::string> view_names() {
@@ -59,10 +122,11 @@ std::vector<std::string> view_names() {
 }
 
 Status render(const RenderOptions& options) {
-    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
-    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    // What is wrong on the command line, before anything is loaded.
+    SUNFLECK_TRY(io::picture_kind(options.output));
+    SUNFLECK_TRY(parse_size(options.scene.size));
+    SUNFLECK_TRY(make_settings(options, {}));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
-    SUNFLECK_TRY(make_settings(options, {})); // what is wrong on the command line, before anything is loaded
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
     renderer->lighting().set_cache_folder(user_cache_folder());
@@ -74,49 +138,17 @@ Status render(const RenderOptions& options) {
         log_warning(note);
     SUNFLECK_ASSIGN(const gi::Settings settings, make_settings(options, report.settings));
     SUNFLECK_TRY(renderer->lighting().set_settings(settings));
-    const Bounds bounds = viewer::scene_bounds(renderer->registry(), renderer->meshes());
-    SUNFLECK_ASSIGN(const scene::CameraView camera,
-                    viewer::find_camera(renderer->registry(), bounds, options.scene.camera));
 
-    viewer::FrameRequest request;
-    request.width = size.width;
-    request.height = size.height;
-    set_view(options.view, request);
-    request.tone_map = kind == io::PictureKind::png;
-    request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer->registry());
-    Measurement measurement;
-    const std::uint32_t total = options.scene.warmup + options.scene.frames;
-    Progress progress("rendering");
-    for (std::uint32_t frame = 0; frame < total; ++frame) {
-        request.camera = camera_of_frame(camera, options.scene, frame);
-        request.step = step_of_frame(options.scene, frame);
-        SUNFLECK_TRY(renderer->render_and_wait(request));
-        if (interrupted())
-            return Error{"interrupted; nothing was written"};
-        if (frame >= options.scene.warmup) {
-            const viewer::FrameStatistics& statistics = renderer->statistics();
-            measurement.frame_ms.push_back(statistics.frame_ms);
-            measurement.cpu_ms.push_back(statistics.cpu_ms);
-            measurement.gpu_ms.push_back(statistics.gpu_ms);
-            measurement.counters = statistics.counters;
-        }
-        if (total > 20)
-            progress.show(double(frame + 1) / total, "");
-    }
+    SUNFLECK_ASSIGN(viewer::FrameRequest request, make_request(options, *renderer));
+    SUNFLECK_ASSIGN(const RenderedFrames frames, render_frames(options, *renderer, request));
     SUNFLECK_ASSIGN(const io::Picture picture, renderer->read_back());
     SUNFLECK_TRY(io::write_picture(options.output, picture));
+    if (!options.trace.empty())
+        SUNFLECK_TRY(frames.trace.write(options.trace));
     if (options.print_graph)
         std::fputs(renderer->print_graph().c_str(), stdout);
-    if (!options.statistics.empty()) {
-        // What the GPU counted reaches the CPU one frame later.
-        SUNFLECK_TRY(renderer->render_and_wait(request));
-        measurement.counters.take_gpu_counts(renderer->statistics().counters);
-        measurement.scene = options.scene.scene;
-        measurement.settings = settings;
-        measurement.size = size;
-        measurement.memory = device->memory().usage();
-        SUNFLECK_TRY(write_file(options.statistics, measurement_json(*device, measurement).dump(2) + "\n"));
-    }
+    if (!options.statistics.empty())
+        SUNFLECK_TRY(write_statistics(options, *renderer, request, *device, frames.measurement));
     if (device->validation_messages() > 0)
         return Error{std::to_string(device->validation_messages()) + " validation messages (see above)"};
     return {};

@@ -67,6 +67,75 @@ TEST_F(CommandLine, RenderWritesThePictureAndStatistics) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
 }
 
+struct TraceEvent {
+    std::string name;
+    double begin, end; // microseconds
+};
+
+// Rows of a Chrome trace by name, each in the order of the file.
+std::map<std::string, std::vector<TraceEvent>> rows_of(const nlohmann::json& trace) {
+    std::map<int, std::string> names;
+    std::map<std::string, std::vector<TraceEvent>> rows;
+    for (const auto& event : trace.at("traceEvents"))
+        if (event.at("ph") == "M")
+            names[event.at("tid")] = event.at("args").at("name");
+        else {
+            EXPECT_EQ(event.at("ph"), "X") << event;
+            const double begin = event.at("ts");
+            rows[names.at(event.at("tid"))].push_back({event.at("name"), begin, begin + double(event.at("dur"))});
+        }
+    return rows;
+}
+
+// Events of a row follow one another; those that lie in another are listed after it.
+void expect_nested(const std::vector<TraceEvent>& row) {
+    const double rounding = 1e-6; // microseconds, of sums of some 1e4
+    std::vector<TraceEvent> open;
+    for (const TraceEvent& event : row) {
+        EXPECT_GE(event.end, event.begin) << event.name;
+        while (!open.empty() && event.begin >= open.back().end - rounding)
+            open.pop_back();
+        const TraceEvent around = open.empty() ? event : open.back();
+        EXPECT_LE(event.end, around.end + rounding) << event.name << " in " << around.name;
+        open.push_back(event);
+    }
+}
+
+TEST_F(CommandLine, ATraceHasStagesAndPassesOfEveryFrame) {
+    const Outcome outcome = tool("render cornell -o a.png --trace a.json --frames 2" + small);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const auto rows = rows_of(nlohmann::json::parse(read_file(folder / "a.json").value()));
+    ASSERT_EQ(rows.size(), 2u) << "a row for the CPU and one for the GPU";
+    std::map<std::string, int> events;
+    for (const auto& [name, row] : rows) {
+        expect_nested(row);
+        for (const TraceEvent& event : row)
+            ++events[event.name];
+    }
+    for (const char* name : {"simulation", "lighting", "recording", "waiting for the GPU", "g-buffer", "composition"})
+        EXPECT_EQ(events[name], 2) << name;
+    EXPECT_EQ(events["frame 0"], 1);
+    EXPECT_EQ(events["frame 1"], 1);
+}
+
+// The trace and --stats tell the same times.
+TEST_F(CommandLine, ATraceHasTheTimesOfTheStatistics) {
+    const Outcome outcome = tool("render cornell -o a.png --trace a.json --stats stats.json" + small);
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    const auto rows = rows_of(nlohmann::json::parse(read_file(folder / "a.json").value()));
+    const auto statistics = nlohmann::json::parse(read_file(folder / "stats.json").value());
+    std::map<std::string, double> milliseconds;
+    for (const auto& [name, row] : rows)
+        for (const TraceEvent& event : row)
+            milliseconds[event.name] += (event.end - event.begin) * 1e-3;
+    EXPECT_GT(statistics.at("gpu_ms").size(), 5u);
+    for (const auto& [pass, time] : statistics.at("gpu_ms").items())
+        EXPECT_NEAR(milliseconds[pass], double(time), 1e-6 + double(time) * 1e-6) << pass;
+    EXPECT_NEAR(milliseconds["frame 0"], double(statistics.at("frame_ms").at("median")), 1e-6);
+    for (const char* stage : {"simulation", "ray scene", "gpu scene", "recording"})
+        EXPECT_NEAR(milliseconds[stage], double(statistics.at("cpu_ms").at(stage)), 1e-6) << stage;
+}
+
 TEST_F(CommandLine, CompareOfAPictureWithItselfIsNothing) {
     ASSERT_EQ(tool("render table_room -o a.exr --view irradiance" + small).status, 0);
     const Outcome outcome = tool("compare a.exr a.exr --json --diff d.png");
