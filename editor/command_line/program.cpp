@@ -2,6 +2,7 @@
 #include "editor/command_line/program.h"
 
 #include "editor/command_line/commands.h"
+#include "gi_module/settings_reference.h"
 
 #include <CLI/CLI.hpp>
 
@@ -164,15 +165,17 @@ Command make_info_command(CLI::App& program) {
     auto device = std::make_shared<std::string>();
     auto scene = std::make_shared<std::string>();
     auto as_json = std::make_shared<bool>(false), schema = std::make_shared<bool>(false);
+    auto reference = std::make_shared<bool>(false);
     CLI::App* app = program.add_subcommand("info", "Shows device, driver, limits, scenes and settings");
     app->footer("Example: sunfleck info --json\nExample: sunfleck info helmet.gltf");
     app->add_option("SCENE", *scene, "Show what is in this scene or glTF file instead");
     app->add_option("--device", *device, "Vulkan device by number or part of its name");
     app->add_flag("--json", *as_json, "Print one JSON object");
     app->add_flag("--schema", *schema, "Print the JSON schema of scene files");
-    return {app, [device, scene, as_json, schema] {
-                if (*schema) {
-                    std::fputs(io::scene_file_schema().c_str(), stdout);
+    app->add_flag("--reference", *reference, "Print all settings, counters and views as Markdown (docs/settings.md)");
+    return {app, [device, scene, as_json, schema, reference] {
+                if (*schema || *reference) {
+                    std::fputs((*schema ? io::scene_file_schema() : gi::settings_reference()).c_str(), stdout);
                     return 0;
                 }
                 const Status status =

@@ -297,6 +297,9 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
     const Outcome info = tool("info --json");
     ASSERT_EQ(info.status, 0) << info.output;
     EXPECT_TRUE(nlohmann::json::parse(info.output).contains("driver"));
+    const Outcome reference = tool("info --reference");
+    ASSERT_EQ(reference.status, 0) << reference.output;
+    EXPECT_NE(reference.output.find("| `lights` * |"), std::string::npos) << reference.output;
 }
 
 // The same recorded input gives the same world and the same pictures, whatever the number of threads.
