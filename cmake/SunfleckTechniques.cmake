@@ -14,11 +14,13 @@ macro(sunfleck_technique folder)
 endmacro()
 
 # sunfleck_techniques(folder ...)
-# Reads the technique.cmake of each folder and writes the list that techniques() returns, in this order.
+# Reads the technique.cmake of each folder and writes the list that techniques() returns, in this order. The global
+# property SUNFLECK_TECHNIQUES is the list of folders.
 function(sunfleck_techniques)
   foreach(folder IN LISTS ARGN)
     include("${CMAKE_CURRENT_SOURCE_DIR}/${folder}/technique.cmake")
   endforeach()
+  set_property(GLOBAL PROPERTY SUNFLECK_TECHNIQUES "${ARGN}")
   list(JOIN SUNFLECK_TECHNIQUE_CALLS ", " SUNFLECK_TECHNIQUE_CALLS)
   configure_file(techniques.cpp.in "${CMAKE_CURRENT_BINARY_DIR}/techniques.cpp" @ONLY)
   target_sources(sunfleck_gi PRIVATE "${CMAKE_CURRENT_BINARY_DIR}/techniques.cpp")

@@ -1,6 +1,7 @@
 // The demo's command line.
 #include "engine/core/log.h"
 #include "game_demo/options.h"
+#include "game_demo/presets.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -40,7 +41,8 @@ void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
     program
         .add_option("--movers", text.movers,
                     "Lighting of complex moving objects: per_pixel or prt, precomputed (default: set by the preset)")
-        ->check(CLI::IsMember({"per_pixel", "prt"}));
+        ->check(CLI::IsMember(demo::has_transfer() ? std::vector<std::string>{"per_pixel", "prt"}
+                                                   : std::vector<std::string>{"per_pixel"}));
     program.add_option("--settings", options.settings_file,
                        "Settings file (default: sunfleck/demo.json in the configuration folder)");
     program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");

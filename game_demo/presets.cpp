@@ -1,5 +1,7 @@
 #include "game_demo/presets.h"
 
+#include <algorithm>
+
 namespace sunfleck::demo {
 namespace {
 
@@ -48,9 +50,14 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     result.patch_levels = 2; // the house has many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
-    if (settings.transfer)
+    if (settings.transfer && has_transfer())
         result.with("movers", "prt");
     return result;
+}
+
+bool has_transfer() {
+    const std::vector<std::string_view>& choices = gi::Settings::find("movers")->choices;
+    return std::find(choices.begin(), choices.end(), "prt") != choices.end();
 }
 
 Preset default_preset(bool software_device) {

@@ -10,6 +10,8 @@ namespace sunfleck::demo {
 void apply_preset(DemoSettings& settings);
 // The lighting settings that correspond to `settings`.
 gi::Settings lighting_of(const DemoSettings& settings);
+// Whether this build has precomputed transfer for movers; a technique can be left out.
+bool has_transfer();
 // `software` on a CPU, `high` on a GPU.
 Preset default_preset(bool software_device);
 

@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace sunfleck::command_line {
@@ -22,6 +23,21 @@ Result<BenchTable> run_suite(const BenchOptions& options, std::vector<PlotSeries
     return bench_reference(options);
 }
 
+// Techniques can be left out of a build.
+Status check_techniques(const std::string& suite) {
+    std::vector<std::string_view> needed;
+    if (suite != "reference")
+        needed.push_back("brute_force");
+    if (suite == "thesis")
+        needed.push_back("light_samples");
+    const std::vector<std::string_view>& there = gi::Settings::find("direct")->choices;
+    for (const std::string_view name : needed)
+        if (std::find(there.begin(), there.end(), name) == there.end())
+            return Error{"the suite '" + suite + "' measures the technique '" + std::string(name) +
+                         "', which this build does not have"};
+    return {};
+}
+
 Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& plot) {
     if (plot.empty())
         return Error{"--plot: the suite '" + options.suite + "' has no plot (only convergence and thesis have)"};
@@ -34,6 +50,7 @@ Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& pl
 } // namespace
 
 Status bench(const BenchOptions& options) {
+    SUNFLECK_TRY(check_techniques(options.suite));
     if (!options.part.empty() && options.suite != "thesis")
         return Error{"--part: only the suite 'thesis' has parts"};
     std::vector<PlotSeries> plot;

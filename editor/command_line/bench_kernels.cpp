@@ -1,29 +1,29 @@
 // Experiments on the GPU kernels: brute force and shadow maps.
 #include "editor/command_line/bench_runner.h"
-#include "gi_module/brute_force/brute_force_technique.h"
 
 #include <algorithm>
 
 namespace sunfleck::command_line {
 namespace {
 
+// A form of brute force's kernel, as its settings say it.
 struct Candidate {
-    gi::KernelShape shape;
+    std::string pixels, lights, maps;
     bool shadows;
-    std::vector<double> ns;
+    std::vector<double> ns{};
 };
 
 // Every shape of the kernel, and last, for each value of `shadows`, the shape that brute force itself uses.
-std::vector<Candidate> kernel_candidates(const gpu::DeviceTraits& traits) {
+std::vector<Candidate> kernel_candidates() {
     std::vector<Candidate> candidates;
     for (const bool shadows : {false, true})
-        for (const std::uint32_t pixels : {1u, 2u, 4u, 8u, 16u})
-            for (const bool storage_lights : {false, true})
-                for (const std::uint32_t maps : {shared::maps_texel_buffer, shared::maps_storage_buffer})
-                    if (shadows || maps == shared::maps_texel_buffer)
-                        candidates.push_back({{pixels, maps, storage_lights}, shadows, {}});
+        for (const char* pixels : {"1", "2", "4", "8", "16"})
+            for (const char* lights : {"uniform", "storage"})
+                for (const char* maps : {"texel", "storage"})
+                    if (shadows || maps == std::string("texel"))
+                        candidates.push_back({pixels, lights, maps, shadows});
     for (const bool shadows : {false, true})
-        candidates.push_back({gi::BruteForce::default_shape(traits), shadows, {}});
+        candidates.push_back({"0", "standard", "standard", shadows});
     return candidates;
 }
 
@@ -37,7 +37,8 @@ Status measure_kernels(Bench& bench, std::vector<Candidate>& candidates, std::ui
         for (std::size_t i = 0; i < candidates.size(); ++i) {
             Candidate& candidate = candidates[round % 2 == 0 ? i : candidates.size() - 1 - i];
             settings.shadows = candidate.shadows;
-            set_kernel_shape(bench.renderer->lighting(), candidate.shape);
+            settings.with("kernel_pixels", candidate.pixels).with("kernel_lights", candidate.lights);
+            settings.with("kernel_maps", candidate.maps);
             SUNFLECK_ASSIGN(const Measurement measurement, bench.measure(settings, round == 0 ? 2 : 1, 1, false));
             candidate.ns.push_back(Bench::gpu_median(measurement, "brute force") * 1e6 / light_pixels);
             if (interrupted())
@@ -49,11 +50,9 @@ Status measure_kernels(Bench& bench, std::vector<Candidate>& candidates, std::ui
 
 Json kernel_row(const Candidate& c, bool used) {
     return {{"shadowed", c.shadows ? "yes" : "no"},
-            {"pixels", c.shape.pixels},
-            {"lights", c.shape.storage_lights ? "storage" : "uniform"},
-            {"maps", !c.shadows                                  ? "-"
-                     : c.shape.maps == shared::maps_texel_buffer ? "texel"
-                                                                 : "storage"},
+            {"pixels", std::stoi(c.pixels)},
+            {"lights", c.lights},
+            {"maps", c.shadows ? c.maps : "-"},
             {"ns_per_light_pixel", median(c.ns)},
             {"spread_ns", percentile(c.ns, 0.75) - percentile(c.ns, 0.25)},
             {"used", used ? "brute force" : ""}};
@@ -61,13 +60,9 @@ Json kernel_row(const Candidate& c, bool used) {
 
 } // namespace
 
-void set_kernel_shape(gi::System& system, const gi::KernelShape& shape) {
-    dynamic_cast<gi::BruteForceTechnique&>(*system.technique("brute_force")).kernel().set_shape(shape);
-}
-
 Result<BenchTable> bench_kernel(const BenchOptions& options) {
     SUNFLECK_ASSIGN(const auto bench, Bench::create(options, "four_pillars", "bench_1", {640, 360}));
-    std::vector<Candidate> candidates = kernel_candidates(bench->device->traits());
+    std::vector<Candidate> candidates = kernel_candidates();
     SUNFLECK_TRY(measure_kernels(*bench, candidates, options.repeat));
     BenchTable table{"kernel", {}, {}};
     const std::size_t shapes = candidates.size() - 2;

@@ -43,7 +43,7 @@ gi::Settings convergence_settings(std::uint32_t lights, std::uint32_t seed) {
     settings.lights = lights;
     settings.direct_share = 0.5f;
     settings.seed = seed;
-    settings.with("movers", "static");
+    settings.with("movers", "static").with("kernel_pixels", "4"); // tiles fit the image
     settings.shadow_map_resolution = 128;
     return settings;
 }
@@ -83,7 +83,6 @@ Result<PlotSeries> scene_convergence(const BenchOptions& options, const std::str
     bench->request.view = shared::view_irradiance;
     bench->request.tone_map = false;
     SUNFLECK_ASSIGN(const Truth truth, trace_truth(*bench));
-    set_kernel_shape(bench->renderer->lighting(), {4, shared::maps_texel_buffer, false}); // tiles fit the image
     float clear = 0.0f;
     PlotSeries series{scene, {}};
     Progress progress("convergence " + scene);

@@ -3,7 +3,6 @@
 
 #include "editor/command_line/bench_table.h"
 #include "editor/command_line/commands.h"
-#include "gi_module/brute_force/brute_force.h"
 
 namespace sunfleck::command_line {
 
@@ -22,9 +21,6 @@ struct Bench {
     scene::CameraView start;
     std::uint64_t step = 0;
 };
-
-// Makes brute force use this form of its kernel.
-void set_kernel_shape(gi::System& system, const gi::KernelShape& shape);
 
 // ns per light and pixel of every shape of the kernel.
 Result<BenchTable> bench_kernel(const BenchOptions& options);

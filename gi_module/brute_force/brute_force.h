@@ -10,7 +10,8 @@
 
 namespace sunfleck::gi {
 
-// The forms that the kernel can take. `bench kernel` tries them; default_shape picks the best known one.
+// The forms that the kernel can take (BruteForceSettings). `bench kernel` tries them; default_shape picks the best
+// known one.
 struct KernelShape {
     std::uint32_t pixels = 8; // an invocation: 1, 2, 4, 8 or 16
     std::uint32_t maps = shared::maps_texel_buffer;
@@ -47,7 +48,6 @@ public:
 
     static KernelShape default_shape(const gpu::DeviceTraits& traits);
     void set_shape(const KernelShape& shape) { shape_ = shape; }
-    const KernelShape& shape() const { return shape_; }
 
     // Called once a frame before add_pass; sizes the accumulation buffer (needed only where `accumulates`: the frame
     // has more than one batch) and collects finished counters.

@@ -24,7 +24,14 @@ const TypeDescription& BruteForceSettings::description() {
         1,
         "The baseline.",
         {SUNFLECK_FIELD(BruteForceSettings, count_clamped, "", 0, 1,
-                        "Measures the light that the bound of the geometry term removes (brute_force only)")}};
+                        "Measures the light that the bound of the geometry term removes (brute_force only)"),
+         SUNFLECK_FIELD(BruteForceSettings, kernel_pixels, "", 0, 16,
+                        "Pixels that an invocation of the kernel lights; 0: what is fastest on the device")
+             .only({0, 1, 2, 4, 8, 16}),
+         SUNFLECK_CHOICE(BruteForceSettings, kernel_lights, "Kind of buffer from which the kernel reads lights",
+                         "standard", "uniform", "storage"),
+         SUNFLECK_CHOICE(BruteForceSettings, kernel_maps, "Kind of buffer from which the kernel reads shadow maps",
+                         "standard", "texel", "storage")}};
     return type;
 }
 
@@ -43,9 +50,25 @@ const TechniqueEntry& brute_force_technique() {
     return entry;
 }
 
+namespace {
+
+KernelShape shape_of(const BruteForceSettings& settings, KernelShape shape) {
+    if (settings.kernel_pixels != 0)
+        shape.pixels = settings.kernel_pixels;
+    if (settings.kernel_lights != KernelLights::standard)
+        shape.storage_lights = settings.kernel_lights == KernelLights::storage;
+    if (settings.kernel_maps != KernelMaps::standard)
+        shape.maps =
+            settings.kernel_maps == KernelMaps::texel ? shared::maps_texel_buffer : shared::maps_storage_buffer;
+    return shape;
+}
+
+} // namespace
+
 Result<std::unique_ptr<Technique>> BruteForceTechnique::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     auto technique = std::make_unique<BruteForceTechnique>();
     SUNFLECK_ASSIGN(technique->kernel_, BruteForce::create(device, pipelines));
+    technique->standard_shape_ = BruteForce::default_shape(device.traits());
     return std::unique_ptr<Technique>(std::move(technique));
 }
 
@@ -68,6 +91,7 @@ Status BruteForceTechnique::add_passes(gpu::FrameGraph& graph, Services& service
     options.shadows = services.settings.shadows;
     options.filter = services.settings.shadow_filter;
     options.count_clamped = services.settings.of<BruteForceSettings>().count_clamped;
+    kernel_->set_shape(shape_of(services.settings.of<BruteForceSettings>(), standard_shape_));
     for (std::uint32_t first = 0; first == 0 || first < total; first += at_once) {
         const std::uint32_t count = std::min(at_once, total - first);
         if (shared_slots)

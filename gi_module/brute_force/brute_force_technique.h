@@ -15,11 +15,9 @@ public:
     Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) override;
     void report(Report& report) const override;
 
-    // The kernel, to try its shapes.
-    BruteForce& kernel() { return *kernel_; }
-
 private:
     std::unique_ptr<BruteForce> kernel_;
+    KernelShape standard_shape_; // the fastest known one on this device
     CellSet cells_;
     std::size_t batches_ = 0;
 };

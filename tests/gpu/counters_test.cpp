@@ -142,6 +142,8 @@ TEST_F(Counters, TwoTechniquesAddUpWhatBothCount) {
     };
     const auto& choices = gi::Settings::find("direct")->choices; // the last one is none
     const std::string_view first = choices.front(), second = choices[choices.size() - 2];
+    if (first == second)
+        GTEST_SKIP() << "this build has one technique for all light";
     EXPECT_EQ(batches(first, second), batches(first, "none") + batches("none", second));
 }
 

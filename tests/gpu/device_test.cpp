@@ -1,5 +1,6 @@
 // Device, memory, faults, determinism, shader replacement.
 #include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
 
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
@@ -137,7 +138,7 @@ TEST_F(DeviceTest, TwoRunsAndOneAndTwoThreadsGiveTheSameBits) {
         GpuWorld world(assets::make_four_pillars, "bench_1");
         world.request.tone_map = false;
         world.request.view = shared::view_final;
-        gi::Settings settings = gi::Settings().all_light_by("brute_force");
+        gi::Settings settings = plain_light();
         settings.lights = 200;
         settings.shadow_map_resolution = 128;
         world.set(settings);
@@ -177,7 +178,7 @@ TEST_F(DeviceTest, ThreadsWithSubmissionsOfTheirOwnShareTheDevice) {
 
 TEST_F(DeviceTest, OddPictureSizes) {
     GpuWorld world(assets::make_cornell, "view");
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 8;
     settings.shadow_map_resolution = 32;
     world.set(settings);

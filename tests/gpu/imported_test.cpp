@@ -5,6 +5,7 @@
 #include "engine/scene/environment_map.h"
 #include "gi_module/reference/path_tracer.h"
 #include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
 
 namespace sunfleck::tests {
 namespace {
@@ -105,8 +106,8 @@ TEST_F(Imported, HolesAreHolesForPicturesShadowsAndRays) {
     assets::SceneBuilder builder(stage.renderer->registry(), stage.renderer->meshes());
     builder.point_light("lamp", vec3(0.3f, 0.5f, 2.5f), vec3(9.0f));
     stage.finish("view");
-    for (const gi::Settings& technique : {gi::Settings().all_light_by("brute_force"), gi::Settings()}) {
-        gi::Settings settings = technique;
+    for (const std::string_view technique : techniques_for_all_light()) {
+        gi::Settings settings = gi::Settings().all_light_by(technique);
         settings.lights = 1;
         settings.shadow_map_resolution = 512;
         settings.low_resolution = 1;
@@ -266,7 +267,7 @@ TEST_F(Imported, SurroundingsLightAsTheirIntegralSays) {
     world.renderer->registry().emplace<scene::Environment>(sky, {vec3(1.0f)});
     world.renderer->registry().emplace<scene::EnvironmentMap>(sky, {"", 0.0f, image});
     world.finish("view");
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 4096;
     settings.direct_share = 1.0f;
     settings.shadow_map_resolution = 16;

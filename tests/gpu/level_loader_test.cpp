@@ -30,29 +30,6 @@ TEST_F(LevelLoaderTest, WhatItHandsOverHasAllItsShadowMaps) {
     EXPECT_GE((*level)->renderer().statistics().counters["light_samples"], 40u);
 }
 
-TEST_F(LevelLoaderTest, ComplexMoversTakePrecomputedTransferWhereItIsChosen) {
-    setenv("XDG_CACHE_HOME", testing::TempDir().c_str(), 1);
-    demo::DemoSettings settings = small_settings();
-    settings.transfer = true;
-    demo::LevelLoader loader(device(), "four_pillars", settings, 160, 90);
-    while (!loader.finished())
-        std::this_thread::sleep_for(1ms);
-    auto level = loader.take();
-    ASSERT_TRUE(level) << level.error().message;
-    const auto render = [&] {
-        ASSERT_TRUE((*level)->apply(settings));
-        ASSERT_TRUE((*level)->renderer().render_and_wait((*level)->request(settings, 160, 90)));
-    };
-    render();
-    EXPECT_GT((*level)->renderer().statistics().counters["transfer_vertices"], 100u);
-    settings.transfer = false; // in the middle of a game
-    render();
-    EXPECT_EQ((*level)->renderer().statistics().counters["transfer_vertices"], 0u);
-    settings.transfer = true;
-    render();
-    EXPECT_GT((*level)->renderer().statistics().counters["transfer_vertices"], 100u);
-}
-
 TEST_F(LevelLoaderTest, ItStopsWhereverItIs) {
     for (const auto wait : {0ms, 5ms, 60ms, 250ms}) {
         demo::LevelLoader loader(device(), "four_pillars", small_settings(), 160, 90);

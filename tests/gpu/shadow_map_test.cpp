@@ -1,5 +1,6 @@
 // Octahedral shadow maps against Embree.
 #include "tests/support/shadow_map_values.h"
+#include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
 
 #include <cmath>
@@ -13,7 +14,7 @@ class ShadowMapTest : public GpuTest {};
 // rays differ, the difference is explained as for all maps.
 TEST_F(ShadowMapTest, SpotsHaveMapsOfTheirCone) {
     GpuWorld world(assets::make_near_occluder, "view");
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 8;
     world.set(settings);
     world.request.width = world.request.height = 8;
@@ -66,7 +67,7 @@ ecs::Entity first_lamp(GpuWorld& world) {
 // known to 0.1 per cent from 50,000 pairs of a kind.
 void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs) {
     GpuWorld world(make);
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 96;
     settings.shadow_map_resolution = 512;
     settings.shadow_map_bits = bits;
@@ -154,7 +155,7 @@ void make_box_on_floor(assets::SceneBuilder& scene) {
 
 TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
     GpuWorld world(make_box_on_floor);
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 64;
     settings.with("indirect", "none");
     settings.shadow_map_resolution = 256;
@@ -193,7 +194,7 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
 
 TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
     GpuWorld world(assets::make_table_room, "view");
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);
@@ -211,7 +212,7 @@ TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
 
 TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     GpuWorld world(assets::make_four_pillars, "view");
-    gi::Settings settings = gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = plain_light();
     settings.lights = 100;
     settings.shadow_map_resolution = 64;
     world.set(settings);

@@ -2,17 +2,13 @@
 // every assignment of techniques to cells gives the picture of the baseline.
 #include "editor/command_line/metrics.h"
 #include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
 
 #include <algorithm>
 
 namespace sunfleck::tests {
 namespace {
-
-bool has_technique(std::string_view name) {
-    const auto& choices = gi::Settings::find("direct")->choices;
-    return std::find(choices.begin(), choices.end(), name) != choices.end();
-}
 
 struct Assignment {
     std::string name;

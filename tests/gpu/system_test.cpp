@@ -1,5 +1,6 @@
 // gi::System as a whole: several on one registry, and frames that never reach the GPU.
 #include "tests/support/system_frames.h"
+#include "tests/support/techniques.h"
 
 #include <cstring>
 
@@ -14,15 +15,6 @@ gi::Settings settings_for(std::string_view technique, std::uint32_t lights = 60)
     settings.shadow_map_resolution = 64;
     settings.map_budget = 65536;
     return settings;
-}
-
-// Techniques that can light everything, by name.
-std::vector<std::string_view> techniques_for_all_light() {
-    std::vector<std::string_view> names;
-    for (const std::string_view name : gi::Settings::find("indirect")->choices)
-        if (name != "none")
-            names.push_back(name);
-    return names;
 }
 
 int different_pixels(const std::vector<vec4>& a, const std::vector<vec4>& b) {

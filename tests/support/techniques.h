@@ -1,23 +1,44 @@
-// What tests see of single techniques of a running system.
+// Techniques by name, for tests that must not need any of them: each can be left out of the build.
 #pragma once
 
-#include "gi_module/brute_force/brute_force_technique.h"
-#include "gi_module/many_light/many_light_technique.h"
-#include "gi_module/system.h"
+#include "gi_module/technique.h"
+
+#include <algorithm>
 
 namespace sunfleck::tests {
 
-inline const gi::ManyLightTechnique& many_light_technique(gi::System& system) {
-    return dynamic_cast<const gi::ManyLightTechnique&>(*system.technique("light_samples"));
+inline bool has_technique(std::string_view name) {
+    return std::any_of(gi::techniques().begin(), gi::techniques().end(),
+                       [&](const gi::TechniqueEntry& technique) { return technique.name == name; });
 }
-inline const gi::ManyLight& many_light(gi::System& system) {
-    return many_light_technique(system).lighting();
+
+// Techniques that can light everything, by name; the first is the default.
+inline std::vector<std::string_view> techniques_for_all_light() {
+    std::vector<std::string_view> names;
+    for (const std::string_view name : gi::Settings::find("indirect")->choices)
+        if (name != "none")
+            names.push_back(name);
+    return names;
 }
-inline const gi::CurvedCharts& curved_charts(gi::System& system) {
-    return many_light_technique(system).curved_charts();
+
+// Every light sample with its shadow map at every pixel, nothing interpolated: by the baseline, or, where that is left
+// out, by the default technique without its shortcuts.
+inline gi::Settings plain_light() {
+    gi::Settings settings;
+    if (has_technique("brute_force"))
+        return settings.all_light_by("brute_force");
+    settings.low_resolution = 1;
+    settings.map_budget = 65536;
+    for (const char* shortcut : {"visibility", "light_maps", "baked_light"})
+        if (gi::Settings::find(shortcut) != nullptr)
+            settings.with(shortcut, "off");
+    return settings;
 }
-inline gi::BruteForce& brute_force_kernel(gi::System& system) {
-    return dynamic_cast<gi::BruteForceTechnique&>(*system.technique("brute_force")).kernel();
+
+// Sets it if the technique that has it is there.
+inline void set_if_known(gi::Settings& settings, std::string_view name, std::string_view value) {
+    if (gi::Settings::find(name) != nullptr)
+        settings.with(name, value);
 }
 
 } // namespace sunfleck::tests

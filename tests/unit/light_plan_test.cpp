@@ -132,5 +132,22 @@ TEST(LightPlan, SettingsAreDistinctDescribedAndReadTheirOwnText) {
     EXPECT_FALSE(settings.validate());
 }
 
+// Whichever techniques the build has.
+TEST(LightPlan, TheFirstTechniqueThatCanLightATermIsItsDefault) {
+    ASSERT_FALSE(techniques().empty());
+    const Settings settings;
+    for (const bool direct : {true, false}) {
+        const CellSet cells = cells_where([&](LightCell cell) {
+            return !cell.specular && !cell.on_mover && (cell.path == PathPart::direct) == direct;
+        });
+        std::string_view expected = "none";
+        for (const TechniqueEntry& technique : techniques())
+            if (expected == "none" && (cells & ~technique.can_light).none())
+                expected = technique.name;
+        EXPECT_EQ(settings.get(direct ? "direct" : "indirect"), expected);
+    }
+    EXPECT_TRUE(settings.validate());
+}
+
 } // namespace
 } // namespace sunfleck::gi

@@ -1,11 +1,9 @@
 // One scene rendered by the many-light system and by brute force, and how much the two pictures differ.
 #pragma once
 
-#include "tests/support/gpu_world.h"
+#include "tests/techniques/many_light/many_light.h"
 
 namespace sunfleck::tests {
-
-class ManyLightTest : public GpuTest {};
 
 // Two renderers of one scene, frame for frame.
 struct Pair {

@@ -1,7 +1,7 @@
 // The many-light system against brute force: what each optimisation may change of the picture, and what it may not.
 #include "gi_module/many_light/many_light_settings.h"
-#include "tests/support/brute_force_pair.h"
 #include "tests/support/test_size.h"
+#include "tests/techniques/many_light/brute_force_pair.h"
 
 namespace sunfleck::tests {
 namespace {

@@ -1,6 +1,6 @@
 // Scenes that change under the many-light system: doors, any number of samples, objects that come and go.
-#include "tests/support/brute_force_pair.h"
 #include "tests/support/test_size.h"
+#include "tests/techniques/many_light/many_light.h"
 
 #include <random>
 

@@ -1,7 +1,7 @@
 // Baked light against rays: what its texels hold, what smooth cells say between them, and what movers leave of it.
 #include "gi_module/many_light/many_light_settings.h"
 #include "tests/support/gpu_world.h"
-#include "tests/support/techniques.h"
+#include "tests/techniques/many_light/many_light.h"
 
 #include <glm/gtc/packing.hpp>
 

@@ -1,76 +1,12 @@
-// Light maps of surface patches: no light where none is, none lost, and no drift.
+// Light maps of surface patches: none lost, and no drift.
 #include "gi_module/many_light/many_light_settings.h"
-#include "tests/support/brute_force_pair.h"
-#include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
+#include "tests/techniques/many_light/many_light.h"
 
 #include <random>
 
 namespace sunfleck::tests {
 namespace {
-
-// A patch in full shadow under a table is as dark as brute force says, though its light map is bright.
-TEST_F(ManyLightTest, UmbraStaysDark) {
-    const auto make = [](assets::SceneBuilder& s) {
-        s.quad("floor", vec3(-4, 0, -4), vec3(0, 0, 8), vec3(8, 0, 0), assets::diffuse(vec3(0.5f)));
-        s.ceiling_light("lamp", vec3(0, 3, 0), 0.3f, 0.3f, vec3(50.0f));
-        s.quad("table", vec3(-1, 1, -1), vec3(0, 0, 2), vec3(2, 0, 0), assets::diffuse(vec3(0.5f)));
-        s.camera("view", vec3(0.0f, 0.6f, 2.0f), vec3(0.0f, 0.0f, 0.2f), 30.0f);
-    };
-    Pair pair(make, "view");
-    pair.size(128, 96);
-    gi::Settings settings;
-    settings.lights = 64;
-    settings.bounces = 0;
-    pair.set(settings);
-    pair.run_to(2, 0.0f);
-    const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
-    int dark = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-        if (b.pixels[i].a > 0 && b.pixels[i].r == 0.0f) {
-            ++dark;
-            EXPECT_LT(a.pixels[i].r, 0.01f); // of about 2 W/m2 beside the table
-        }
-    EXPECT_GT(dark, 2000);
-}
-
-void make_wavy_floor(assets::SceneBuilder& s) {
-    const vec3 walls[4] = {vec3(0.6f, 0.1f, 0.1f), vec3(0.1f, 0.6f, 0.1f), vec3(0.6f), vec3(0.6f)};
-    s.room(vec3(-3, -0.01f, -3), vec3(3, 3, 3), vec3(0.6f), vec3(0.7f), walls,
-           {{"lamp", vec2(-2.0f), 0.5f, 0.5f, vec3(40.0f)}});
-    scene::Mesh floor = scene::make_rectangle(6.0f, 6.0f, 24, 24);
-    for (std::size_t i = 0; i < floor.normals.size(); ++i) {
-        floor.positions[i] = vec3(floor.positions[i].x, 0.0f, -floor.positions[i].y);
-        floor.normals[i] = glm::normalize(vec3(0.6f * std::sin(3.0f * floor.positions[i].x), 1.0f, 0.0f));
-    }
-    s.add("floor", std::move(floor), assets::diffuse(vec3(0.6f)));
-    s.camera("view", vec3(0.5f, 2.9f, 0.5f), vec3(0.0f), 60.0f); // of the floor alone
-}
-
-// A flat floor that is shaded as if it were wavy: what light maps know of it is of no use.
-TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
-    Pair pair(make_wavy_floor, "view");
-    pair.size(192, 144);
-    gi::Settings settings;
-    settings.lights = 100;
-    settings.low_resolution = 1;
-    settings.bounces = 0; // samples low on the walls would graze the floor, where maps shadow what nothing is above
-    pair.set(settings);
-    pair.run_to(1, 0.0f);
-    const Difference direct = compare(pair);
-    settings.bounces = gi::Settings{}.bounces;
-    pair.set(settings);
-    settings.of<gi::ManyLightSettings>().light_maps = false;
-    pair.brute.set(settings);
-    pair.run_to(1, 0.0f);
-    const Difference all = compare(pair);
-    std::printf("%.5f off, of %.4f W/m2 direct; %.5f off, of %.4f W/m2 without light maps\n", direct.mean,
-                direct.mean_brightness, all.mean, all.mean_brightness);
-    // Normals that do not count would be off by a tenth and more.
-    EXPECT_LT(direct.mean, 0.005 * direct.mean_brightness);
-    EXPECT_LT(all.mean, 0.005 * all.mean_brightness);
-    EXPECT_GT(direct.mean_brightness, 0.1);
-}
 
 std::vector<std::int32_t> read_texels(GpuWorld& world, const gi::LightMaps& maps) {
     const std::uint64_t bytes = maps.counters().texels * 16;
