@@ -11,7 +11,19 @@
 namespace sunfleck::tests {
 namespace {
 
-class MapContributions : public GpuTest {};
+// They are read off the visibility database, which is there for a technique that wants it.
+class MapContributions : public GpuTest {
+protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        const auto wants = [](const gi::TechniqueEntry& entry) { return entry.wants_visibility; };
+        const auto found = std::find_if(gi::techniques().begin(), gi::techniques().end(), wants);
+        if (found == gi::techniques().end())
+            GTEST_SKIP() << "no technique of this build wants the visibility database";
+        settings.all_light_by(found->name);
+    }
+    gi::Settings settings;
+};
 
 std::vector<float> contributions(GpuWorld& world, const scene::CameraView& camera) {
     gi::System& lighting = world.renderer->lighting();
@@ -82,7 +94,7 @@ float correlation(const std::vector<float>& a, const std::vector<float>& b) {
 TEST_F(MapContributions, FollowWhatTheCameraSees) {
     for (const char* camera : {"bench_1", "bench_2"}) {
         GpuWorld world(assets::make_four_pillars, camera);
-        world.set(gi::Settings());
+        world.set(settings);
         world.render();
         const std::vector<float> guessed = contributions(world, world.request.camera);
         const std::vector<float> true_ones = light_that_movers_decide(world, world.request.camera);
@@ -103,7 +115,7 @@ TEST_F(MapContributions, FollowWhatTheCameraSees) {
 // A camera that looks away from all movers and shadows.
 TEST_F(MapContributions, AreNothingOutOfSight) {
     GpuWorld world(assets::make_four_pillars, "bench_1");
-    world.set(gi::Settings());
+    world.set(settings);
     world.render();
     scene::CameraView away = world.request.camera;
     away.position = vec3(0.0f, 100.0f, 0.0f);

@@ -29,6 +29,7 @@ inline gi::Settings plain_light() {
         return settings.all_light_by("brute_force");
     settings.low_resolution = 1;
     settings.map_budget = 65536;
+    settings.static_maps = settings.map_detail = false;
     for (const char* shortcut : {"visibility", "light_maps", "baked_light"})
         if (gi::Settings::find(shortcut) != nullptr)
             settings.with(shortcut, "off");
