@@ -1,4 +1,4 @@
-// Definition of the quality presets.
+// The quality presets (viewer/quality.h) in the player's settings.
 #pragma once
 
 #include "game_demo/demo_settings.h"

@@ -21,6 +21,13 @@ double milliseconds_since(Clock::time_point start) {
 constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
 
+double sum_of(const gi::StageTimes& times) {
+    double sum = 0.0;
+    for (const auto& [stage, milliseconds] : times)
+        sum += milliseconds;
+    return sum;
+}
+
 bool is_enlarged(const FrameRequest& request) {
     return request.tone_map && request.screen_width > 0 && request.screen_height > 0 &&
            (request.screen_width != request.width || request.screen_height != request.height);
@@ -157,6 +164,7 @@ void SceneRenderer::draw_samples() {
 
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const double start = frame_time();
+    const double lighting_before = sum_of(lighting_->cpu_times());
     SUNFLECK_TRY(make_output(request));
     shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
     if (has_previous_camera_)
@@ -202,6 +210,8 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     SUNFLECK_TRY(graph_->compile());
     SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
     note_stage("recording", start);
+    // What the lighting times itself is a stage of its own: no time counts twice.
+    statistics_.cpu_ms["recording"] -= sum_of(lighting_->cpu_times()) - lighting_before;
     return {};
 }
 

@@ -1,0 +1,42 @@
+#include "viewer/quality.h"
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+namespace sunfleck::viewer {
+namespace {
+
+constexpr QualityPreset presets[] = {
+    {"software", 0.5f, 200, 24, false}, // without a GPU
+    {"low", 0.67f, 250, 40, false},     {"medium", 0.75f, 400, 60, false},
+    {"high", 1.0f, 600, 120, true},     {"ultra", 1.0f, 1500, 300, true},
+};
+
+} // namespace
+
+std::span<const QualityPreset> quality_presets() {
+    return presets;
+}
+
+bool has_transfer() {
+    const std::vector<std::string_view>& choices = gi::Settings::find("movers")->choices;
+    return std::find(choices.begin(), choices.end(), "prt") != choices.end();
+}
+
+gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
+    gi::Settings result;
+    result.lights = preset.light_samples;
+    result.map_budget = preset.map_budget;
+    result.bounces = quality <= Quality::low ? 3 : 5;
+    result.shadow_map_resolution = quality <= Quality::low ? 128 : 256;
+    result.low_resolution = quality == Quality::ultra ? 1 : 2;
+    result.patch_levels = 2; // houses have many small surfaces
+    result.dynamic_share = 0.2f;
+    result.map_priority = gi::MapPriority::contribution;
+    if (preset.transfer && has_transfer())
+        result.with("movers", "prt");
+    return result;
+}
+
+} // namespace sunfleck::viewer
