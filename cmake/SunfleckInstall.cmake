@@ -22,5 +22,5 @@ if(SUNFLECK_BUILD_APPLICATIONS)
   install(TARGETS sunfleck_draco LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   set_target_properties(sunfleck sunfleck_demo PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/scenes" DESTINATION "${CMAKE_INSTALL_DATADIR}/sunfleck"
-          FILES_MATCHING PATTERN "*.glb" PATTERN "*.json")
+          FILES_MATCHING PATTERN "*.glb" PATTERN "*.json" PATTERN "*.walk")
 endif()

@@ -2,6 +2,7 @@
 #include "editor/command_line/program.h"
 
 #include "editor/command_line/commands.h"
+#include "editor/command_line/gate_commands.h"
 #include "gi_module/settings_reference.h"
 
 #include <CLI/CLI.hpp>
@@ -142,8 +143,8 @@ Command make_bench_command(CLI::App& program) {
                 "reference    rays per second of the path tracer\n"
                 "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
                 "             (--part movers runs one of its experiments)");
+    const auto run_gate = add_gate_commands(*app);
     app->add_option("SUITE", options->suite, "Name of the experiment")
-        ->required()
         ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"}));
     app->add_flag("--json", options->as_json, "Print one JSON object");
     app->add_option("--csv", options->csv, "Write the rows as CSV");
@@ -154,7 +155,11 @@ Command make_bench_command(CLI::App& program) {
     app->add_option("--scene", options->scene, "Scene, where the suite takes one");
     app->add_option("--part", options->part, "One experiment of the thesis")->check(CLI::IsMember(thesis_parts()));
     app->add_option("--device", options->device, "Vulkan device by number or part of its name");
-    return {app, [options] {
+    return {app, [options, run_gate] {
+                if (int gate_status = 0; run_gate(gate_status))
+                    return gate_status;
+                if (options->suite.empty())
+                    return fail({"a SUITE, 'level' or 'compare' is needed (sunfleck bench --help)"});
                 watch_interrupts();
                 const Status status = bench(*options);
                 return status ? 0 : fail(status.error());

@@ -1,0 +1,94 @@
+#include "editor/command_line/gate_commands.h"
+
+#include "editor/command_line/bench_compare.h"
+
+#include <CLI/CLI.hpp>
+
+namespace sunfleck::command_line {
+namespace {
+
+void add_level_options(CLI::App& app, LevelOptions& options) {
+    app.add_option("--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
+        ->capture_default_str();
+    app.add_option("--input", options.input, "Recorded input to play (default: the scene's own walk)");
+    app.add_option("--size", options.size, "Rendered size, WIDTHxHEIGHT")->capture_default_str();
+    app.add_option("--preset", options.preset, "Quality: software, low, medium, high or ultra")
+        ->check(CLI::IsMember({"software", "low", "medium", "high", "ultra"}))
+        ->capture_default_str();
+    app.add_option("--set", options.settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
+    app.add_option("--steps-per-frame", options.steps_per_frame, "Simulation steps of 1/60 s a frame")
+        ->check(CLI::Range(1, 60))
+        ->capture_default_str();
+    app.add_option("--device", options.device, "Vulkan device by number or part of its name");
+}
+
+int exit_status(const Status& status) {
+    if (status)
+        return 0;
+    fail(status.error());
+    return int(gate::Outcome::error);
+}
+
+std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
+    auto options = std::make_shared<LevelOptions>();
+    app = bench.add_subcommand("level", "Plays a recorded walk and writes times and counters of every frame");
+    app->footer("Example: sunfleck bench level --frames 200 -o level.json\n"
+                "Without -o the JSON goes to standard output. docs/gate.md describes it.");
+    add_level_options(*app, *options);
+    app->add_option("--frames", options->frames, "Frames to measure (0: to the end of the recording)")
+        ->check(CLI::Range(0u, gate::most_frames))
+        ->capture_default_str();
+    app->add_option("--warmup", options->warmup, "Frames before those")
+        ->check(CLI::Range(0u, gate::most_frames / 2))
+        ->capture_default_str();
+    app->add_option("-o,--output", options->output, "JSON file to write");
+    app->add_flag("--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
+    return [options] {
+        watch_interrupts();
+        return exit_status(bench_level(*options));
+    };
+}
+
+std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
+    auto options = std::make_shared<CompareRunOptions>();
+    app =
+        bench.add_subcommand("compare", "Has a change made a pass slower? Base and head draw the same frames in turns");
+    app->footer("Example: sunfleck bench compare old/bin/sunfleck new/bin/sunfleck\n"
+                "BASE and HEAD are programs, which then run `bench level --serve` with the options below, or command\n"
+                "lines in quotes that speak the gate's protocol (docs/gate.md).\n"
+                "Exit status: 0 fine, 1 slower, 2 error, 3 cannot tell, 4 work changed.");
+    app->add_option("BASE", options->base, "The program before the change");
+    app->add_option("HEAD", options->head, "The program after it");
+    add_level_options(*app, options->level);
+    app->add_option("--accept-counters", options->accepted_counters, "Counter that was meant to change; repeatable");
+    app->add_option("--time-limit", options->time_limit, "Seconds that a program may take for an answer")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    app->add_option("--looks", options->looks, "Numbers of pairs at which a verdict is sought")
+        ->delimiter(',')
+        ->capture_default_str();
+    app->add_flag("--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
+    app->add_option("--turns", options->pair.turns, "Turns of each process in a pair")->capture_default_str();
+    app->add_option("--seed", options->pair.seed, "Which frames are drawn, and in which order")->capture_default_str();
+    return [options] {
+        watch_interrupts();
+        const Result<gate::Outcome> outcome = bench_compare(*options);
+        return outcome ? int(*outcome) : exit_status(outcome.error());
+    };
+}
+
+} // namespace
+
+std::function<bool(int&)> add_gate_commands(CLI::App& bench) {
+    CLI::App *level = nullptr, *compare = nullptr;
+    const auto run_level = add_level(bench, level);
+    const auto run_compare = add_compare(bench, compare);
+    return [=](int& status) {
+        if (!level->parsed() && !compare->parsed())
+            return false;
+        status = level->parsed() ? run_level() : run_compare();
+        return true;
+    };
+}
+
+} // namespace sunfleck::command_line

@@ -1,0 +1,35 @@
+// Measures pairs until the gate has a verdict.
+#pragma once
+
+#include "editor/gate/comparison.h"
+
+namespace sunfleck::gate {
+
+// Exit statuses of `bench compare`.
+enum class Outcome { fine = 0, slower = 1, error = 2, cannot_tell = 3, changed = 4 };
+
+struct GateRunOptions {
+    PairOptions pair;
+    statistics::GateOptions gate;
+    Patience patience;
+    std::set<std::string> accepted_counters;
+    bool check_work = true; // every frame's counters, and pictures, before time is measured
+    WorkCheckOptions work;
+    // Before each pair: pairs so far, and how many the next look needs.
+    std::function<void(std::uint32_t done, std::uint32_t needed)> progress = [](std::uint32_t, std::uint32_t) {};
+};
+
+struct GateRun {
+    Comparison comparison;
+    statistics::GateReport report;
+    double minutes = 0.0;
+    std::string weaker; // why the verdict is worth less than one of pairs; empty: it is not
+    bool pictures_changed = false;
+};
+
+Result<GateRun> measure(const Programs& programs, const GateRunOptions& options);
+
+// "slower" comes first: what a change of work costs is what one wants to know of it.
+Outcome outcome_of(const GateRun& run);
+
+} // namespace sunfleck::gate
