@@ -1,11 +1,20 @@
 #include "editor/command_line/bench_compare.h"
 
+#include "editor/command_line/metrics.h"
+#include "editor/gate/html_report.h"
+#include "editor/gate/level_file.h"
+#include "editor/gate/revision_build.h"
 #include "editor/gate/verdict_text.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace sunfleck::command_line {
 namespace {
+
+gate::Patience patience_of(double seconds) {
+    return {seconds, [] { return interrupted(); }};
+}
 
 // A program alone plays the level with the gate's options; a command line is taken as it is.
 Result<std::vector<std::string>> command_of(const std::string& side, const LevelOptions& level) {
@@ -23,30 +32,139 @@ Result<std::vector<std::string>> command_of(const std::string& side, const Level
     return words;
 }
 
-} // namespace
+bool is_level_file(const std::string& side) {
+    return std::filesystem::path(side).extension() == ".json";
+}
 
-Result<gate::Outcome> bench_compare(const CompareRunOptions& options) {
-    if (options.base.empty() || options.head.empty())
-        return Error{"BASE and HEAD are needed: two programs"};
+std::set<std::string> accepted_of(const CompareRunOptions& options) {
+    return {options.accepted_counters.begin(), options.accepted_counters.end()};
+}
+
+// With --base REV, the one program that is named is head; if none is, this one.
+Result<gate::Programs> programs_of(const CompareRunOptions& options) {
+    std::string base = options.base, head = options.head;
+    if (!options.base_revision.empty()) {
+        if (!options.head.empty())
+            return Error{"--base stands for the program BASE: one program at most can be named beside it"};
+        head = base.empty() ? "/proc/self/exe" : base;
+        constexpr double build_seconds = 7200.0;
+        SUNFLECK_ASSIGN(
+            const std::filesystem::path built,
+            gate::build_revision(options.base_revision, patience_of(build_seconds),
+                                 [](const std::string& text) { std::fprintf(stderr, "%s\n", text.c_str()); }));
+        base = built.string();
+    }
+    if (base.empty() || head.empty())
+        return Error{"BASE and HEAD are needed: two programs, or two files of `bench level`"};
     gate::Programs programs;
-    SUNFLECK_ASSIGN(programs.base, command_of(options.base, options.level));
-    SUNFLECK_ASSIGN(programs.head, command_of(options.head, options.level));
-    gate::GateRunOptions run_options;
-    run_options.pair = options.pair;
-    run_options.gate.looks = options.looks;
-    run_options.patience = {options.time_limit, [] { return interrupted(); }};
-    run_options.accepted_counters = {options.accepted_counters.begin(), options.accepted_counters.end()};
-    run_options.check_work = !options.skip_work;
-    run_options.work.patience = run_options.patience;
+    SUNFLECK_ASSIGN(programs.base, command_of(base, options.level));
+    SUNFLECK_ASSIGN(programs.head, command_of(head, options.level));
+    return programs;
+}
+
+Result<gate::GateRunOptions> run_options_of(const CompareRunOptions& options) {
+    gate::GateRunOptions run;
+    run.pair = options.pair;
+    run.gate.looks = options.looks;
+    run.patience = patience_of(options.time_limit);
+    run.accepted_counters = accepted_of(options);
+    run.check_work = !options.skip_work;
+    run.work.patience = run.patience;
+    if (options.stored.empty())
+        return run;
+    if (options.skip_work)
+        return Error{"--stored: pictures are drawn while the work is compared, which --skip-work leaves out"};
+    SUNFLECK_ASSIGN(run.store, gate::read_picture_store(options.stored));
+    return run;
+}
+
+Result<gate::GateRun> run_gate(const CompareRunOptions& options, const std::filesystem::path& folder) {
+    if (is_level_file(options.base) && is_level_file(options.head))
+        return gate::compare_files(options.base, options.head, accepted_of(options));
+    SUNFLECK_ASSIGN(gate::GateRunOptions run_options, run_options_of(options));
+    SUNFLECK_ASSIGN(const gate::Programs programs, programs_of(options));
+    run_options.folder = folder;
     Progress work_progress("work of every frame"), progress("time");
     run_options.work.progress = [&](double share) { work_progress.show(share, ""); };
     run_options.progress = [&](std::uint32_t done, std::uint32_t needed) {
         progress.show(double(done) / needed,
                       "pair " + std::to_string(done + 1) + " of " + std::to_string(needed) + " to the next look");
     };
-    SUNFLECK_ASSIGN(const gate::GateRun run, gate::measure(programs, run_options));
+    return gate::measure(programs, run_options);
+}
+
+Status write_differences(const std::vector<gate::PictureResult>& results, const std::filesystem::path& folder) {
+    std::error_code code;
+    std::filesystem::create_directories(folder, code);
+    for (const gate::PictureResult& result : results) {
+        if (result.difference.equal || !result.difference.same_size)
+            continue;
+        SUNFLECK_ASSIGN(const io::Picture stored, io::read_picture(result.stored));
+        SUNFLECK_ASSIGN(const io::Picture drawn, io::read_picture(result.drawn));
+        const std::filesystem::path file = folder / (result.frame.name + "_difference.png");
+        SUNFLECK_TRY(io::write_picture(file, difference_picture(drawn, stored, false)));
+        std::printf("wrote %s\n", file.c_str());
+    }
+    return {};
+}
+
+// The stored set with the frames that are named on the command line, if any are.
+Result<gate::PictureStore> store_of(const PicturesOptions& options) {
+    gate::PictureStore store;
+    if (options.frames.empty() || !options.accept) {
+        SUNFLECK_ASSIGN(store, gate::read_picture_store(options.stored));
+    }
+    store.folder = options.stored;
+    if (!options.frames.empty())
+        store.frames.clear();
+    for (const std::string& text : options.frames) {
+        SUNFLECK_ASSIGN(const gate::NamedFrame frame, gate::parse_named_frame(text));
+        store.frames.push_back(frame);
+    }
+    std::sort(store.frames.begin(), store.frames.end(),
+              [](const gate::NamedFrame& a, const gate::NamedFrame& b) { return a.frame < b.frame; });
+    return store;
+}
+
+} // namespace
+
+Result<gate::Outcome> bench_compare(const CompareRunOptions& options) {
+    SUNFLECK_ASSIGN(const auto folder, gate::TemporaryFolder::make());
+    SUNFLECK_ASSIGN(const gate::GateRun run, run_gate(options, folder->path()));
+    if (!options.report.empty())
+        SUNFLECK_TRY(gate::write_html_report(options.report, run));
     std::fputs(gate::verdict_text(run).c_str(), stdout);
     return gate::outcome_of(run);
+}
+
+Result<gate::Outcome> bench_pictures(const PicturesOptions& options) {
+    SUNFLECK_ASSIGN(const gate::PictureStore store, store_of(options));
+    SUNFLECK_ASSIGN(const auto folder, gate::TemporaryFolder::make());
+    SUNFLECK_ASSIGN(const auto command,
+                    command_of(options.program.empty() ? "/proc/self/exe" : options.program, options.level));
+    gate::WorkCheckOptions work{{}, store.frames, folder->path(), patience_of(options.time_limit), {}};
+    Progress progress("pictures");
+    work.progress = [&](double share) { progress.show(share, ""); };
+    SUNFLECK_ASSIGN(const gate::Hello hello, gate::draw_pictures(command, work));
+    if (options.accept) {
+        SUNFLECK_ASSIGN(const auto written, gate::accept_pictures(store, hello, folder->path()));
+        for (const std::filesystem::path& file : written)
+            std::printf("wrote %s\n", file.c_str());
+        return gate::Outcome::fine;
+    }
+    SUNFLECK_ASSIGN(const auto results, gate::compare_with_store(store, hello, folder->path()));
+    bool changed = false;
+    for (const gate::PictureResult& result : results) {
+        changed |= !result.fault.empty();
+        const std::string word = !result.fault.empty()     ? "changed: " + result.fault
+                                 : result.difference.equal ? "equal"
+                                                           : "alike";
+        std::printf("%-20s frame %5u  FLIP %.5f  %s\n", result.frame.name.c_str(), result.frame.frame,
+                    result.difference.flip, word.c_str());
+    }
+    if (!options.differences.empty())
+        SUNFLECK_TRY(write_differences(results, options.differences));
+    return changed ? gate::Outcome::changed : gate::Outcome::fine;
 }
 
 } // namespace sunfleck::command_line

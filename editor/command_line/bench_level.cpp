@@ -66,8 +66,6 @@ Json level_json(LevelRun& run, const LevelOptions& options, const std::vector<ga
 Status measure(LevelRun& run, const LevelOptions& options) {
     const std::uint32_t end =
         options.frames == 0 ? run.frames() : std::min(options.warmup + options.frames, run.frames());
-    if (end <= options.warmup)
-        return Error{"the recording has " + std::to_string(run.frames()) + " frames; all of them are warm-up"};
     std::vector<gate::Frame> frames;
     Progress progress("bench level");
     while (run.next_frame() < end) {

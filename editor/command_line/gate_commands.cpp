@@ -55,11 +55,15 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
         bench.add_subcommand("compare", "Has a change made a pass slower? Base and head draw the same frames in turns");
     app->footer("Example: sunfleck bench compare old/bin/sunfleck new/bin/sunfleck\n"
                 "BASE and HEAD are programs, which then run `bench level --serve` with the options below, or command\n"
-                "lines in quotes that speak the gate's protocol (docs/gate.md).\n"
-                "Exit status: 0 fine, 1 slower, 2 error, 3 cannot tell, 4 work changed.");
+                "lines in quotes that speak the gate's protocol (docs/gate.md); or two files of `bench level`, for a\n"
+                "weaker verdict. Exit status: 0 fine, 1 slower, 2 error, 3 cannot tell, 4 work or pictures changed.");
     app->add_option("BASE", options->base, "The program before the change");
     app->add_option("HEAD", options->head, "The program after it");
+    app->add_option("--base", options->base_revision,
+                    "Build BASE from this revision of the project; the program named is HEAD (default: this one)");
     add_level_options(*app, options->level);
+    app->add_option("--stored", options->stored, "Folder of stored pictures that head must draw, too");
+    app->add_option("--report", options->report, "Write a report as one HTML file");
     app->add_option("--accept-counters", options->accepted_counters, "Counter that was meant to change; repeatable");
     app->add_option("--time-limit", options->time_limit, "Seconds that a program may take for an answer")
         ->check(CLI::Range(0.1, 1e6))
@@ -77,17 +81,42 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
     };
 }
 
+std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
+    auto options = std::make_shared<PicturesOptions>();
+    app = bench.add_subcommand("pictures", "Does a program still draw the stored pictures of named frames?");
+    app->footer("Example: sunfleck bench pictures --stored tests/images/level --steps-per-frame 30\n"
+                "Equal to the bit on the processor and driver that they were drawn on, within limits elsewhere\n"
+                "(docs/gate.md). Exit status: 0 fine, 2 error, 4 pictures changed.");
+    app->add_option("PROGRAM", options->program, "As HEAD of `bench compare` (default: this one)");
+    app->add_option("--stored", options->stored, "Folder of stored pictures")->required();
+    app->add_flag("--accept", options->accept, "Store what is drawn now, and list what was written");
+    app->add_option("--frame", options->frames, "Frame to store or compare, NAME=NUMBER; repeatable");
+    app->add_option("--differences", options->differences, "Folder for pictures of the differences, times eight");
+    app->add_option("--time-limit", options->time_limit, "Seconds that the program may take for an answer")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str();
+    add_level_options(*app, options->level);
+    return [options] {
+        watch_interrupts();
+        const Result<gate::Outcome> outcome = bench_pictures(*options);
+        return outcome ? int(*outcome) : exit_status(outcome.error());
+    };
+}
+
 } // namespace
 
 std::function<bool(int&)> add_gate_commands(CLI::App& bench) {
-    CLI::App *level = nullptr, *compare = nullptr;
+    CLI::App *level = nullptr, *compare = nullptr, *pictures = nullptr;
     const auto run_level = add_level(bench, level);
     const auto run_compare = add_compare(bench, compare);
+    const auto run_pictures = add_pictures(bench, pictures);
     return [=](int& status) {
-        if (!level->parsed() && !compare->parsed())
-            return false;
-        status = level->parsed() ? run_level() : run_compare();
-        return true;
+        for (const auto& [app, run] : {std::pair{level, run_level}, {compare, run_compare}, {pictures, run_pictures}})
+            if (app->parsed()) {
+                status = run();
+                return true;
+            }
+        return false;
     };
 }
 

@@ -74,6 +74,8 @@ Status LevelRun::read_input(const LevelOptions& options) {
     SUNFLECK_ASSIGN(input_, simulation::read_recording(file));
     if (input_.size() < stride_)
         return Error{"'" + file.string() + "' has no whole frame of " + std::to_string(stride_) + " steps"};
+    if (!options.serve && frames() <= options.warmup)
+        return Error{"the recording has " + std::to_string(frames()) + " frames; all of them are warm-up"};
     std::uint64_t hash = hash_start;
     for (const simulation::StepInput& step : input_)
         hash = hash_bytes(hash, &step, sizeof step);
@@ -120,7 +122,7 @@ Status LevelRun::prepare() {
 }
 
 gate::Hello LevelRun::hello() const {
-    gate::Hello hello{device_->traits().name, device_->traits().driver, recording_, {}, frames(), {}};
+    gate::Hello hello{device_->traits().name, device_->traits().driver, recording_, {}, frames(), true, {}};
     hello.size = std::to_string(size_.width) + "x" + std::to_string(size_.height);
     for (const gi::Settings::ConstPart& part : settings_.parts())
         for (const Field& field : part.type->fields)

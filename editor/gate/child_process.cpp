@@ -177,9 +177,34 @@ Status ChildProcess::finish() {
         read_available(errors_, complaints_);
         ::poll(nullptr, 0, 2);
     }
-    if (WIFEXITED(exit_status_) && WEXITSTATUS(exit_status_) == 0)
-        return {};
-    return ended();
+    return failed() ? Status(ended()) : Status();
+}
+
+bool ChildProcess::failed() const {
+    return !WIFEXITED(exit_status_) || WEXITSTATUS(exit_status_) != 0;
+}
+
+Result<std::string> ChildProcess::read_to_end() {
+    close_input();
+    std::string output;
+    const Clock::time_point start = Clock::now();
+    while (!take_exit_status(false)) {
+        pollfd files[2] = {{output_, POLLIN, 0}, {errors_, POLLIN, 0}};
+        ::poll(files, 2, poll_milliseconds);
+        if (patience_.interrupted())
+            return Error{"interrupted"};
+        if (seconds_since(start) > patience_.seconds)
+            return Error{name_ + " did not end within " + std::to_string(int(patience_.seconds)) + " s"};
+        read_available(output_, output);
+        read_available(errors_, output);
+        ::poll(nullptr, 0, 2); // streams that are closed would be ready again and again
+    }
+    read_available(output_, output);
+    read_available(errors_, output);
+    if (!failed())
+        return output;
+    constexpr std::size_t kept = 2000;
+    return Error{name_ + " failed: " + (output.size() > kept ? output.substr(output.size() - kept) : output)};
 }
 
 bool ChildProcess::take_exit_status(bool wait) {

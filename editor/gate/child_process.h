@@ -31,6 +31,8 @@ public:
     Result<std::string> read_line();
     // Closes its input and waits for its end; an exit status other than 0 is an error.
     Status finish();
+    // The same, and all that it wrote on both of its streams.
+    Result<std::string> read_to_end();
 
     const std::string& name() const { return name_; }
     pid_t process() const { return process_; }
@@ -41,6 +43,7 @@ private:
     bool read_available(int file, std::string& to);
     bool take_exit_status(bool wait);
     Error ended() const;
+    bool failed() const;
     std::string last_words() const;
     void close_input();
 

@@ -8,57 +8,46 @@ namespace sunfleck::gate {
 
 namespace fs = std::filesystem;
 
-// A folder with a link to each program: what a process finds on its stack depends on the length of its path.
-class ProgramLinks {
-public:
-    static Result<std::shared_ptr<const ProgramLinks>> make() {
-        std::shared_ptr<ProgramLinks> links(new ProgramLinks());
-        std::error_code code;
-        std::string name = (fs::temp_directory_path(code) / "sunfleck-gate-XXXXXX").string();
-        if (code || ::mkdtemp(name.data()) == nullptr)
-            return Error{"cannot make a temporary folder '" + name + "'"};
-        links->folder_ = name;
-        return std::shared_ptr<const ProgramLinks>(links);
-    }
-    ~ProgramLinks() {
-        std::error_code code;
-        fs::remove_all(folder_, code);
-    }
-    ProgramLinks(const ProgramLinks&) = delete;
-    ProgramLinks& operator=(const ProgramLinks&) = delete;
+namespace {
 
-    // The link for a program; `side` is "base" or "head".
-    Result<std::string> link(const std::string& program, const char* side) const {
-        SUNFLECK_ASSIGN(const fs::path file, find(program));
-        const fs::path place = folder_ / side / "program";
-        std::error_code code;
-        fs::create_directories(place.parent_path(), code);
-        fs::create_symlink(file, place, code);
-        if (code)
-            return Error{"cannot make '" + place.string() + "': " + code.message()};
-        return place.string();
-    }
+Result<fs::path> find_program(const std::string& program) {
+    std::error_code code;
+    std::vector<fs::path> places;
+    if (program.find('/') != std::string::npos)
+        places.emplace_back(program);
+    else if (const char* path = std::getenv("PATH"); path != nullptr)
+        for (std::string rest = path; !rest.empty();) {
+            const std::size_t end = std::min(rest.find(':'), rest.size());
+            places.push_back(fs::path(rest.substr(0, end)) / program);
+            rest.erase(0, end + 1);
+        }
+    for (const fs::path& place : places)
+        if (fs::is_regular_file(place, code))
+            return fs::canonical(place);
+    return Error{"there is no program '" + program + "'"};
+}
 
-private:
-    ProgramLinks() = default;
-    static Result<fs::path> find(const std::string& program) {
-        std::error_code code;
-        std::vector<fs::path> places;
-        if (program.find('/') != std::string::npos)
-            places.emplace_back(program);
-        else if (const char* path = std::getenv("PATH"); path != nullptr)
-            for (std::string rest = path; !rest.empty();) {
-                const std::size_t end = std::min(rest.find(':'), rest.size());
-                places.push_back(fs::path(rest.substr(0, end)) / program);
-                rest.erase(0, end + 1);
-            }
-        for (const fs::path& place : places)
-            if (fs::is_regular_file(place, code))
-                return fs::canonical(place);
-        return Error{"there is no program '" + program + "'"};
-    }
-    fs::path folder_;
-};
+// A link to the program, in a folder of the side's name.
+Result<std::string> link_program(const fs::path& folder, const std::string& program, const char* side) {
+    SUNFLECK_ASSIGN(const fs::path file, find_program(program));
+    const fs::path place = folder / side / "program";
+    std::error_code code;
+    fs::create_directories(place.parent_path(), code);
+    fs::create_symlink(file, place, code);
+    if (code)
+        return Error{"cannot make '" + place.string() + "': " + code.message()};
+    return place.string();
+}
+
+} // namespace
+
+Result<std::unique_ptr<Program>> Program::start(const fs::path& folder, std::vector<std::string> command,
+                                                const char* side, const Patience& patience) {
+    const std::string name = std::string(side) + " ('" + command.front() + "')";
+    SUNFLECK_ASSIGN(command.front(), link_program(folder, command.front(), side));
+    SUNFLECK_ASSIGN(auto child, ChildProcess::start(name, command, patience));
+    return std::unique_ptr<Program>(new Program(std::move(child)));
+}
 
 Status Program::read_hello() {
     SUNFLECK_ASSIGN(const std::string line, child_->read_line());
@@ -109,14 +98,11 @@ Status Program::finish() {
 
 Result<ProgramPair> ProgramPair::start(const Programs& programs, bool base_first, const Patience& patience) {
     ProgramPair pair;
-    SUNFLECK_ASSIGN(pair.links, ProgramLinks::make());
+    SUNFLECK_ASSIGN(pair.links, TemporaryFolder::make());
     for (const bool is_base : {base_first, !base_first}) {
-        const char* side = is_base ? "base" : "head";
-        std::vector<std::string> arguments = is_base ? programs.base : programs.head;
-        const std::string name = std::string(side) + " ('" + arguments.front() + "')";
-        SUNFLECK_ASSIGN(arguments.front(), pair.links->link(arguments.front(), side));
-        SUNFLECK_ASSIGN(auto child, ChildProcess::start(name, arguments, patience));
-        (is_base ? pair.base : pair.head) = std::make_unique<Program>(std::move(child));
+        SUNFLECK_ASSIGN((is_base ? pair.base : pair.head),
+                        Program::start(pair.links->path(), is_base ? programs.base : programs.head,
+                                       is_base ? "base" : "head", patience));
     }
     SUNFLECK_TRY(pair.base->read_hello());
     SUNFLECK_TRY(pair.head->read_hello());

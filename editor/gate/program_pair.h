@@ -3,6 +3,7 @@
 
 #include "editor/gate/child_process.h"
 #include "editor/gate/protocol.h"
+#include "editor/gate/temporary_folder.h"
 
 namespace sunfleck::gate {
 
@@ -14,7 +15,9 @@ struct Programs {
 // A child that has said hello.
 class Program {
 public:
-    explicit Program(std::unique_ptr<ChildProcess> child) : child_(std::move(child)) {}
+    // Runs the command through a link in `folder`; call read_hello next. `side`: "base" or "head".
+    static Result<std::unique_ptr<Program>> start(const std::filesystem::path& folder, std::vector<std::string> command,
+                                                  const char* side, const Patience& patience);
     Status read_hello();
     const Hello& hello() const { return hello_; }
 
@@ -26,15 +29,15 @@ public:
     Status finish();
 
 private:
+    explicit Program(std::unique_ptr<ChildProcess> child) : child_(std::move(child)) {}
+
     std::unique_ptr<ChildProcess> child_;
     Hello hello_;
 };
 
-// Links to both programs, gone with the object.
-class ProgramLinks;
-
 struct ProgramPair {
-    std::shared_ptr<const ProgramLinks> links;
+    // What a process finds on its stack depends on the length of its path: both are run through links.
+    std::unique_ptr<TemporaryFolder> links;
     std::unique_ptr<Program> base, head;
 
     // Fresh processes of both. They load at the same time; an error is the first one's.

@@ -59,6 +59,7 @@ Result<std::map<std::string, double>> numbers_at(const Json& json, const char* k
 std::string hello_line(const Hello& hello) {
     Json json = {{"sunfleck_gate", protocol_version}, {"device", hello.device}, {"driver", hello.driver},
                  {"recording", hello.recording},      {"size", hello.size},     {"frames", hello.frames}};
+    json["pictures"] = hello.pictures;
     json["settings"] = hello.settings;
     return json.dump();
 }
@@ -76,6 +77,8 @@ Result<Hello> parse_hello(const std::string& line) {
         SUNFLECK_ASSIGN(hello.*member, text_at(json, key));
     }
     SUNFLECK_ASSIGN(hello.frames, count_at(json, "frames", 1));
+    if (const auto pictures = json.find("pictures"); pictures != json.end() && pictures->is_boolean())
+        hello.pictures = pictures->get<bool>();
     const auto settings = json.find("settings");
     if (settings == json.end())
         return hello;

@@ -20,6 +20,7 @@ inline constexpr std::uint32_t most_frames = 10'000'000;
 struct Hello {
     std::string device, driver, recording, size;
     std::uint32_t frames = 0; // that can be asked for
+    bool pictures = false;    // "picture FILE" is understood
     std::map<std::string, std::string> settings;
 };
 

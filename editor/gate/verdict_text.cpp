@@ -65,7 +65,7 @@ std::string headline(const GateRun& run) {
                      return *std::find_if(changes.begin(), changes.end(),
                                           [](const CounterChange& change) { return !change.accepted; });
                  }());
-    if (run.pictures_changed)
+    if (run.pictures_changed())
         result += (result.empty() ? "" : "; ") + std::string("pictures changed");
     if (!result.empty())
         return result;
@@ -84,6 +84,12 @@ std::vector<std::string> remarks(const GateRun& run) {
         result.push_back(run.weaker);
     for (const CounterChange& change : run.comparison.counter_changes())
         result.push_back(counter_remark(change));
+    for (const PictureResult& picture : run.pictures)
+        if (!picture.fault.empty())
+            result.push_back("picture '" + picture.frame.name + "', head against base: " + picture.fault);
+    for (const PictureResult& picture : run.stored)
+        if (!picture.fault.empty())
+            result.push_back("picture '" + picture.frame.name + "', head against the stored one: " + picture.fault);
     for (const GateRow& row : run.report.rows) {
         if (row.kind == RowKind::added)
             result.push_back("'" + row.name + print("' is new in head: %.3f ms", row.head_ms));

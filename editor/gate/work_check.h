@@ -2,6 +2,7 @@
 // both draw at once, from the first frame to the last.
 #pragma once
 
+#include "editor/gate/picture_store.h"
 #include "editor/gate/program_pair.h"
 
 #include <filesystem>
@@ -9,9 +10,10 @@
 namespace sunfleck::gate {
 
 struct WorkCheckOptions {
-    std::uint32_t most_frames = 2000;    // of a longer recording, the first ones
-    std::vector<std::uint32_t> pictures; // frames that are written, rising
-    std::filesystem::path folder;        // for them: base_00042.png, head_00042.png
+    std::uint32_t most_frames = 2000; // of a longer recording, the first ones
+    // Frames that are written, rising, as base/NAME.png and head/NAME.png of `folder`. None: some of the recording's.
+    std::vector<NamedFrame> pictures;
+    std::filesystem::path folder;
     Patience patience;
     std::function<void(double share)> progress = [](double) {};
 };
@@ -22,9 +24,14 @@ struct WorkFrame {
 struct WorkCheck {
     Hello base, head;
     std::vector<WorkFrame> frames;
+    std::vector<NamedFrame> pictures; // that were written; none where the programs can't
 };
 Result<WorkCheck> check_work(const Programs& programs, const WorkCheckOptions& options);
 
-std::filesystem::path picture_file(const std::filesystem::path& folder, const char* side, std::uint32_t frame);
+// Head's pictures against base's, drawn on one machine: to the bit.
+Result<std::vector<PictureResult>> compare_pictures(const WorkCheck& check, const std::filesystem::path& folder);
+
+// One program alone draws all frames up to the last one of these, which it writes as NAME.png of `folder`.
+Result<Hello> draw_pictures(const std::vector<std::string>& command, const WorkCheckOptions& options);
 
 } // namespace sunfleck::gate
