@@ -1,6 +1,8 @@
 #include "gi_module/system.h"
 
 #include <chrono>
+#include <cstdlib>
+#include <string>
 #include <utility>
 
 namespace sunfleck::gpu {
@@ -10,11 +12,27 @@ std::span<const EmbeddedShader> sunfleck_gi_shaders();
 namespace sunfleck::gi {
 namespace {
 
+#ifdef SUNFLECK_SLOW_WORK
+// Builds that the frame-time gate tests itself with (engine/gpu/slow_work.h): real work in addition, in thousands of
+// operations.
+void add_slow_work(const std::string& stage) {
+    const char *wanted = std::getenv("SUNFLECK_SLOW"), *amount = std::getenv("SUNFLECK_SLOW_AMOUNT");
+    if (wanted == nullptr || amount == nullptr || stage != wanted)
+        return;
+    volatile float value = 0.0f;
+    for (int i = 0; i < 1000 * std::atoi(amount); ++i)
+        value = value * 0.999f + float(i);
+}
+#endif
+
 // Adds the time until its end to a stage.
 class StageTimer {
 public:
     StageTimer(StageTimes& times, const char* stage) : times_(times), stage_(stage) {}
     ~StageTimer() {
+#ifdef SUNFLECK_SLOW_WORK
+        add_slow_work(stage_);
+#endif
         const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
         times_[stage_] += elapsed.count();
     }

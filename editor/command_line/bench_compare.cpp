@@ -16,22 +16,6 @@ gate::Patience patience_of(double seconds) {
     return {seconds, [] { return interrupted(); }};
 }
 
-// A program alone plays the level with the gate's options; a command line is taken as it is.
-Result<std::vector<std::string>> command_of(const std::string& side, const LevelOptions& level) {
-    SUNFLECK_ASSIGN(std::vector<std::string> words, gate::split_words(side));
-    if (words.size() > 1)
-        return words;
-    words.insert(words.end(), {"bench", "level", "--serve", "--scene", level.scene, "--size", level.size, "--preset",
-                               level.preset, "--steps-per-frame", std::to_string(level.steps_per_frame)});
-    if (!level.input.empty())
-        words.insert(words.end(), {"--input", level.input});
-    if (!level.device.empty())
-        words.insert(words.end(), {"--device", level.device});
-    for (const std::string& setting : level.settings)
-        words.insert(words.end(), {"--set", setting});
-    return words;
-}
-
 bool is_level_file(const std::string& side) {
     return std::filesystem::path(side).extension() == ".json";
 }
@@ -127,6 +111,21 @@ Result<gate::PictureStore> store_of(const PicturesOptions& options) {
 }
 
 } // namespace
+
+Result<std::vector<std::string>> command_of(const std::string& side, const LevelOptions& level) {
+    SUNFLECK_ASSIGN(std::vector<std::string> words, gate::split_words(side));
+    if (words.size() > 1)
+        return words;
+    words.insert(words.end(), {"bench", "level", "--serve", "--scene", level.scene, "--size", level.size, "--preset",
+                               level.preset, "--steps-per-frame", std::to_string(level.steps_per_frame)});
+    if (!level.input.empty())
+        words.insert(words.end(), {"--input", level.input});
+    if (!level.device.empty())
+        words.insert(words.end(), {"--device", level.device});
+    for (const std::string& setting : level.settings)
+        words.insert(words.end(), {"--set", setting});
+    return words;
+}
 
 Result<gate::Outcome> bench_compare(const CompareRunOptions& options) {
     SUNFLECK_ASSIGN(const auto folder, gate::TemporaryFolder::make());

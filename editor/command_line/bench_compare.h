@@ -20,6 +20,19 @@ struct CompareRunOptions {
 };
 Result<gate::Outcome> bench_compare(const CompareRunOptions& options);
 
+// The command line of a program: one alone plays the level with the gate's options, more than a word is taken as it is.
+Result<std::vector<std::string>> command_of(const std::string& side, const LevelOptions& level);
+
+struct SelfTestCommandOptions {
+    LevelOptions level;
+    std::uint32_t triples = 150, rebuilds = 15, runs = 1000;
+    std::string folder; // for builds and triples; empty: build/gate/self-test of the project
+    std::vector<std::uint32_t> looks = {12, 20, 32, 48};
+    double time_limit = 300.0;
+    gate::PairOptions pair;
+};
+Result<gate::Outcome> bench_self_test(const SelfTestCommandOptions& options);
+
 struct PicturesOptions {
     std::string program; // empty: this one
     LevelOptions level;

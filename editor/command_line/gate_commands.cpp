@@ -74,8 +74,27 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
     app->add_flag("--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
     app->add_option("--turns", options->pair.turns, "Turns of each process in a pair")->capture_default_str();
     app->add_option("--seed", options->pair.seed, "Which frames are drawn, and in which order")->capture_default_str();
-    return [options] {
+    auto self_test = std::make_shared<SelfTestCommandOptions>();
+    auto is_self_test = std::make_shared<bool>(false);
+    app->add_flag("--self-test", *is_self_test,
+                  "How often does the gate err here? Builds the project anew many times; takes hours, and goes on\n"
+                  "where it was stopped");
+    app->add_option("--triples", self_test->triples, "Of the self-test: base, a rebuild and a slower build at once")
+        ->capture_default_str();
+    app->add_option("--rebuilds", self_test->rebuilds, "Of the self-test: builds of the same source with other bytes")
+        ->check(CLI::Range(1, 99))
+        ->capture_default_str();
+    app->add_option("--folder", self_test->folder, "Of the self-test: for builds and triples");
+    return [options, self_test, is_self_test] {
         watch_interrupts();
+        if (*is_self_test) {
+            self_test->level = options->level;
+            self_test->looks = options->looks;
+            self_test->pair = options->pair;
+            self_test->time_limit = options->time_limit;
+            const Result<gate::Outcome> tested = bench_self_test(*self_test);
+            return tested ? int(*tested) : exit_status(tested.error());
+        }
         const Result<gate::Outcome> outcome = bench_compare(*options);
         return outcome ? int(*outcome) : exit_status(outcome.error());
     };

@@ -35,6 +35,10 @@ public:
     Status add(const WorkCheck& check);
     Result<statistics::GateReport> judge(const statistics::GateOptions& options) const;
 
+    // What judge() judges: the names of passes and stages, and the pairs.
+    std::vector<std::string> row_names() const;
+    Result<std::vector<statistics::PairSummary>> summaries() const;
+
     std::uint32_t pairs() const { return std::uint32_t(runs_.size()); }
     std::vector<CounterChange> counter_changes() const;
     bool work_changed() const; // by a counter that was not accepted
@@ -57,8 +61,6 @@ private:
     Status take_hello(const Hello& base, const Hello& head);
     static void take(const Frame& frame, Times& times);
     void compare_counters(const Frame& base, const Frame& head);
-    std::vector<std::string> row_names() const;
-    Result<std::vector<statistics::PairSummary>> summaries() const;
 
     std::set<std::string> accepted_;
     Hello base_, head_;

@@ -1,6 +1,9 @@
 #include "engine/gpu/frame_graph.h"
 
 #include "engine/gpu/debug_label.h"
+#ifdef SUNFLECK_SLOW_WORK
+#include "engine/gpu/slow_work.h"
+#endif
 
 #include <algorithm>
 #include <cassert>
@@ -307,6 +310,9 @@ Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compile
     record_barriers(context.commands, compiled.barriers);
     const Pass& pass = passes_[compiled.pass_index];
     const Status status = pass.execute ? pass.execute(context) : Status();
+#ifdef SUNFLECK_SLOW_WORK
+    SUNFLECK_TRY(add_slow_work(context, compiled.name));
+#endif
     return status ? status : Error{"pass '" + pass.name + "': " + status.error().message};
 }
 
