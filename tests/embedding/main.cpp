@@ -62,11 +62,23 @@ sunfleck::Status record(Lighting& lighting, VkCommandBuffer commands, VulkanProg
 
 #include "own_projection.h"
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 namespace {
+
+double milliseconds(const std::function<void()>& what) {
+    const auto start = std::chrono::steady_clock::now();
+    what();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// The geometry pass of this program, on the CPU: a stage that the module knows nothing of.
+std::chrono::steady_clock::time_point geometry_begin;
+double geometry_ms = 0.0;
 
 void check(const sunfleck::Status& status) {
     if (status)
@@ -99,12 +111,18 @@ ImageUse depth_state(std::uint64_t frame) {
 }
 
 void render(VulkanProgram& program, Lighting& lighting, std::uint64_t k) {
-    const float t = 0.2f * float(program.serial);
+    const float t = 0.2f * float(k);
     std::vector<Box> boxes = {{{0, 0, 0}, 3}, {{1.0f + 0.5f * std::cos(t), 0.0f, 1.0f + 0.5f * std::sin(t)}, 0.7f}};
     program.frame(
-        boxes, [&] { check(update(lighting, boxes, program)); },
+        boxes,
+        [&] {
+            check(update(lighting, boxes, program));
+            geometry_begin = std::chrono::steady_clock::now();
+        },
         [&] { return host::view_projection(lighting.camera, VulkanProgram::width, VulkanProgram::height); },
         [&](VkCommandBuffer commands) {
+            geometry_ms =
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - geometry_begin).count();
             program.transition(commands, program.depth, depth_state(k), true);
             program.transition(commands, program.normals, colour_state(k + 1), false);
             program.transition(commands, program.surface, colour_state(k / 2), false);
@@ -128,6 +146,28 @@ void stop_first_update(Lighting& lighting) {
                                  : sunfleck::Status(sunfleck::Error{"an update was not stopped by its host"}));
 }
 
+std::string json(const std::vector<host::Statistic>& numbers) {
+    std::string text;
+    for (const host::Statistic& number : numbers)
+        text += (text.empty() ? "\"" : ",\"") + number.name + "\":" + std::to_string(number.value);
+    return "{" + text + "}";
+}
+
+// [gate: begin]
+void serve_gate(VulkanProgram& program, Lighting& lighting) {
+    std::puts(R"({"sunfleck_gate":1,"device":"","driver":"","recording":"circle","size":"160x120","frames":60})");
+    for (unsigned first, count; std::fflush(stdout) == 0 && std::scanf(" frames %u %u", &first, &count) == 2;)
+        for (unsigned frame = first; frame < first + count; ++frame) {
+            const double ms = milliseconds([&] { render(program, lighting, frame), program.wait(); });
+            host::Statistics all = lighting.context->statistics();
+            all.cpu_stages.push_back({"own geometry", geometry_ms, "ms"});
+            std::printf(R"({"frame":%u,"frame_ms":%f,"passes":%s,"stages":%s,"counters":%s})", frame, ms,
+                        json(all.gpu_passes).c_str(), json(all.cpu_stages).c_str(), json(all.counters).c_str());
+            std::puts("");
+        }
+}
+// [gate: end]
+
 int finish(VulkanProgram& program, const char* what) {
     bool finite = true;
     const auto mean = program.mean_irradiance(finite);
@@ -137,9 +177,20 @@ int finish(VulkanProgram& program, const char* what) {
     return lit && program.messages == 0 ? 0 : 1;
 }
 
+int run_gate() {
+    VulkanProgram program(1, host::enable_features);
+    auto lighting = make_lighting(program);
+    check(lighting ? sunfleck::Status() : sunfleck::Status(lighting.error()));
+    serve_gate(program, *lighting);
+    lighting->context.reset();
+    return program.messages == 0 ? 0 : 1;
+}
+
 } // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    if (argc > 1 && std::strcmp(argv[1], "--gate") == 0)
+        return run_gate();
     int failures = 0;
     for (std::uint32_t in_flight = 1; in_flight <= 4; ++in_flight) {
         VulkanProgram program(in_flight, host::enable_features);

@@ -18,6 +18,13 @@ echo "$lines lines of glue"
 readme=$(sed -n '/<!-- embedding: begin -->/,/<!-- embedding: end -->/p' "$source/../../README.md" | sed '1,2d' | head -n -2)
 [[ "$readme" == "$glue" ]] || { echo "README.md does not show the glue of tests/embedding/main.cpp"; exit 1; }
 
+# The frame-time gate drives this program, too, with ten lines of it.
+served=$(sed -n '/\[gate: begin\]/,/\[gate: end\]/p' "$source/main.cpp" | sed '1d;$d')
+lines=$(grep -vc '^ *}$' <<<"$served")
+((lines <= 10)) || { echo "$lines lines to be driven by the gate, more than ten"; exit 1; }
+described=$(sed -n '/<!-- gate: begin -->/,/<!-- gate: end -->/p' "$source/../../docs/gate.md" | sed '1,2d' | head -n -2)
+[[ "$described" == "$served" ]] || { echo "docs/gate.md does not show serve_gate of tests/embedding/main.cpp"; exit 1; }
+
 # The module needs Vulkan's loader, Embree, TBB and meshoptimizer, and nothing that draws windows or reads pictures.
 if ldd "$work/build/embedding" | grep -iE 'OpenImageIO|glfw|imgui|tinygltf|draco|libX11|libpng|libjpeg'; then
     echo "the module links what an embedded library must not"
@@ -25,5 +32,11 @@ if ldd "$work/build/embedding" | grep -iE 'OpenImageIO|glfw|imgui|tinygltf|draco
 fi
 echo "links: $(readelf -d "$work/build/embedding" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | tr '\n' ' ')"
 "$work/build/embedding"
+# Two pairs tell nothing yet, but every row is there, the program's own one too, and no counter differs.
+status=0
+"$work/prefix/bin/sunfleck" bench compare "$work/build/embedding --gate" "$work/build/embedding --gate" --looks 2 --turns 4 \
+    >"$work/gate.log" 2>&1 || status=$?
+((status == 3)) && grep -q 'own geometry (CPU)' "$work/gate.log" && grep -q 'low-resolution light' "$work/gate.log" ||
+    { echo "bench compare ended with $status:"; cat "$work/gate.log"; exit 1; }
 "$work/prefix/bin/sunfleck" --help >/dev/null # installed programs find their libraries
 "$work/prefix/bin/sunfleck" info cornell >/dev/null # and their scenes
