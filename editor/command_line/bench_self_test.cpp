@@ -26,9 +26,9 @@ struct SlowTarget {
     int first_amount;
     std::string row() const { return std::string(name) + (on_cpu ? " (CPU)" : ""); }
 };
-constexpr SlowTarget targets[] = {{"shadow maps", false, 200},
-                                  {"low-resolution light", false, 200},
-                                  {"g-buffer", false, 200},
+constexpr SlowTarget targets[] = {{"shadow maps", false, 500},
+                                  {"low-resolution light", false, 500},
+                                  {"g-buffer", false, 500},
                                   {"visibility", true, 2000}};
 
 // The slowed build reads these; the others know nothing of them, but have the same environment.

@@ -5,7 +5,7 @@ layout(std430, binding = 0) writeonly buffer Result { float result[]; };
 
 void main() {
     float value = float(gl_GlobalInvocationID.x);
-    for (int i = 0; i < 256; ++i)
+    for (int i = 0; i < 32; ++i)
         value = value * 1.0001 + 0.5 * sin(value);
     result[gl_LocalInvocationID.x] = value;
 }

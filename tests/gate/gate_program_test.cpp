@@ -68,6 +68,18 @@ TEST_F(GateProgram, EqualProgramsAreFine) {
     EXPECT_TRUE(fs::is_empty(folder / "temporary"));
 }
 
+// One core to share, and a disk that fills up while the report is written.
+TEST_F(GateProgram, PoorMachinesDoNotFoolIt) {
+    const std::string in_folder = "cd " + folder.string() + " && ";
+    expect(shell(in_folder + "taskset -c 0 env " + tool("", "", "")), 0, {"fine"});
+    ASSERT_TRUE(write_file(folder / "report.html", "old"));
+    expect(shell(in_folder + "(ulimit -f 4; " + tool("", "", "--report report.html") + ")"), 2, {"report.html"});
+    EXPECT_EQ(read_file(folder / "report.html").value(), "old");
+    expect(compare("", "", "--report report.html"), 0, {"fine"});
+    EXPECT_GT(fs::file_size(folder / "report.html"), 10000u);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2) << "no temporary file stays";
+}
+
 TEST_F(GateProgram, ASlowerPassIsNamed) {
     expect(compare("", "slow light by 1.06"), 1, {"slower: 'light'", "ms"});
     expect(compare("", "slow recording by 1.06"), 1, {"slower: 'recording (CPU)'"});
