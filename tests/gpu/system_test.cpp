@@ -1,6 +1,7 @@
 // gi::System as a whole: several on one registry, and frames that never reach the GPU.
 #include "tests/support/system_frames.h"
 #include "tests/support/techniques.h"
+#include "tests/support/test_size.h"
 
 #include <cstring>
 
@@ -106,7 +107,7 @@ class LostFrames : public Systems, public testing::WithParamInterface<Fate> {};
 
 TEST_P(LostFrames, LeaveNoTrace) {
     for (const std::string_view technique : techniques_for_all_light()) {
-        const gi::Settings settings = settings_for(technique);
+        const gi::Settings settings = settings_for(technique, long_size() ? 60 : 16);
         const std::vector<vec4> undisturbed = run(settings, {}, GetParam());
         for (const Loss& loss : losses) {
             const std::vector<vec4> picture = run(settings, loss.lost, GetParam());
