@@ -257,7 +257,7 @@ TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
                 invalid = true;
                 problem = what;
             }
-        if (!invalid && thin_out && valid++ % 3 != 0)
+        if (!invalid && thin_out && valid++ % 6 != 0)
             continue;
         const Outcome outcome =
             tool("render '" + file.string() + "' -o model.png --validation --set patch_levels=1" + small);

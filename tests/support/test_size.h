@@ -12,6 +12,15 @@ inline bool long_size() {
     return size != nullptr && std::string_view(size) == "long";
 }
 
+// Whether this build has a sanitizer, and so runs what only a sanitizer can judge.
+inline bool sanitized() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return true;
+#else
+    return false;
+#endif
+}
+
 // A parameter of a test: seeds, steps, rays, pixels.
 template <typename T>
 T by_size(T in_short, T in_long) {
