@@ -13,6 +13,7 @@ std::vector<Statistic> counters_of(const gi::System& system) {
 
 std::vector<Statistic> times_of(const std::map<std::string, double>& milliseconds) {
     std::vector<Statistic> list;
+    list.reserve(milliseconds.size());
     for (const auto& [name, time] : milliseconds)
         list.push_back({name, time, "ms"});
     return list;
@@ -25,7 +26,7 @@ Statistics Context::statistics() const {
     Statistics result;
     result.gpu_serial = self.timers->latest().serial;
     result.gpu_passes = times_of(self.timers->latest().milliseconds);
-    result.cpu_stages = times_of(self.system->cpu_times());
+    result.cpu_stages = times_of(self.system->cpu_times().milliseconds());
     result.counters = counters_of(*self.system);
     for (const auto& [name, bytes] : self.device->memory().usage())
         result.memory.push_back({name, double(bytes) / 1048576.0, "MiB"});

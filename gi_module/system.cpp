@@ -1,7 +1,5 @@
 #include "gi_module/system.h"
 
-#include <chrono>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
@@ -10,40 +8,6 @@ std::span<const EmbeddedShader> sunfleck_gi_shaders();
 }
 
 namespace sunfleck::gi {
-namespace {
-
-#ifdef SUNFLECK_SLOW_WORK
-// Builds that the frame-time gate tests itself with (engine/gpu/slow_work.h): real work in addition, in thousands of
-// operations.
-void add_slow_work(const std::string& stage) {
-    const char *wanted = std::getenv("SUNFLECK_SLOW"), *amount = std::getenv("SUNFLECK_SLOW_AMOUNT");
-    if (wanted == nullptr || amount == nullptr || stage != wanted)
-        return;
-    volatile float value = 0.0f;
-    for (int i = 0; i < 1000 * std::atoi(amount); ++i)
-        value = value * 0.999f + float(i);
-}
-#endif
-
-// Adds the time until its end to a stage.
-class StageTimer {
-public:
-    StageTimer(StageTimes& times, const char* stage) : times_(times), stage_(stage) {}
-    ~StageTimer() {
-#ifdef SUNFLECK_SLOW_WORK
-        add_slow_work(stage_);
-#endif
-        const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
-        times_[stage_] += elapsed.count();
-    }
-
-private:
-    StageTimes& times_;
-    const char* stage_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-} // namespace
 
 std::vector<gpu::EmbeddedShader> shaders() {
     std::vector<gpu::EmbeddedShader> result;
@@ -174,10 +138,10 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
                 return true;
         return false;
     };
-    SUNFLECK_TRY(visibility_.update(settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene,
-                                                samples_.samples(), samples_.generation(), samples_.moved(),
-                                                static_changed, lit_elsewhere, settings_generation_, input_.progress}));
-    cpu_times_["visibility of samples"] += visibility_.sample_milliseconds();
+    SUNFLECK_TRY(
+        visibility_.update(settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene, samples_.samples(),
+                                       samples_.generation(), samples_.moved(), static_changed, lit_elsewhere,
+                                       settings_generation_, input_.progress, cpu_times_}));
     return {};
 }
 

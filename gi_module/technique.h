@@ -6,6 +6,7 @@
 // the module, add_technique().
 #pragma once
 
+#include "engine/core/stage_times.h"
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/shader_library.h"
 #include "gi_module/light_sum/light_sum.h"
@@ -50,9 +51,6 @@ struct FrameInput {
     // passes are counted for. Without it, maps are redrawn by flux, and no passes are counted.
     std::optional<mat4> view_projection;
 };
-
-// Milliseconds on the CPU, by stage.
-using StageTimes = std::map<std::string, double>;
 
 // What all techniques share in a frame. Valid during the call that it is handed to.
 struct Services {

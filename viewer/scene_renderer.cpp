@@ -14,19 +14,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+double milliseconds(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
 }
+
+constexpr const char* waiting = "waiting for the GPU";
 
 constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-
-double sum_of(const gi::StageTimes& times) {
-    double sum = 0.0;
-    for (const auto& [stage, milliseconds] : times)
-        sum += milliseconds;
-    return sum;
-}
 
 bool is_enlarged(const FrameRequest& request) {
     return request.tone_map && request.screen_width > 0 && request.screen_height > 0 &&
@@ -84,39 +79,37 @@ Status SceneRenderer::upload_meshes() {
     return gpu_scene_->update_meshes(meshes_, *submission_);
 }
 
-double SceneRenderer::frame_time() const {
-    return milliseconds_since(frame_start_);
-}
-
-void SceneRenderer::note_scope(const char* name, double begin_ms) {
-    statistics_.cpu_scopes.push_back({name, begin_ms, frame_time()});
-}
-
-void SceneRenderer::note_stage(const char* name, double begin_ms) {
-    note_scope(name, begin_ms);
-    statistics_.cpu_ms[name] = statistics_.cpu_scopes.back().end_ms - begin_ms;
-}
-
 Status SceneRenderer::update(const FrameRequest& request) {
-    statistics_.cpu_ms.clear();
-    statistics_.cpu_scopes.clear();
+    stages_.clear();
     frame_start_ = Clock::now();
-    if (request.simulate)
-        simulation::set_movers_to_step(registry_, request.step);
-    note_stage("simulation", 0.0);
+    {
+        const StageTimer timer(stages_, "simulation");
+        if (request.simulate)
+            simulation::set_movers_to_step(registry_, request.step);
+    }
     SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
     resources_->begin_frame(submission_->serial(), completed);
     timers_->begin_frame(submission_->serial(), completed);
-    double start = frame_time();
-    scene::deform_meshes(registry_, meshes_);
-    const scene::SceneChanges& changes = change_tracker_.collect(registry_, meshes_);
-    note_stage("scene changes", start);
-    start = frame_time();
-    SUNFLECK_TRY(rays_->update(changes, meshes_, &textures_));
-    note_stage("ray scene", start);
-    start = frame_time();
-    SUNFLECK_TRY(gpu_scene_->update(changes, meshes_, *resources_));
-    note_stage("gpu scene", start);
+    const scene::SceneChanges* changes = nullptr;
+    {
+        const StageTimer timer(stages_, "scene changes");
+        scene::deform_meshes(registry_, meshes_);
+        changes = &change_tracker_.collect(registry_, meshes_);
+    }
+    {
+        const StageTimer timer(stages_, "ray scene");
+        SUNFLECK_TRY(rays_->update(*changes, meshes_, &textures_));
+    }
+    {
+        const StageTimer timer(stages_, "gpu scene");
+        SUNFLECK_TRY(gpu_scene_->update(*changes, meshes_, *resources_));
+    }
+    return update_lighting(request, *changes, completed);
+}
+
+Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::SceneChanges& changes,
+                                      std::uint64_t completed) {
+    const StageTimer timer(stages_, "lighting");
     gi::FrameInput input;
     input.serial = submission_->serial();
     input.completed_serial = completed;
@@ -126,10 +119,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
-    start = frame_time();
-    SUNFLECK_TRY(lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input));
-    note_scope("lighting", start);
-    return {};
+    return lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input);
 }
 
 Status SceneRenderer::make_output(const FrameRequest& request) {
@@ -163,8 +153,7 @@ void SceneRenderer::draw_samples() {
 }
 
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
-    const double start = frame_time();
-    const double lighting_before = sum_of(lighting_->cpu_times());
+    const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
     shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
     if (has_previous_camera_)
@@ -208,11 +197,7 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
         SUNFLECK_TRY(overlay(*graph_, output, *resources_));
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
     SUNFLECK_TRY(graph_->compile());
-    SUNFLECK_TRY(graph_->execute(commands, *resources_, timers_.get()));
-    note_stage("recording", start);
-    // What the lighting times itself is a stage of its own: no time counts twice.
-    statistics_.cpu_ms["recording"] -= sum_of(lighting_->cpu_times()) - lighting_before;
-    return {};
+    return graph_->execute(commands, *resources_, timers_.get());
 }
 
 Status SceneRenderer::render_and_wait(const FrameRequest& request) {
@@ -222,10 +207,11 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
     const std::uint64_t serial = submission_->serial();
     SUNFLECK_TRY(record(commands, request));
     SUNFLECK_TRY(submission_->submit());
-    const double submitted = frame_time();
-    SUNFLECK_TRY(submission_->wait(serial));
-    note_scope("waiting for the GPU", submitted);
-    statistics_.frame_ms = milliseconds_since(start);
+    {
+        const StageTimer timer(stages_, waiting);
+        SUNFLECK_TRY(submission_->wait(serial));
+    }
+    statistics_.frame_ms = milliseconds(Clock::now() - start);
     collect_statistics();
     return {};
 }
@@ -233,8 +219,16 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
 void SceneRenderer::collect_statistics() {
     if (const auto completed = submission_->completed())
         timers_->collect(*completed);
-    for (const auto& [stage, time] : lighting_->cpu_times())
-        statistics_.cpu_ms[stage] = time;
+    std::vector<StageScope> scopes = stages_.scopes();
+    const std::vector<StageScope>& of_lighting = lighting_->cpu_times().scopes();
+    scopes.insert(scopes.end(), of_lighting.begin(), of_lighting.end());
+    sort_by_begin(scopes);
+    statistics_.cpu_scopes.clear();
+    for (const StageScope& scope : scopes)
+        statistics_.cpu_scopes.push_back(
+            {scope.name, milliseconds(scope.begin - frame_start_), milliseconds(scope.end - frame_start_)});
+    statistics_.cpu_ms = own_milliseconds(std::move(scopes));
+    statistics_.cpu_ms.erase(waiting); // the passes' time, not the CPU's
     statistics_.gpu_ms = timers_->latest().milliseconds;
     statistics_.gpu_scopes = timers_->latest().scopes;
     statistics_.counters = lighting_->counters();

@@ -35,9 +35,10 @@ struct FrameRequest {
 
 struct FrameStatistics {
     double frame_ms = 0; // from the start of simulation to the end of GPU work; only set by render_and_wait
+    // A stage's time on the CPU is its own: what lies in it is a stage of its own. Waiting for the GPU is none.
     std::map<std::string, double> cpu_ms, gpu_ms;
-    // When, not only how long. On the CPU: ms from the start of simulation; on the GPU: from the start of its first
-    // pass.
+    // When, not only how long, and waiting, too; a scope before those within it. On the CPU: ms from the start of
+    // simulation; on the GPU: from the start of its first pass.
     std::vector<gpu::ScopeTime> cpu_scopes, gpu_scopes;
     gi::Report counters;
 };
@@ -88,10 +89,7 @@ public:
 private:
     explicit SceneRenderer(gpu::Device& device) : device_(device) {}
     Status make_output(const FrameRequest& request);
-    double frame_time() const; // ms since the start of simulation
-    // From `begin_ms` until now. A stage is listed in cpu_ms, too; the lighting has stages of its own there.
-    void note_scope(const char* name, double begin_ms);
-    void note_stage(const char* name, double begin_ms);
+    Status update_lighting(const FrameRequest& request, const scene::SceneChanges& changes, std::uint64_t completed);
     void draw_samples();
 
     gpu::Device& device_;
@@ -118,6 +116,7 @@ private:
     bool has_previous_camera_ = false;
     FrameStatistics statistics_;
     std::chrono::steady_clock::time_point frame_start_;
+    StageTimes stages_;
 };
 
 // A camera by name or number, or "px,py,pz,tx,ty,tz,fov" with the field of view in degrees; empty: the camera called

@@ -32,15 +32,6 @@ Result<gi::Settings> make_settings(const LevelOptions& options, const std::map<s
     return settings;
 }
 
-// Stages that do not contain each other.
-std::map<std::string, double> separate_stages(std::map<std::string, double> stages) {
-    const auto part = stages.find("visibility of samples");
-    const auto whole = stages.find("visibility");
-    if (part != stages.end() && whole != stages.end())
-        whole->second = std::max(whole->second - part->second, 0.0);
-    return stages;
-}
-
 std::string hash_text(std::uint64_t hash) {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
@@ -167,7 +158,7 @@ Status LevelRun::draw(std::vector<gate::Frame>& frames) {
     const viewer::FrameStatistics& statistics = renderer_->statistics();
     frame.frame_ms = statistics.frame_ms + simulation_ms;
     frame.passes = statistics.gpu_ms;
-    frame.stages = separate_stages(statistics.cpu_ms);
+    frame.stages = statistics.cpu_ms;
     frame.stages["simulation"] += simulation_ms;
     for (const gi::Counter* counter : gi::all_counters()) {
         if (counter->group == gi::memory_group)

@@ -2,7 +2,6 @@
 
 #include "engine/core/file.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
@@ -33,16 +32,6 @@ double gpu_begin(const viewer::FrameStatistics& frame) {
     return 0.0;
 }
 
-// Of these only the durations are known, so that they are no events of their own.
-Json stages_of_lighting(const viewer::FrameStatistics& frame) {
-    Json stages = Json::object();
-    for (const auto& [name, milliseconds] : frame.cpu_ms)
-        if (std::none_of(frame.cpu_scopes.begin(), frame.cpu_scopes.end(),
-                         [&](const gpu::ScopeTime& scope) { return scope.name == name; }))
-            stages[name + ", ms"] = milliseconds;
-    return stages;
-}
-
 } // namespace
 
 void Trace::add(const viewer::FrameStatistics& frame) {
@@ -55,12 +44,8 @@ Status Trace::write(const std::filesystem::path& path) const {
     for (std::size_t i = 0; i < frames_.size(); ++i) {
         const auto& [begin, frame] = frames_[i];
         events.push_back(event("frame " + std::to_string(i), cpu_row, begin, begin + frame.frame_ms));
-        for (const gpu::ScopeTime& scope : frame.cpu_scopes) {
-            Json stage = event(scope.name, cpu_row, begin + scope.begin_ms, begin + scope.end_ms);
-            if (scope.name == "lighting")
-                stage["args"] = stages_of_lighting(frame);
-            events.push_back(std::move(stage));
-        }
+        for (const gpu::ScopeTime& scope : frame.cpu_scopes)
+            events.push_back(event(scope.name, cpu_row, begin + scope.begin_ms, begin + scope.end_ms));
         const double offset = begin + gpu_begin(frame);
         for (const gpu::ScopeTime& scope : frame.gpu_scopes)
             events.push_back(event(scope.name, gpu_row, offset + scope.begin_ms, offset + scope.end_ms));

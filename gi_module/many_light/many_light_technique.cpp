@@ -2,8 +2,6 @@
 
 #include "gi_module/shadows/light_batches.h"
 
-#include <chrono>
-
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_gi_many_light_shaders();
 }
@@ -88,7 +86,7 @@ void ManyLightTechnique::find_static_maps(const Services& services, ManyLightOpt
 }
 
 Status ManyLightTechnique::update(const SceneView& scene, Services& services, CellSet cells) {
-    const auto start = std::chrono::steady_clock::now();
+    const StageTimer timer(services.cpu_times, "light lists");
     const Settings& settings = services.settings;
     const ManyLightSettings& own = settings.of<ManyLightSettings>();
     const SampleSet& samples = services.samples;
@@ -115,8 +113,6 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
         passes_.count(database, *services.input.view_projection, own);
     else
         passes_.forget();
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    services.cpu_times["light lists"] += elapsed.count();
     return {};
 }
 

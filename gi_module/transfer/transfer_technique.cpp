@@ -2,8 +2,6 @@
 
 #include "gi_module/shadows/light_batches.h"
 
-#include <chrono>
-
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_gi_transfer_shaders();
 }
@@ -59,7 +57,7 @@ Result<std::unique_ptr<Technique>> TransferTechnique::create(gpu::Device& device
 }
 
 Status TransferTechnique::update(const SceneView& scene, Services& services, CellSet cells) {
-    const auto start = std::chrono::steady_clock::now();
+    const StageTimer timer(services.cpu_times, "transfer");
     const TransferSettings& own = services.settings.of<TransferSettings>();
     TransferLightingOptions options;
     options.points = own.transfer_points;
@@ -69,10 +67,7 @@ Status TransferTechnique::update(const SceneView& scene, Services& services, Cel
     const ProbeScene probe{scene.rays, services.samples.samples(), owned_rows(services.samples, cells, owned_rows_),
                            scene.gpu_scene.draws(), services.visibility};
     lighting_.clear();
-    SUNFLECK_TRY(lighting_.update(scene.registry, scene.meshes, probe, options, services.resources));
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-    services.cpu_times["transfer"] += elapsed.count();
-    return {};
+    return lighting_.update(scene.registry, scene.meshes, probe, options, services.resources);
 }
 
 Status TransferTechnique::add_passes(gpu::FrameGraph& graph, Services&, LightTarget& target) {

@@ -1,7 +1,5 @@
 #include "gi_module/visibility/scene_visibility.h"
 
-#include <chrono>
-
 namespace sunfleck::gi {
 namespace {
 
@@ -53,9 +51,10 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
         moved = {};
     }
     database_.begin_frame();
-    const auto start = std::chrono::steady_clock::now();
-    database_.change_samples(input.samples, moved);
-    sample_milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    {
+        const StageTimer timer(input.cpu_times, "visibility of samples");
+        database_.change_samples(input.samples, moved);
+    }
     follow_movers(input, build);
     return {};
 }

@@ -2,6 +2,7 @@
 // following movers in every frame.
 #pragma once
 
+#include "engine/core/stage_times.h"
 #include "engine/scene/gpu_scene.h"
 #include "engine/scene/scene_changes.h"
 #include "gi_module/transport/report.h"
@@ -26,6 +27,7 @@ struct VisibilityInput {
     std::function<bool(const scene::DrawItem&)> lit_elsewhere;
     std::uint64_t lighting_generation = 0; // another number: lit_elsewhere may answer differently
     std::function<bool(float)> progress;   // of building
+    StageTimes& cpu_times;                 // stages within the caller's
 };
 
 class SceneVisibility {
@@ -36,8 +38,6 @@ public:
 
     VisibilityDatabase& database() { return database_; }
     const VisibilityDatabase& database() const { return database_; }
-    // Of the last update, ms: what samples that moved took.
-    double sample_milliseconds() const { return sample_milliseconds_; }
 
     static std::span<const Counter> counters();
     void report(Report& report) const;
@@ -48,7 +48,6 @@ private:
     VisibilityDatabase database_;
     std::optional<VisibilityOptions> options_; // that it was built with
     std::uint64_t sample_generation_ = 0;      // of the samples that it knows; 0: none
-    double sample_milliseconds_ = 0.0;
     scene::ChangeCursor mover_cursor_;
     std::uint64_t lighting_generation_ = 0;
 };

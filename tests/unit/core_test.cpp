@@ -4,6 +4,7 @@
 #include "engine/core/octahedral.h"
 #include "engine/core/random.h"
 #include "engine/core/result.h"
+#include "engine/core/stage_times.h"
 #include "gi_module/settings.h"
 
 #include <gtest/gtest.h>
@@ -16,6 +17,34 @@
 
 namespace sunfleck {
 namespace {
+
+StageScope scope(const char* name, int begin_ms, int end_ms) {
+    const std::chrono::steady_clock::time_point start;
+    return {name, start + std::chrono::milliseconds(begin_ms), start + std::chrono::milliseconds(end_ms)};
+}
+
+// By hand: two stages follow one another, one has two within it and one of those has another of the first one's name.
+TEST(StageTimes, NoTimeCountsTwice) {
+    const auto times = own_milliseconds(
+        {scope("a", 0, 10), scope("deep", 13, 17), scope("b", 12, 20), scope("whole", 10, 40), scope("a", 30, 35)});
+    const std::map<std::string, double> expected{{"a", 15.0}, {"b", 4.0}, {"deep", 4.0}, {"whole", 17.0}};
+    EXPECT_EQ(times, expected);
+}
+
+TEST(StageTimes, TimersNest) {
+    StageTimes times;
+    {
+        const StageTimer outer(times, "outer");
+        const StageTimer inner(times, "inner");
+    }
+    ASSERT_EQ(times.scopes().size(), 2u);
+    const StageScope &inner = times.scopes()[0], &outer = times.scopes()[1];
+    EXPECT_EQ(inner.name, "inner");
+    EXPECT_LE(outer.begin, inner.begin);
+    EXPECT_LE(inner.end, outer.end);
+    times.clear();
+    EXPECT_TRUE(times.milliseconds().empty());
+}
 
 // Elementary intervals: 2^m points of a (0,2)-sequence fall one into each box of area 2^-m, whatever its shape.
 TEST(Random, SobolPairsAreStratifiedInEveryElementaryInterval) {
