@@ -44,5 +44,4 @@ ${table}    };
 } // namespace sunfleck::gpu
 ")
   target_sources(${target} PRIVATE "${generated}/${ARG_NAME}_shaders.cpp" ${outputs})
-  target_include_directories(${target} PRIVATE "${generated}")
 endfunction()

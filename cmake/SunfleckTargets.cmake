@@ -16,26 +16,6 @@ if(SUNFLECK_SANITIZE)
   target_link_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
 endif()
 
-# Headers that nearly every file includes, compiled once: a third of what compiling a file costs. All of them are still
-# included where they are used: release and debug builds do without this.
-set(SUNFLECK_COMMON_HEADERS <algorithm> <array> <chrono> <filesystem> <functional> <map> <memory> <optional> <span>
-    <string> <unordered_map> <variant> <vector> "${PROJECT_SOURCE_DIR}/engine/core/maths.h")
-file(WRITE "${PROJECT_BINARY_DIR}/generated/precompiled.cpp.new" "// Only there to compile the headers.\n")
-file(COPY_FILE "${PROJECT_BINARY_DIR}/generated/precompiled.cpp.new" "${PROJECT_BINARY_DIR}/generated/precompiled.cpp"
-     ONLY_IF_DIFFERENT)
-
-# sunfleck_precompile(name position_independent headers...): a target whose precompiled headers others use.
-function(sunfleck_precompile name position_independent)
-  add_library(${name} OBJECT "${PROJECT_BINARY_DIR}/generated/precompiled.cpp")
-  target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
-  target_link_libraries(${name} PRIVATE sunfleck_flags)
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent})
-  target_precompile_headers(${name} PRIVATE ${ARGN})
-endfunction()
-if(SUNFLECK_PRECOMPILE)
-  sunfleck_precompile(sunfleck_precompiled ON ${SUNFLECK_COMMON_HEADERS})
-endif()
-
 # sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries] [INSTALL])
 # A static library (shared with SUNFLECK_BUILD_SHARED) with the project's flags; headers are included by their path from
 # the project's root. INSTALL: it is part of the installed package.
@@ -53,7 +33,7 @@ function(sunfleck_library name)
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN")
   if(SUNFLECK_PRECOMPILE AND NOT SUNFLECK_BUILD_SHARED)
-    target_precompile_headers(${name} REUSE_FROM sunfleck_precompiled)
+    target_precompile_headers(${name} REUSE_FROM ${SUNFLECK_PRECOMPILED})
   endif()
   if(ARG_INSTALL)
     target_include_directories(${name} PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sunfleck>")

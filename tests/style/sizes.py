@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Sizes of functions and files, folder by folder, against the project's limits.
 
-Usage: sizes.py [--known] [--longest N]
-  --known      tolerate what sizes_known.txt lists, one offender a line; a listed one that no longer offends is an error
+Usage: sizes.py [--longest N]
   --longest N  print the N longest functions, too
 
 A function counts from its first line (with its template line) to its closing brace; lambdas and local classes count
@@ -24,7 +23,6 @@ MAX_PERCENTILE_LINES = 30
 MAX_PARAMETERS = 6
 LEAST_FUNCTIONS = 20  # of a folder with a 90th percentile; of fewer it would be just the longest but one
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
-KNOWN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "sizes_known.txt")
 
 # Comments, literals and preprocessor lines, in the order in which a compiler would see them.
 NOISE = re.compile(
@@ -167,7 +165,7 @@ def print_table(rows):
 
 
 def find_offenders(rows):
-    """What breaks a limit: as it stands in sizes_known.txt, and why."""
+    """What breaks a limit, and why."""
     offenders = {}
     for key, row in rows.items():
         share = percentile([function[2] for function in row.functions], 0.9)
@@ -186,7 +184,6 @@ def find_offenders(rows):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--known", action="store_true")
     parser.add_argument("--longest", type=int, default=0)
     arguments = parser.parse_args()
     rows = read_sources()
@@ -195,18 +192,9 @@ def main():
     for file, name, lines, _, first in sorted(longest, key=lambda f: -f[2])[:arguments.longest]:
         print(f"{lines:5}  {file}:{first} {name}")
     offenders = find_offenders(rows)
-    known = set()
-    if arguments.known and os.path.exists(KNOWN):
-        with open(KNOWN, encoding="utf-8") as stream:
-            known = {line.strip() for line in stream if line.strip() and not line.startswith("#")}
-    failed = False
     for place, why in sorted(offenders.items()):
-        print(f"{'known' if place in known else 'too large'}: {place}: {why}")
-        failed |= place not in known
-    for place in sorted(known - set(offenders)):
-        print(f"mended: {place} keeps to the limits now; take it out of tests/style/sizes_known.txt")
-        failed = True
-    sys.exit(1 if failed else 0)
+        print(f"too large: {place}: {why}")
+    sys.exit(1 if offenders else 0)
 
 
 if __name__ == "__main__":

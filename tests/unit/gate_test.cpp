@@ -252,7 +252,7 @@ TEST(GateVerdict, PassesThatSeldomRunAreComparedWhereTheyRan) {
 }
 
 TEST(GateVerdict, TheSameInputGivesTheSameReport) {
-    World one(shared, 11), two(shared, 11);
+    World one(gate_simulation::shared, 11), two(gate_simulation::shared, 11);
     Build head = same_build();
     head[5] = 1.03;
     const GateReport a = run_gate(one, same_build(), head), b = run_gate(two, same_build(), head);
