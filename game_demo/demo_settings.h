@@ -3,6 +3,7 @@
 
 #include "engine/app/window.h"
 #include "engine/core/description.h"
+#include "viewer/quality.h"
 
 #include <filesystem>
 
@@ -39,7 +40,7 @@ struct DemoSettings {
     std::uint32_t map_budget = 40;
     bool transfer = false;
     float exposure = 0.0f;
-    float field_of_view = 68.0f;
+    float field_of_view = viewer::usual_field_of_view;
     float sensitivity = 1.0f;
     bool invert_look = false;
     std::uint32_t frame_cap = 60;

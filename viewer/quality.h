@@ -8,6 +8,8 @@
 
 namespace sunfleck::viewer {
 
+constexpr float usual_field_of_view = 68.0f; // degrees, from bottom to top
+
 enum class Quality : std::uint32_t { software, low, medium, high, ultra };
 
 struct QualityPreset {

@@ -177,6 +177,13 @@ int fail(const Error& error) {
     return 1;
 }
 
+int exit_status(const Status& status, int on_error) {
+    if (status)
+        return 0;
+    fail(status.error());
+    return on_error;
+}
+
 Progress::~Progress() {
     if (drawn_ && ::isatty(2))
         std::fputc('\n', stderr);

@@ -72,6 +72,8 @@ using statistics::percentile;
 
 // Prints "error: ..." once and returns 1.
 int fail(const Error& error);
+// 0, or the message and `on_error`.
+int exit_status(const Status& status, int on_error = 1);
 
 // A line on standard error that shows how far the work is; silent where standard error is no terminal, but for a line
 // every ten percent.

@@ -22,11 +22,8 @@ void add_level_options(CLI::App& app, LevelOptions& options) {
     app.add_option("--device", options.device, "Vulkan device by number or part of its name");
 }
 
-int exit_status(const Status& status) {
-    if (status)
-        return 0;
-    fail(status.error());
-    return int(gate::Outcome::error);
+int outcome_status(const Result<gate::Outcome>& outcome) {
+    return outcome ? int(*outcome) : exit_status(outcome.error(), int(gate::Outcome::error));
 }
 
 std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
@@ -45,7 +42,7 @@ std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
     app->add_flag("--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
     return [options] {
         watch_interrupts();
-        return exit_status(bench_level(*options));
+        return exit_status(bench_level(*options), int(gate::Outcome::error));
     };
 }
 
@@ -77,7 +74,7 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
     auto self_test = std::make_shared<SelfTestCommandOptions>();
     auto is_self_test = std::make_shared<bool>(false);
     app->add_flag("--self-test", *is_self_test,
-                  "How often does the gate err here? Builds the project anew many times; takes hours, and goes on\n"
+                  "How often does the gate err here? Builds the project many times over; takes hours, and goes on\n"
                   "where it was stopped");
     app->add_option("--triples", self_test->triples, "Of the self-test: base, a rebuild and a slower build at once")
         ->capture_default_str();
@@ -92,11 +89,9 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
             self_test->looks = options->looks;
             self_test->pair = options->pair;
             self_test->time_limit = options->time_limit;
-            const Result<gate::Outcome> tested = bench_self_test(*self_test);
-            return tested ? int(*tested) : exit_status(tested.error());
+            return outcome_status(bench_self_test(*self_test));
         }
-        const Result<gate::Outcome> outcome = bench_compare(*options);
-        return outcome ? int(*outcome) : exit_status(outcome.error());
+        return outcome_status(bench_compare(*options));
     };
 }
 
@@ -117,8 +112,7 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
     add_level_options(*app, options->level);
     return [options] {
         watch_interrupts();
-        const Result<gate::Outcome> outcome = bench_pictures(*options);
-        return outcome ? int(*outcome) : exit_status(outcome.error());
+        return outcome_status(bench_pictures(*options));
     };
 }
 

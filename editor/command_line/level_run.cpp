@@ -11,7 +11,6 @@
 namespace sunfleck::command_line {
 namespace {
 
-constexpr float field_of_view = 68.0f;               // degrees, as in the demo
 constexpr std::uint32_t most_preparation = 200;      // frames
 constexpr const char* recording_extension = ".walk"; // beside the scene
 
@@ -86,7 +85,7 @@ Status LevelRun::load(const LevelOptions& options) {
     request_.width = size_.width;
     request_.height = size_.height;
     request_.simulate = false;
-    request_.camera.vertical_field_of_view = glm::radians(field_of_view);
+    request_.camera.vertical_field_of_view = glm::radians(viewer::usual_field_of_view);
     request_.ev100 = viewer::scene_exposure(renderer_->registry());
     return {};
 }

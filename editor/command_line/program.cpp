@@ -86,8 +86,7 @@ Command make_render_command(CLI::App& program) {
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
                 watch_interrupts();
-                const Status status = render(*options);
-                return status ? 0 : fail(status.error());
+                return exit_status(render(*options));
             }};
 }
 
@@ -110,8 +109,7 @@ Command make_reference_command(CLI::App& program) {
     app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");
     return {app, [options] {
                 watch_interrupts();
-                const Status status = reference(*options);
-                return status ? 0 : fail(status.error());
+                return exit_status(reference(*options));
             }};
 }
 
@@ -126,10 +124,7 @@ Command make_compare_command(CLI::App& program) {
     app->add_option("B", options->b, "Reference")->required();
     app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png");
     app->add_flag("--json", options->as_json, "Print one JSON object");
-    return {app, [options] {
-                const Status status = compare(*options);
-                return status ? 0 : fail(status.error());
-            }};
+    return {app, [options] { return exit_status(compare(*options)); }};
 }
 
 Command make_bench_command(CLI::App& program) {
@@ -161,8 +156,7 @@ Command make_bench_command(CLI::App& program) {
                 if (options->suite.empty())
                     return fail({"a SUITE, 'level' or 'compare' is needed (sunfleck bench --help)"});
                 watch_interrupts();
-                const Status status = bench(*options);
-                return status ? 0 : fail(status.error());
+                return exit_status(bench(*options));
             }};
 }
 
@@ -183,9 +177,8 @@ Command make_info_command(CLI::App& program) {
                     std::fputs((*schema ? io::scene_file_schema() : gi::settings_reference()).c_str(), stdout);
                     return 0;
                 }
-                const Status status =
-                    scene->empty() ? describe_device(*device, *as_json) : describe_scene(*scene, *as_json);
-                return status ? 0 : fail(status.error());
+                return exit_status(scene->empty() ? describe_device(*device, *as_json)
+                                                  : describe_scene(*scene, *as_json));
             }};
 }
 

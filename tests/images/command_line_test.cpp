@@ -1,35 +1,20 @@
 // The tool from outside: exit status, messages, files.
 #include "engine/core/file.h"
+#include "tests/support/run_tool.h"
 #include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <filesystem>
 #include <map>
-#include <sys/wait.h>
 
 namespace sunfleck {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Outcome {
-    int status;
-    std::string output; // standard output and error
-};
-
-Outcome shell(const std::string& command) {
-    Outcome outcome{-1, {}};
-    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-    char buffer[4096];
-    while (const std::size_t count = fread(buffer, 1, sizeof buffer, pipe))
-        outcome.output.append(buffer, count);
-    const int status = pclose(pipe);
-    outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
-}
+using tests::Outcome, tests::shell;
 
 class CommandLine : public testing::Test {
 protected:
@@ -323,7 +308,9 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 // The same recorded input gives the same world and the same pictures, whatever the number of threads.
 TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
     const std::string in_folder = "cd " + folder.string() + " && ";
-    const std::string common = " --headless --frames 30 --steps-per-frame 6 --size 96x54 --pictures 2 ";
+    const int frames = tests::by_size(12, 30);
+    const std::string common =
+        " --headless --frames " + std::to_string(frames) + " --steps-per-frame 6 --size 96x54 --pictures 2 ";
     const Outcome first = shell(in_folder + SUNFLECK_DEMO + common + "-o first --record walk.txt --validation");
     ASSERT_EQ(first.status, 0) << first.output;
     EXPECT_TRUE(first.output.empty()) << first.output;
@@ -332,7 +319,7 @@ TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
     ASSERT_EQ(second.status, 0) << second.output;
     const auto a = nlohmann::json::parse(read_file(folder / "first/stats.json").value());
     const auto b = nlohmann::json::parse(read_file(folder / "second/stats.json").value());
-    EXPECT_EQ(a["steps"], 180);
+    EXPECT_EQ(a["steps"], frames * 6);
     EXPECT_EQ(a["world_hash"], b["world_hash"]);
     for (const char* key : {"frame_ms", "cpu_ms", "gpu_ms", "counters", "preset"})
         EXPECT_TRUE(a.contains(key)) << key;

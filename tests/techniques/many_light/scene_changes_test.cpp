@@ -53,7 +53,7 @@ TEST_F(ManyLightTest, AnyNumberOfSamplesAndAnyMovers) {
     world.renderer->registry().view<scene::Mover>().each(
         [&](ecs::Entity entity, const scene::Mover&) { movers.push_back(entity); });
     ASSERT_FALSE(movers.empty());
-    const std::uint32_t counts[] = {0, 1, 2049, 65536};
+    const std::uint32_t counts[] = {0, 1, by_size(1025u, 2049u), 65536};
     for (const std::uint32_t lights : std::span(counts).first(by_size(3u, 4u))) {
         gi::Settings settings;
         settings.lights = lights;
