@@ -7,6 +7,7 @@
 #include "engine/core/file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -17,34 +18,42 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double slow_down = 0.05;
-constexpr std::uint32_t calibrations = 2; // triples that find out what an amount of work costs; not used for the rates
+constexpr std::uint32_t searches = 4; // triples that find a large amount of work, before one at a quarter of it
+constexpr std::uint32_t first_calibration = 1000000; // number of such a triple; they are not used for the rates
 
 // What is made slower: three passes and a stage, in turn.
 struct SlowTarget {
     const char* name;
     bool on_cpu;
-    int first_amount;
+    double first_amount;
     std::string row() const { return std::string(name) + (on_cpu ? " (CPU)" : ""); }
 };
 constexpr SlowTarget targets[] = {{"shadow maps", false, 500},
                                   {"low-resolution light", false, 500},
                                   {"g-buffer", false, 500},
                                   {"visibility", true, 2000}};
+using Amounts = std::map<std::string, double>;
 
-// The slowed build reads these; the others know nothing of them, but have the same environment.
-void slow_down_children(const SlowTarget& target, int amount) {
-    ::setenv("SUNFLECK_SLOW", target.name, 1);
-    ::setenv("SUNFLECK_SLOW_AMOUNT", std::to_string(amount).c_str(), 1);
+// The slowed build reads this; the others know nothing of it, but have the same environment.
+void slow_down_children(const Amounts& amounts) {
+    std::string text;
+    for (const auto& [name, amount] : amounts)
+        text += (text.empty() ? "" : ";") + name + "=" + std::to_string(std::lround(amount));
+    ::setenv("SUNFLECK_SLOW", text.c_str(), 1);
 }
 
-std::vector<double> times_of(const std::vector<gate::Frame>& frames, const SlowTarget& target) {
-    std::vector<double> times;
-    for (const gate::Frame& frame : frames) {
-        const auto& group = target.on_cpu ? frame.stages : frame.passes;
-        if (const auto found = group.find(target.name); found != group.end())
-            times.push_back(found->second);
+// How much slower the target is in the slowed build, as a share of its time: the median over frames.
+Result<double> measured_share(const gate::Triple& triple, const SlowTarget& target) {
+    const auto group = target.on_cpu ? &gate::Frame::stages : &gate::Frame::passes;
+    std::vector<double> shares;
+    for (std::size_t i = 0; i < triple.base.size(); ++i) {
+        const auto base = (triple.base[i].*group).find(target.name), slow = (triple.slow[i].*group).find(target.name);
+        if (base != (triple.base[i].*group).end() && slow != (triple.slow[i].*group).end() && base->second > 0.0)
+            shares.push_back(slow->second / base->second - 1.0);
     }
-    return times;
+    if (shares.empty())
+        return Error{"'" + target.row() + "' does not run in this level: it can't be made slower"};
+    return statistics::median(shares);
 }
 
 class SelfTest {
@@ -73,10 +82,9 @@ private:
     fs::path file() const { return folder_ / "triples.jsonl"; }
 
     Result<gate::Triple> run(std::uint32_t number, const SlowTarget& target) {
-        int& amount = amounts_[target.name];
-        if (amount == 0)
-            SUNFLECK_TRY(calibrate(target, amount));
-        slow_down_children(target, amount);
+        if (amounts_.size() < std::size(targets))
+            SUNFLECK_TRY(calibrate());
+        slow_down_children({{target.name, amounts_[target.name]}});
         const fs::path& rebuild = programs_.rebuilds[number % programs_.rebuilds.size()];
         SUNFLECK_ASSIGN(gate::Triple triple, run_programs(rebuild, number));
         triple.rebuild = rebuild.filename().string();
@@ -92,20 +100,47 @@ private:
         return gate::run_triple(programs, options_.pair, number, {options_.time_limit, [] { return interrupted(); }});
     }
 
-    // The amount of work that takes 5 % of the target's time. Each step begins from what the one before found.
-    Status calibrate(const SlowTarget& target, int& amount) {
-        double guess = target.first_amount;
-        for (std::uint32_t i = 0; i < calibrations; ++i) {
-            slow_down_children(target, int(guess));
-            SUNFLECK_ASSIGN(const gate::Triple triple, run_programs(programs_.base, 1000000 + i));
-            const double base = statistics::median(times_of(triple.base, target));
-            const double added = statistics::median(times_of(triple.slow, target)) - base;
-            if (!(base > 0.0))
-                return Error{"'" + target.row() + "' does not run in this level: it can't be made slower"};
-            const double factor = added > 0.0 ? slow_down * base / added : 4.0;
-            guess = std::max(1.0, guess * std::clamp(factor, 0.02, 50.0));
+    // By how much a triple with these amounts slows each target.
+    Result<Amounts> measure_shares(const Amounts& amounts) {
+        slow_down_children(amounts);
+        SUNFLECK_ASSIGN(const gate::Triple triple, run_programs(programs_.base, first_calibration + calibrations_++));
+        Amounts shares;
+        for (const SlowTarget& target : targets) {
+            SUNFLECK_ASSIGN(shares[target.name], measured_share(triple, target));
         }
-        amount = int(guess);
+        return shares;
+    }
+
+    // The amounts of work that take 5 % of their targets' times. A dispatch costs something however small it is, so a
+    // line is laid through two amounts at which the added time is far above the noise: one that about halves the
+    // target's speed, and a quarter of it.
+    Status calibrate() {
+        std::fprintf(stderr, "calibrating the slowed build\n");
+        Amounts large, at_large;
+        for (const SlowTarget& target : targets)
+            large[target.name] = target.first_amount;
+        for (std::uint32_t round = 0; round < searches; ++round) {
+            SUNFLECK_ASSIGN(at_large, measure_shares(large));
+            if (round + 1 < searches)
+                for (auto& [name, amount] : large)
+                    amount =
+                        std::clamp(amount * std::clamp(1.0 / std::max(at_large[name], 1e-3), 0.02, 16.0), 4.0, 65535.0);
+        }
+        Amounts small = large;
+        for (auto& [name, amount] : small)
+            amount = std::max(std::round(amount * 0.25), 1.0);
+        SUNFLECK_ASSIGN(Amounts at_small, measure_shares(small));
+        for (const SlowTarget& target : targets) {
+            const std::string name = target.name;
+            const double slope = (at_large[name] - at_small[name]) / (large[name] - small[name]);
+            const double fixed = at_small[name] - slope * small[name];
+            if (!(slope > 0.0) || fixed > 2.0 * slow_down)
+                return Error{"'" + target.row() + "' cannot be made " + std::to_string(slow_down * 100.0) +
+                             " % slower: work for nothing alone takes " + std::to_string(fixed * 100.0) + " %"};
+            amounts_[name] = std::max(1.0, (slow_down - fixed) / slope);
+            std::fprintf(stderr, "%s: amount %.0f; a dispatch takes %.2f %%, each unit %.5f %%\n", target.row().c_str(),
+                         amounts_[name], fixed * 100.0, slope * 100.0);
+        }
         return write_amounts();
     }
 
@@ -116,7 +151,7 @@ private:
         SUNFLECK_ASSIGN(const std::string text, read_file(folder_ / "amounts.json"));
         const Json json = Json::parse(text, nullptr, false);
         for (const SlowTarget& target : targets)
-            if (json.is_object() && json.contains(target.name) && json[target.name].is_number_integer())
+            if (json.is_object() && json.contains(target.name) && json[target.name].is_number())
                 amounts_[target.name] = json[target.name];
         return {};
     }
@@ -125,7 +160,8 @@ private:
     const SelfTestCommandOptions& options_;
     fs::path folder_;
     gate::SelfTestPrograms programs_;
-    std::map<std::string, int> amounts_;
+    Amounts amounts_; // by target; empty until calibrated
+    std::uint32_t calibrations_ = 0;
     std::vector<gate::Triple> triples_;
 };
 

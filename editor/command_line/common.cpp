@@ -24,7 +24,7 @@ std::filesystem::path scene_folder() {
     std::error_code code;
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
     for (const char* place : {"../scenes", "../share/sunfleck/scenes"}) {
-        const std::filesystem::path folder = program.parent_path() / place;
+        std::filesystem::path folder = program.parent_path() / place;
         if (std::filesystem::is_directory(folder, code))
             return folder;
     }

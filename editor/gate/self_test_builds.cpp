@@ -33,7 +33,8 @@ struct Builder {
                                               "-G",
                                               "Ninja",
                                               "-DCMAKE_BUILD_TYPE=Release",
-                                              "-DSUNFLECK_BUILD_TESTS=OFF"};
+                                              "-DSUNFLECK_BUILD_TESTS=OFF",
+                                              "-DSUNFLECK_PRECOMPILE=ON"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         const Result<std::string> output = run_command(arguments, patience);
         return output ? Status() : Status(output.error());

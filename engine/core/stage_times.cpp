@@ -1,9 +1,10 @@
 #include "engine/core/stage_times.h"
 
-#include <algorithm>
 #ifdef SUNFLECK_SLOW_WORK
-#include <cstdlib>
+#include "engine/core/slow_work.h"
 #endif
+
+#include <algorithm>
 
 namespace sunfleck {
 namespace {
@@ -13,14 +14,11 @@ double milliseconds(const StageScope& scope) {
 }
 
 #ifdef SUNFLECK_SLOW_WORK
-// Builds that the frame-time gate tests itself with (engine/gpu/slow_work.h): real work in addition, in thousands of
-// operations.
-void add_slow_work(const std::string& stage) {
-    const char *wanted = std::getenv("SUNFLECK_SLOW"), *amount = std::getenv("SUNFLECK_SLOW_AMOUNT");
-    if (wanted == nullptr || amount == nullptr || stage != wanted)
-        return;
+// Real work in addition, in thousands of operations.
+void add_slow_work(const char* stage) {
+    const int amount = slow_work_amount(stage);
     volatile float value = 0.0f;
-    for (int i = 0; i < 1000 * std::atoi(amount); ++i)
+    for (int i = 0; i < 1000 * amount; ++i)
         value = value * 0.999f + float(i);
 }
 #endif

@@ -1,9 +1,9 @@
 #include "engine/gpu/slow_work.h"
 
+#include "engine/core/slow_work.h"
 #include "engine/gpu/pipeline.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace sunfleck::gpu {
 
@@ -28,11 +28,8 @@ Result<const Pipeline*> slow_pipeline(Device& device) {
 } // namespace
 
 Status add_slow_work(PassContext& context, const std::string& pass) {
-    const char *wanted = std::getenv("SUNFLECK_SLOW"), *amount = std::getenv("SUNFLECK_SLOW_AMOUNT");
-    if (wanted == nullptr || amount == nullptr || pass != wanted)
-        return {};
     constexpr int most_groups = 65535;
-    const int groups = std::clamp(std::atoi(amount), 0, most_groups);
+    const int groups = std::clamp(slow_work_amount(pass), 0, most_groups);
     if (groups == 0)
         return {};
     SUNFLECK_ASSIGN(const Pipeline* pipeline, slow_pipeline(context.device));

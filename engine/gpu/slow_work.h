@@ -1,5 +1,5 @@
 // Only in builds with SUNFLECK_SLOW_WORK (CMake), which the frame-time gate tests itself with: real work in addition,
-// inside the time of the pass that SUNFLECK_SLOW names. SUNFLECK_SLOW_AMOUNT is the number of work groups.
+// inside the times of passes. The amount (engine/core/slow_work.h) is the number of work groups of a dispatch.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
