@@ -99,7 +99,7 @@ FluxPerBounce flux_of_path_tracer(SampledScene& world, std::uint32_t points, std
 
 // Reflected flux of bounce k, from samples, against the adjoint computation. The short size has half the seeds and a
 // quarter of the points; the tolerance is three standard errors of what was measured, most of it the points' error,
-// which doubles. Sanitizers have a sixteenth.
+// which doubles.
 TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
     for (auto make : {assets::make_cornell, assets::make_four_pillars}) {
         SampledScene world(make);
@@ -110,13 +110,11 @@ TEST(LightSampling, IndirectFluxPerBounceAgreesWithThePathTracer) {
             world.registry.destroy(mover);
         ASSERT_TRUE(world.rays->update(world.registry, world.meshes));
         const FluxPerBounce walked = flux_of_walks(world, tests::by_size(4u, 8u));
-        const FluxPerBounce traced =
-            flux_of_path_tracer(world, tests::sanitized() ? 256u : tests::by_size(1024u, 4096u), 16);
+        const FluxPerBounce traced = flux_of_path_tracer(world, tests::by_size(1024u, 4096u), 16);
         for (std::uint32_t k = 0; k < flux_bounces; ++k) {
             EXPECT_NEAR(walked.mean[k], traced.mean[k], 3.0 * std::hypot(traced.error[k], walked.error[k]))
                 << "bounce " << k + 1;
-            EXPECT_LT(traced.error[k] / traced.mean[k], tests::sanitized() ? 0.2 : tests::by_size(0.1, 0.05))
-                << "the test must be able to fail";
+            EXPECT_LT(traced.error[k] / traced.mean[k], tests::by_size(0.1, 0.05)) << "the test must be able to fail";
         }
     }
 }
