@@ -3,8 +3,8 @@
 # defines `const TechniqueEntry& FOLDER_technique()`; the shaders are returned by sunfleck_gi_FOLDER_shaders().
 macro(sunfleck_technique folder)
   cmake_parse_arguments(TECHNIQUE "" "" "SOURCES;SHADERS" ${ARGN})
-  list(TRANSFORM TECHNIQUE_SOURCES PREPEND "${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
-  target_sources(sunfleck_gi PRIVATE ${TECHNIQUE_SOURCES})
+  list(TRANSFORM TECHNIQUE_SOURCES PREPEND "${folder}/")
+  sunfleck_sources(sunfleck_gi ${TECHNIQUE_SOURCES})
   if(TECHNIQUE_SHADERS)
     list(TRANSFORM TECHNIQUE_SHADERS PREPEND "${folder}/")
     sunfleck_shaders(sunfleck_gi NAME sunfleck_gi_${folder} FILES ${TECHNIQUE_SHADERS})

@@ -1,13 +1,12 @@
 #include "editor/command_line/trace.h"
 
+#include "editor/command_line/common.h"
 #include "engine/core/file.h"
 
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 namespace {
-
-using Json = nlohmann::json;
 
 enum Row { cpu_row = 1, gpu_row = 2 }; // threads, as viewers of traces call them
 

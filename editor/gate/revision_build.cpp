@@ -53,7 +53,8 @@ Result<fs::path> build_revision(const std::string& revision, const Patience& pat
     SUNFLECK_TRY(extract(root, first_line(*commit), source, patience));
     // File names inside of the program are those of the project itself: the same source gives the same program.
     SUNFLECK_TRY(run_command({"cmake", "-S", source.string(), "-B", build.string(), "-G", "Ninja",
-                              "-DCMAKE_BUILD_TYPE=Release", "-DSUNFLECK_BUILD_TESTS=OFF",
+                              "-DCMAKE_BUILD_TYPE=Release", "-DSUNFLECK_BUILD_TESTS=OFF", "-DSUNFLECK_PRECOMPILE=ON",
+                              "-DSUNFLECK_BATCHES=ON", // as the release preset
                               "-DCMAKE_CXX_FLAGS=-ffile-prefix-map=" + source.string() + "=" + root.string()},
                              patience));
     SUNFLECK_TRY(run_command({"cmake", "--build", build.string(), "--target", "sunfleck"}, patience));

@@ -34,7 +34,8 @@ struct Builder {
                                               "Ninja",
                                               "-DCMAKE_BUILD_TYPE=Release",
                                               "-DSUNFLECK_BUILD_TESTS=OFF",
-                                              "-DSUNFLECK_PRECOMPILE=ON"};
+                                              "-DSUNFLECK_PRECOMPILE=ON",
+                                              "-DSUNFLECK_BATCHES=ON"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         const Result<std::string> output = run_command(arguments, patience);
         return output ? Status() : Status(output.error());

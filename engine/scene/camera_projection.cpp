@@ -16,7 +16,7 @@ struct Frustum {
     double distance_per_w = 1.0; // of clip space
 };
 
-bool is_finite(const dmat4& matrix) {
+bool all_finite(const dmat4& matrix) {
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r)
             if (!std::isfinite(matrix[c][r]))
@@ -48,7 +48,7 @@ Result<Frustum> frustum_of(const dvec4& x, const dvec4& y, const dvec4& w) {
 } // namespace
 
 Result<ProjectedCamera> camera_from_matrix(const dmat4& world_to_clip, std::uint32_t width, std::uint32_t height) {
-    if (!is_finite(world_to_clip))
+    if (!all_finite(world_to_clip))
         return Error{"the camera's matrix is not finite"};
     const dmat4 rows = glm::transpose(world_to_clip);
     SUNFLECK_ASSIGN(const Frustum frustum, frustum_of(rows[0], rows[1], rows[3]));

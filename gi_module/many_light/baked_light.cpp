@@ -9,7 +9,7 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::uint32_t invocations = 64; // texels that a work group handles at a time: baked_light.comp
+constexpr std::uint32_t texels_at_a_time = 64; // of a work group: baked_light.comp
 // Samples times texels that a frame evaluates at most, and one patch more: 30 to 60 ms on two cores. More at first: the
 // frame that builds the visibility database is long anyway.
 constexpr std::uint64_t max_evaluations = 16000000, max_first_evaluations = 400000000;
@@ -204,8 +204,8 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     }
     bake_waiting(database, scene.samples, first ? max_first_evaluations : max_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
-    jobs_.split(invocations);
-    finish_.split(invocations);
+    jobs_.split(texels_at_a_time);
+    finish_.split(texels_at_a_time);
     return {};
 }
 

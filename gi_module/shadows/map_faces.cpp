@@ -5,10 +5,6 @@
 namespace sunfleck::gi {
 namespace {
 
-bool has_cone_map(const ShadowRequest& request) {
-    return request.light_class == shared::light_class_point && request.light.position_bound.w > 0.0f;
-}
-
 // Largest value of dot(axis, p - origin) over the box.
 float support(const Bounds& bounds, vec3 origin, vec3 axis) {
     const vec3 corner(axis.x > 0 ? bounds.maximum.x : bounds.minimum.x,
@@ -25,7 +21,7 @@ std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bou
         return 1;
     const vec3 origin(light.position_bound);
     const vec3 axes[3] = {vec3(light.tangent_scale), vec3(light.bitangent), vec3(light.normal_offset)};
-    if (has_cone_map(request)) {
+    if (request.has_cone_map()) {
         for (const vec3 side : {axes[0], -axes[0], axes[1], -axes[1]})
             if (support(bounds, origin, axes[2] - light.position_bound.w * side) <= 0.0f)
                 return 0;

@@ -22,10 +22,6 @@ VkFormat depth_format(std::uint32_t bits) {
     return bits == 16 ? VK_FORMAT_D16_UNORM : VK_FORMAT_D32_SFLOAT;
 }
 
-bool has_cone_map(const ShadowRequest& request) {
-    return request.light_class == shared::light_class_point && request.light.position_bound.w > 0.0f;
-}
-
 } // namespace
 
 // Everything that one pair of passes (draw, copy) needs; lives in the passes' closures.
@@ -211,7 +207,7 @@ std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::
         const float radius = 0.5f * glm::length(item.bounds.extent());
         const float distance = glm::length(item.bounds.centre() - vec3(request.light.position_bound)) - radius;
         texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
-        if (has_cone_map(request))
+        if (request.has_cone_map())
             texel /= std::max(request.light.position_bound.w, 1.0f);
     }
     std::size_t level = 0;

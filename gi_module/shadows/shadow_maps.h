@@ -27,6 +27,7 @@ struct ShadowRequest {
     float detail_texels = 0.5f;
     std::vector<std::uint8_t> hidden; // by entity index: 1 for occluders that cast no shadow of their own because
                                       // static geometry hides them from the light; may be shorter
+    bool has_cone_map() const { return light_class == shared::light_class_point && light.position_bound.w > 0.0f; }
     bool hides(ecs::Entity entity) const { return entity.index < hidden.size() && hidden[entity.index] != 0; }
 };
 

@@ -1,6 +1,7 @@
 // `sunfleck bench level` and `bench pictures` on a real, if small, walk.
 #include "engine/core/file.h"
 #include "game_demo/walk_through.h"
+#include "test_places.h"
 #include "tests/support/run_tool.h"
 #include "tests/support/test_size.h"
 #include "viewer/scene_renderer.h"

@@ -3,6 +3,7 @@
 #include "editor/gate/level_file.h"
 #include "editor/gate/verdict_text.h"
 #include "engine/core/file.h"
+#include "test_places.h"
 #include "tests/support/run_tool.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 // in pictures of the level as it is drawn.
 #include "editor/gate/picture_store.h"
 #include "engine/core/file.h"
+#include "test_places.h"
 
 #include <gtest/gtest.h>
 

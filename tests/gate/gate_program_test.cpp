@@ -1,6 +1,7 @@
 // `sunfleck bench compare` from outside, with programs that make their times up: verdicts, exit statuses, what it says
 // of programs that misbehave, and what it leaves behind.
 #include "engine/core/file.h"
+#include "test_places.h"
 #include "tests/support/run_tool.h"
 
 #include <gtest/gtest.h>

@@ -6,6 +6,7 @@
 #include "engine/gpu/readback_ring.h"
 #include "engine/gpu/uploaded_buffer.h"
 #include "engine/shader_compiler/shader_compiler.h"
+#include "test_places.h"
 
 namespace sunfleck::tests {
 namespace {

@@ -5,6 +5,7 @@
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
 #include "engine/shader_compiler/shader_compiler.h"
+#include "test_places.h"
 
 #include <fstream>
 #include <thread>

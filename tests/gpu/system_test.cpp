@@ -59,7 +59,7 @@ TEST_F(Systems, TwoLightOneRegistry) {
 }
 
 // A room where all stays but one box.
-void make_room(assets::SceneBuilder& scene) {
+void make_moving_box_room(assets::SceneBuilder& scene) {
     const vec3 white(0.7f), red(0.7f, 0.3f, 0.3f);
     scene.room(vec3(-2, 0, -2), vec3(2, 2.5f, 2), white, white, {red, white, white, white},
                {{"lamp", vec2(0.5f, 0.3f), 0.6f, 0.6f, vec3(9.0f)}});
@@ -90,7 +90,7 @@ constexpr std::uint64_t first_move = 40, frame_count = 46;
 // The box rests until light is baked, then moves on each frame. A lost frame is drawn again at the same step, as a host
 // would; so the frames that reach the GPU are the same ones.
 std::vector<vec4> run(const gi::Settings& settings, const std::vector<std::uint64_t>& lost, Fate fate) {
-    SystemFrames frames(make_room);
+    SystemFrames frames(make_moving_box_room);
     frames.add(settings);
     for (std::uint64_t i = 0; i < frame_count; ++i) {
         const std::uint64_t step = i < first_move ? 0 : 12 * (i - first_move + 1);
@@ -123,7 +123,7 @@ TEST_P(LostFrames, TheLastMoveWasLost) {
     for (const std::string_view technique : techniques_for_all_light()) {
         std::vector<vec4> pictures[2];
         for (const bool loses : {false, true}) {
-            SystemFrames frames(make_room);
+            SystemFrames frames(make_moving_box_room);
             frames.add(settings_for(technique));
             frames.settle(0);
             if (loses)
@@ -141,7 +141,7 @@ TEST_P(LostFrames, NewSamplesAreNotForgotten) {
     for (const std::string_view technique : techniques_for_all_light()) {
         std::vector<vec4> pictures[2];
         for (const bool loses : {false, true}) {
-            SystemFrames frames(make_room);
+            SystemFrames frames(make_moving_box_room);
             frames.add(settings_for(technique, 30));
             frames.settle(0);
             ASSERT_TRUE(frames.system().set_settings(settings_for(technique, 80)));

@@ -1,5 +1,6 @@
 // The tool from outside: exit status, messages, files.
 #include "engine/core/file.h"
+#include "test_places.h"
 #include "tests/support/run_tool.h"
 #include "tests/support/test_size.h"
 

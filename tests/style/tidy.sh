@@ -16,10 +16,9 @@ else
     fi
 fi
 mapfile -t files < <(printf '%s\n' "${files[@]}" | sort -u | grep .)
-# g++'s precompiled headers are nothing to clang, and without them each file must include what it uses.
 commands=$(mktemp -d)
 trap 'rm -rf "$commands"' EXIT
-sed -E 's/ -Winvalid-pch -include [^ ]+cmake_pch\.hxx / /' "$build/compile_commands.json" >"$commands/compile_commands.json"
+python3 tests/style/compile_commands.py "$build/compile_commands.json" >"$commands/compile_commands.json"
 printf '%s\0' "${files[@]}" |
     xargs -0 -P2 -n1 "$tidy" -p "$commands" --quiet --extra-arg=-Wno-unknown-warning-option 2>/dev/null
 echo "${#files[@]} files"

@@ -3,6 +3,7 @@
 #include "editor/command_line/program.h"
 #include "engine/core/file.h"
 #include "gi_module/include/sunfleck/host.h"
+#include "test_places.h"
 #include "tests/support/gpu_world.h"
 #include "tests/techniques/constant_light.h"
 

@@ -2,6 +2,7 @@
 #include "engine/core/file.h"
 #include "gi_module/settings_reference.h"
 #include "gi_module/technique.h"
+#include "test_places.h"
 
 #include <gtest/gtest.h>
 

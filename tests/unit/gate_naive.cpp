@@ -7,7 +7,7 @@
 namespace sunfleck::gate_simulation {
 namespace {
 
-constexpr std::size_t turn = 4, pairs = 16;
+constexpr std::size_t frames_of_turn = 4, pairs = 16;
 constexpr std::size_t resamples = 1000;
 constexpr double corrected_error = 0.05 / double(passes);                // one-sided: only a slow-down alarms
 constexpr double uncorrected_error = 0.025;                              // an interval at 95 %
@@ -124,7 +124,7 @@ bool base_then_head_bootstrap(World& world) {
 }
 
 bool interleaved_signed_rank(World& world) {
-    const Samples samples = differences(measure(world, 160, turn));
+    const Samples samples = differences(measure(world, 160, frames_of_turn));
     for (std::size_t pass = 0; pass < passes; ++pass)
         if (signed_rank_deviate(samples, pass) > corrected_deviate)
             return true;

@@ -1,4 +1,5 @@
 // What is exported reads as it was.
+#include "test_places.h"
 #include "tests/support/gltf_files.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // Damaged and hostile glTF files: one message that names the cause, soon, with little memory, and nothing half-loaded.
 #include "engine/core/random.h"
 #include "engine/io/image.h"
+#include "test_places.h"
 #include "tests/support/gltf_files.h"
 
 #include <chrono>

@@ -1,4 +1,6 @@
 // Reads every include of the project and checks that arrows point one way (the layers of the README).
+#include "test_places.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -11,7 +11,7 @@ namespace {
 const CellSet diffuse = all_diffuse_cells();
 const CellSet on_movers = cells_where([](LightCell cell) { return cell.on_mover && !cell.specular; });
 const std::vector<PlannedTechnique> three = {{"many", diffuse}, {"brute", diffuse}, {"prt", on_movers, true}};
-constexpr std::int32_t many = 0, brute = 1, prt = 2;
+constexpr std::int32_t many_light = 0, brute = 1, prt = 2;
 
 LightPlan plan_of(const TermOwners& terms) {
     const Result<LightPlan> plan = LightPlan::make(terms, three);
@@ -36,8 +36,8 @@ TEST(LightPlan, CellsAreDistinctAndNamed) {
 
 // All choices of terms: each diffuse cell belongs to the technique of its term.
 TEST(LightPlan, TermsOwnTheirCells) {
-    for (const std::int32_t direct : {nobody, many, brute})
-        for (const std::int32_t indirect : {nobody, many, brute})
+    for (const std::int32_t direct : {nobody, many_light, brute})
+        for (const std::int32_t indirect : {nobody, many_light, brute})
             for (const std::int32_t movers : {nobody, prt}) {
                 const LightPlan plan = plan_of({direct, indirect, nobody, movers});
                 for (std::size_t i = 0; i < light_cell_count; ++i) {
@@ -65,25 +65,30 @@ TEST(LightPlan, SingleCells) {
         const LightPlan plan = plan_of(terms);
         EXPECT_EQ(plan.lit_by(brute).count(), 1u);
         EXPECT_EQ(plan.owner(cell), brute);
-        EXPECT_FALSE(plan.uses(many));
+        EXPECT_FALSE(plan.uses(many_light));
     }
 }
 
 TEST(LightPlan, ExceptionsAndRefusals) {
-    const LightPlan plan = plan_of({many, many, nobody, nobody, "indirect.dynamic=brute,later_bounces.fixed=none"});
+    const LightPlan plan =
+        plan_of({many_light, many_light, nobody, nobody, "indirect.dynamic=brute,later_bounces.fixed=none"});
     EXPECT_EQ(plan.owner({PathPart::first_bounce, true, false, false}), brute);
-    EXPECT_EQ(plan.owner({PathPart::first_bounce, false, true, false}), many);
+    EXPECT_EQ(plan.owner({PathPart::first_bounce, false, true, false}), many_light);
     EXPECT_EQ(plan.owner({PathPart::later_bounces, false, true, false}), nobody);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct=brute,direct.dynamic=none"}).find("two owners"),
+    EXPECT_NE(
+        refusal_of({many_light, many_light, nobody, nobody, "direct=brute,direct.dynamic=none"}).find("two owners"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal_of({many_light, many_light, nobody, nobody, "direct=torch"}).find("no technique is called 'torch'"),
+        std::string::npos);
+    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "sideways=brute"}).find("'sideways' is not a part"),
               std::string::npos);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct=torch"}).find("no technique is called 'torch'"),
+    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_fixed=prt"}).find("prt cannot light"),
               std::string::npos);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "sideways=brute"}).find("'sideways' is not a part"),
+    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_mover=none"}).find("same paths"),
               std::string::npos);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_fixed=prt"}).find("prt cannot light"),
-              std::string::npos);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_mover=none"}).find("same paths"), std::string::npos);
-    EXPECT_NE(refusal_of({many, many, nobody, nobody, "direct.on_mover=prt"}).find("must own all light on movers"),
+    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_mover=prt"})
+                  .find("must own all light on movers"),
               std::string::npos);
 }
 

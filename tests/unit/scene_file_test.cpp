@@ -1,6 +1,7 @@
 // Scene files: what is saved comes back, damage is told, and no interruption loses both the old and the new.
 #include "assets/test_rooms.h"
 #include "engine/core/random.h"
+#include "test_places.h"
 #include "tests/support/gltf_files.h"
 
 #include <algorithm>
