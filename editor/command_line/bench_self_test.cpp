@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double slow_down = 0.05;
-constexpr std::uint32_t searches = 4; // triples that find a large amount of work, before one at a quarter of it
+constexpr std::uint32_t searches = 4; // triples that find an amount of work that doubles its target's time
 constexpr std::uint32_t first_calibration = 1000000; // number of such a triple; they are not used for the rates
 
 // What is made slower: three passes and a stage, in turn.
@@ -111,35 +111,27 @@ private:
         return shares;
     }
 
-    // The amounts of work that take 5 % of their targets' times. A dispatch costs something however small it is, so a
-    // line is laid through two amounts at which the added time is far above the noise: one that about halves the
-    // target's speed, and a quarter of it.
+    // The amounts of work that take 5 % of their targets' times. A triple knows a share to a few per cent at best, so
+    // amounts are sought that double the time, and a twentieth of those is taken. The report says what they made of it.
     Status calibrate() {
         std::fprintf(stderr, "calibrating the slowed build\n");
-        Amounts large, at_large;
+        Amounts shares;
         for (const SlowTarget& target : targets)
-            large[target.name] = target.first_amount;
+            amounts_[target.name] = target.first_amount;
         for (std::uint32_t round = 0; round < searches; ++round) {
-            SUNFLECK_ASSIGN(at_large, measure_shares(large));
+            SUNFLECK_ASSIGN(shares, measure_shares(amounts_));
             if (round + 1 < searches)
-                for (auto& [name, amount] : large)
+                for (auto& [name, amount] : amounts_)
                     amount =
-                        std::clamp(amount * std::clamp(1.0 / std::max(at_large[name], 1e-3), 0.02, 16.0), 4.0, 65535.0);
+                        std::clamp(amount * std::clamp(1.0 / std::max(shares[name], 1e-3), 0.02, 16.0), 20.0, 65535.0);
         }
-        Amounts small = large;
-        for (auto& [name, amount] : small)
-            amount = std::max(std::round(amount * 0.25), 1.0);
-        SUNFLECK_ASSIGN(Amounts at_small, measure_shares(small));
         for (const SlowTarget& target : targets) {
             const std::string name = target.name;
-            const double slope = (at_large[name] - at_small[name]) / (large[name] - small[name]);
-            const double fixed = at_small[name] - slope * small[name];
-            if (!(slope > 0.0) || fixed > 2.0 * slow_down)
-                return Error{"'" + target.row() + "' cannot be made " + std::to_string(slow_down * 100.0) +
-                             " % slower: work for nothing alone takes " + std::to_string(fixed * 100.0) + " %"};
-            amounts_[name] = std::max(1.0, (slow_down - fixed) / slope);
-            std::fprintf(stderr, "%s: amount %.0f; a dispatch takes %.2f %%, each unit %.5f %%\n", target.row().c_str(),
-                         amounts_[name], fixed * 100.0, slope * 100.0);
+            if (shares[name] < 0.5)
+                return Error{"'" + target.row() + "' does not get slower with more work"};
+            std::fprintf(stderr, "%s: an amount of %.0f takes %.0f %%\n", target.row().c_str(), amounts_[name],
+                         shares[name] * 100.0);
+            amounts_[name] = std::max(1.0, amounts_[name] * slow_down / shares[name]);
         }
         return write_amounts();
     }

@@ -6,8 +6,8 @@
 namespace sunfleck::gate {
 
 struct PairOptions {
-    std::uint32_t turns = 12;       // of each process
-    std::uint32_t frames = 4;       // that count, in a turn
+    std::uint32_t turns = 16;       // of each process
+    std::uint32_t frames = 6;       // that count, in a turn
     std::uint32_t warm_up = 2;      // drawn before those, in a turn
     std::uint32_t first_frames = 4; // drawn at the very beginning: what is done only once
     std::uint32_t seed = 1;

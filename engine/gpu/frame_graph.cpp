@@ -309,10 +309,11 @@ Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compile
     const TimerScope timer(timers, context.commands, compiled.name);
     record_barriers(context.commands, compiled.barriers);
     const Pass& pass = passes_[compiled.pass_index];
-    const Status status = pass.execute ? pass.execute(context) : Status();
 #ifdef SUNFLECK_SLOW_WORK
+    // Before the pass: a software rasteriser would wait for its triangles before a dispatch after it.
     SUNFLECK_TRY(add_slow_work(context, compiled.name));
 #endif
+    const Status status = pass.execute ? pass.execute(context) : Status();
     return status ? status : Error{"pass '" + pass.name + "': " + status.error().message};
 }
 

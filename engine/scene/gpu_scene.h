@@ -103,7 +103,8 @@ private:
         std::int32_t vertex_offset;
         std::vector<DetailRange> details;
         bool closed = false;
-        std::uint32_t revision = 0; // that is on the GPU
+        std::uint32_t revision = 0; // that is on the GPU, or
+        static constexpr std::uint32_t no_revision = ~0u;
     };
     struct Staged {
         std::shared_ptr<gpu::Buffer> source;

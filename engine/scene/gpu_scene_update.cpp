@@ -95,9 +95,13 @@ Status GpuScene::update(const SceneChanges& changes, const MeshStore& meshes, gp
     return {};
 }
 
-// Copies of a frame that was not recorded are made again: its upload memory is about to be used for other things.
+// Copies of a frame that was not recorded are made again: its upload memory is about to be used for other things. They
+// count as old until then, so that where memory runs out halfway, the next update makes the others.
 Status GpuScene::update_deformed(const SceneChanges& changes, const MeshStore& meshes, gpu::FrameResources& resources) {
-    for (const VertexCopy& copy : std::exchange(copies_, {}))
+    const std::vector<VertexCopy> again = std::exchange(copies_, {});
+    for (const VertexCopy& copy : again)
+        ranges_[copy.mesh].revision = MeshRange::no_revision;
+    for (const VertexCopy& copy : again)
         SUNFLECK_TRY(update_vertices(copy.mesh, meshes, resources));
     const auto update_one = [&](std::uint32_t mesh) -> Status {
         if (mesh >= ranges_.size() || ranges_[mesh].revision == meshes.revision(mesh))

@@ -85,6 +85,10 @@ Status LowResolution::make_buffer(gpu::Buffer& buffer, const char* name, std::ui
                                   gpu::FrameResources& resources, VkFormat texel_format) {
     if (buffer && buffer.size() >= bytes)
         return {};
+    if (const std::uint64_t most = device_.traits().max_storage_range; bytes > most)
+        return Error{"this picture needs " + std::to_string(bytes >> 20) + " MiB for '" + name +
+                     "', but the device binds buffers of at most " + std::to_string(most >> 20) +
+                     " MiB: raise low_resolution or draw fewer pixels"};
     if (buffer)
         resources.retire(std::move(buffer));
     SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device_, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage,
@@ -127,11 +131,12 @@ Status LowResolution::add_passes(gpu::FrameGraph& graph, const LowResolutionSett
     const shared::LowResolutionConstants constants = make_constants(settings, frame);
     SUNFLECK_TRY(make_buffers(constants, resources));
     const bool reconstructs = constants.scale > 1;
+    const std::uint64_t picture_bytes = std::uint64_t(constants.width) * constants.height * 8;
     // A CPU device stores to buffers much faster than to images.
     const bool through_buffer = reconstructs && device_.traits().software && !graph.owned_by_host(frame.output) &&
-                                graph.description(frame.output).format == VK_FORMAT_R16G16B16A16_SFLOAT;
-    SUNFLECK_TRY(make_buffer(picture_, "reconstructed picture",
-                             through_buffer ? std::uint64_t(constants.width) * constants.height * 8 : 8,
+                                graph.description(frame.output).format == VK_FORMAT_R16G16B16A16_SFLOAT &&
+                                picture_bytes <= device_.traits().max_storage_range;
+    SUNFLECK_TRY(make_buffer(picture_, "reconstructed picture", through_buffer ? picture_bytes : 8,
                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, resources));
     PixelStage stage{graph,         frame.g_buffer, frame.camera, constants, false,       true,        true,
                      !reconstructs, pixels_,        sums_,        commands_, cell_masks_, frame.output};

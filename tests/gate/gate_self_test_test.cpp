@@ -81,13 +81,14 @@ TEST_F(GateTriples, ThreeProgramsDrawTheSameFrames) {
     slow.insert(slow.end(), {"slow", "light", "by", "1.2"});
     for (std::uint32_t number = 0; number < 4; ++number) {
         const Triple triple = run_triple({fake, fake, slow}, {}, number, {}).value();
-        ASSERT_EQ(triple.base.size(), 48u);
+        constexpr std::size_t frames = 16 * 6;
+        ASSERT_EQ(triple.base.size(), frames);
         double same = 0.0, slowed = 0.0;
-        for (std::size_t i = 0; i < 48; ++i) {
+        for (std::size_t i = 0; i < frames; ++i) {
             EXPECT_EQ(triple.base[i].number, triple.same[i].number);
             EXPECT_EQ(triple.base[i].number, triple.slow[i].number);
-            same += triple.same[i].passes.at("light") / triple.base[i].passes.at("light") / 48.0;
-            slowed += triple.slow[i].passes.at("light") / triple.base[i].passes.at("light") / 48.0;
+            same += triple.same[i].passes.at("light") / triple.base[i].passes.at("light") / frames;
+            slowed += triple.slow[i].passes.at("light") / triple.base[i].passes.at("light") / frames;
         }
         // 2 % of noise in a frame and 0.3 % of luck: the three are not mixed up.
         EXPECT_NEAR(same, 1.0, 0.05);

@@ -181,7 +181,7 @@ TEST_F(DeviceTest, OddPictureSizes) {
     GpuWorld world(assets::make_cornell, "view");
     gi::Settings settings = plain_light();
     settings.lights = 8;
-    settings.low_resolution = 4; // where it matters, 4096x4096 pixels are too many for one buffer of sums
+    settings.low_resolution = 4; // see ManyLightTest.PicturesTooLargeForTheDevicesBuffersAreRefusedByName
     settings.shadow_map_resolution = 32;
     world.set(settings);
     for (const auto& [width, height] :

@@ -162,5 +162,25 @@ TEST_F(ManyLightTest, NothingIsShadowedByWhereItWas) {
     EXPECT_LT(difference.mean, 0.01 * difference.mean_brightness);
 }
 
+TEST_F(ManyLightTest, PicturesTooLargeForTheDevicesBuffersAreRefusedByName) {
+    constexpr std::uint64_t pixels = 4096 * 4096;
+    if (device().traits().max_storage_range >= pixels * sizeof(vec4))
+        GTEST_SKIP() << "this device binds buffers that are large enough";
+    GpuWorld world(assets::make_cornell, "view");
+    gi::Settings settings;
+    settings.lights = 8;
+    settings.shadow_map_resolution = 32;
+    settings.low_resolution = 1;
+    world.set(settings);
+    world.request.width = world.request.height = 4096;
+    const Status refused = world.renderer->render_and_wait(world.request);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("raise low_resolution"), std::string::npos) << refused.error().message;
+    // And the next frame is drawn.
+    settings.low_resolution = 4;
+    world.set(settings);
+    world.render();
+}
+
 } // namespace
 } // namespace sunfleck::tests
