@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace sunfleck::gi {
 Result<std::unique_ptr<ManyLight>> ManyLight::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
@@ -33,6 +34,10 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
     VisibilityDatabase& database = scene.database;
     if (options.light_maps && options.visibility)
         SUNFLECK_TRY(light_maps_->update(database, scene.samples, scene.rows, resources));
+    else
+        light_maps_->restart(); // they miss what changes meanwhile
+    if (std::exchange(baked_with_filter_, options.filter) != options.filter)
+        baked_light_->forget(); // it holds what the other look-up said
     if (options.baked_light && options.light_maps && options.visibility && options.shadows)
         SUNFLECK_TRY(baked_light_->update(scene, *light_maps_, options.static_maps_changed, resources));
     else

@@ -87,6 +87,7 @@ private:
     std::unique_ptr<LightMaps> light_maps_;
     std::unique_ptr<BakedLight> baked_light_;
     SurfaceTables tables_;
+    bool baked_with_filter_ = false;
     std::vector<shared::NodeRow> node_rows_;
     std::uint32_t words_per_row_ = 0, state_words_ = 0, flag_words_ = 0, first_mover_ = 0, mover_count_ = 0;
     gpu::UploadSlice movers_; // spheres

@@ -68,5 +68,56 @@ TEST_F(ManyLightTest, NormalsOnFlatSurfacesCount) {
     EXPECT_GT(direct.mean_brightness, 0.1);
 }
 
+void make_room_with_block(assets::SceneBuilder& s) {
+    const vec3 white(0.6f);
+    s.room(vec3(-3, 0, -3), vec3(3, 3, 3), white, white, {white, white, white, white},
+           {{"lamp", vec2(0.0f), 0.5f, 0.5f, vec3(40.0f)}});
+    const ecs::Entity block = s.box("block", vec3(-1, 0.9f, -1), vec3(1, 1.1f, 1), assets::diffuse(white));
+    s.mover(block, {});
+    s.camera("view", vec3(2.5f, 2.5f, 2.5f), vec3(0.0f), 70.0f);
+}
+
+// The settled picture with the block at `x`.
+std::vector<vec4> picture_with_block_at(GpuWorld& world, float x) {
+    ecs::Registry& registry = world.renderer->registry();
+    world.request.simulate = false;
+    registry.patch<scene::Transform>(scene::find_by_name(registry, "block"),
+                                     [&](scene::Transform& transform) { transform.position.x = x; });
+    scene::update_world_transforms(registry);
+    for (int frame = 0; frame < 12; ++frame)
+        world.render();
+    return world.picture().pixels;
+}
+
+gi::Settings settled_settings() {
+    gi::Settings settings;
+    settings.lights = 40;
+    settings.shadow_map_resolution = 64;
+    settings.map_budget = 65536;
+    return settings;
+}
+
+// What happens while light maps, visibility or baked light are off is known when they are on again; and light that was
+// baked with one look-up of shadow maps is not kept for the other.
+TEST_F(ManyLightTest, SettingsLeaveNothingBehind) {
+    GpuWorld fresh(make_room_with_block, "view");
+    gi::Settings settings = settled_settings();
+    fresh.set(settings);
+    const std::vector<vec4> expected = picture_with_block_at(fresh, 1.5f);
+    for (const char* name : {"light_maps", "visibility", "baked_light", "shadow_filter"}) {
+        GpuWorld world(make_room_with_block, "view");
+        const bool usual = std::string_view(name) != "shadow_filter";
+        world.set(settings);
+        picture_with_block_at(world, 0.0f);
+        gi::Settings other = settings;
+        ASSERT_TRUE(other.set(name, usual ? "off" : "on"));
+        world.set(other);
+        EXPECT_NE(picture_with_block_at(world, 1.5f), picture_with_block_at(world, 0.0f)) << name;
+        picture_with_block_at(world, 1.5f);
+        world.set(settings);
+        EXPECT_EQ(picture_with_block_at(world, 1.5f), expected) << name;
+    }
+}
+
 } // namespace
 } // namespace sunfleck::tests
