@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 #include "game_demo/presets.h"
+#include "viewer/exposure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::strin
     level->renderer_->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene), import));
     ecs::Registry& registry = level->renderer_->registry();
-    level->ev100_ = viewer::scene_exposure(registry);
+    level->ev100_ = viewer::scene_exposure(registry).value_or(viewer::default_exposure);
     registry.view<scene::Camera, scene::Name>().each(
         [&](ecs::Entity entity, const scene::Camera&, const scene::Name& name) {
             if (name.name.rfind("bench", 0) != 0)

@@ -88,13 +88,6 @@ Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bou
                  (names.empty() ? "it has none" : names) + ") and not of the form 'px,py,pz,tx,ty,tz,fov'"};
 }
 
-float scene_exposure(ecs::Registry& registry) {
-    float ev100 = 10.0f;
-    registry.view<scene::Exposure>().each(
-        [&](ecs::Entity, const scene::Exposure& exposure) { ev100 = exposure.ev100; });
-    return ev100;
-}
-
 Bounds scene_bounds(ecs::Registry& registry, const scene::MeshStore& meshes) {
     Bounds bounds;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
@@ -106,14 +99,12 @@ Bounds scene_bounds(ecs::Registry& registry, const scene::MeshStore& meshes) {
 }
 
 bool add_default_light(ecs::Registry& registry) {
-    // Emission up to this radiance (W/(sr m2)) is a glowing label or ornament, not the light of a scene.
-    constexpr float faint_glow = 0.75f;
     bool lit = registry.count<scene::AreaLight>() + registry.count<scene::PointLight>() +
                    registry.count<scene::SpotLight>() + registry.count<scene::DirectionalLight>() +
                    registry.count<scene::Environment>() >
                0;
     registry.view<scene::Material>().each(
-        [&](ecs::Entity, const scene::Material& material) { lit = lit || luminance(material.emission) > faint_glow; });
+        [&](ecs::Entity, const scene::Material& material) { lit = lit || luminance(material.emission) > 0.0f; });
     if (lit)
         return false;
     const ecs::Entity sky = registry.create();

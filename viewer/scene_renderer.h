@@ -123,13 +123,10 @@ private:
 // "view", else the first, else one that sees the whole scene.
 Result<scene::CameraView> find_camera(ecs::Registry& registry, const Bounds& bounds, const std::string& wanted);
 
-// EV100 of the scene, or the default.
-float scene_exposure(ecs::Registry& registry);
-
 // Bounds of all mesh instances in world space.
 Bounds scene_bounds(ecs::Registry& registry, const scene::MeshStore& meshes);
 
-// Adds the default light if the registry has none; true if it did.
+// Adds the default light if nothing in the registry emits any; true if it did.
 bool add_default_light(ecs::Registry& registry);
 
 } // namespace sunfleck::viewer

@@ -1,4 +1,5 @@
 #include "editor/command_line/bench_runner.h"
+#include "viewer/exposure.h"
 
 namespace sunfleck::command_line {
 
@@ -14,7 +15,7 @@ Result<std::unique_ptr<Bench>> Bench::create(const BenchOptions& options, const 
     bench->start = bench->request.camera;
     bench->request.width = size.width;
     bench->request.height = size.height;
-    bench->request.ev100 = viewer::scene_exposure(bench->renderer->registry());
+    bench->request.ev100 = viewer::scene_exposure(bench->renderer->registry()).value_or(viewer::default_exposure);
     return bench;
 }
 

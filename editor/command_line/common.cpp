@@ -146,6 +146,10 @@ Json number_json(double value) {
     return Json(value);
 }
 
+std::optional<float> exposure_of(const SceneOptions& options, ecs::Registry& registry) {
+    return options.ev100 ? options.ev100 : viewer::scene_exposure(registry);
+}
+
 Json measurement_json(const gpu::Device& device, const Measurement& measurement) {
     const gi::Report& counters = measurement.counters;
     Json json;
@@ -155,6 +159,7 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
     json["settings"] = settings_json(measurement.settings);
     json["settings"]["width"] = measurement.size.width;
     json["settings"]["height"] = measurement.size.height;
+    json["ev100"] = measurement.ev100;
     json["frames"] = measurement.frame_ms.size();
     json["frame_ms"] = {{"median", median(measurement.frame_ms)},
                         {"p95", percentile(measurement.frame_ms, 0.95)},

@@ -4,11 +4,13 @@
 
 #include "engine/statistics/summary.h"
 #include "gi_module/settings.h"
+#include "viewer/exposure.h"
 #include "viewer/scene_renderer.h"
 
 #include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 
 namespace sunfleck::command_line {
 
@@ -24,7 +26,7 @@ struct SceneOptions {
     std::uint32_t frames = 1;
     std::uint32_t warmup = 3;
     std::map<std::string, std::string> lighting; // lighting settings that have options of their own, as given
-    float ev100 = -1000.0f;                      // the scene's own
+    std::optional<float> ev100;                  // in place of the scene's
     io::ImportOptions import;
     std::string environment; // picture file
     std::string device;
@@ -39,6 +41,9 @@ struct Size {
     std::uint32_t width, height;
 };
 Result<Size> parse_size(const std::string& text);
+
+// What the command line or the scene says; none: the picture decides (viewer::automatic_exposure).
+std::optional<float> exposure_of(const SceneOptions& options, ecs::Registry& registry);
 
 // A path as it is, or the file of a built-in scene of that name.
 Result<std::filesystem::path> find_scene(const std::string& scene);
@@ -65,6 +70,7 @@ struct Measurement {
     gi::Report counters; // of the last frame
     std::map<std::string, std::uint64_t> memory;
     std::uint32_t render_passes = 0;
+    float ev100 = viewer::default_exposure;
 };
 Json measurement_json(const gpu::Device& device, const Measurement& measurement);
 using statistics::median;

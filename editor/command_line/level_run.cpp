@@ -3,6 +3,7 @@
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
 #include "gi_module/technique.h"
+#include "viewer/exposure.h"
 #include "viewer/quality.h"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ Status LevelRun::load(const LevelOptions& options) {
     request_.height = size_.height;
     request_.simulate = false;
     request_.camera.vertical_field_of_view = glm::radians(viewer::usual_field_of_view);
-    request_.ev100 = viewer::scene_exposure(renderer_->registry());
+    request_.ev100 = viewer::scene_exposure(renderer_->registry()).value_or(viewer::default_exposure);
     return {};
 }
 

@@ -57,7 +57,8 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
     add_setting_options(app, options.lighting, {"seed", "bounces"});
-    app.add_option("--ev100", options.ev100, "Exposure value, in place of the scene's")->check(CLI::Range(-16.0, 32.0));
+    app.add_option("--ev100", options.ev100, "EV100, in place of the scene's; where neither is, the picture decides")
+        ->check(CLI::Range(viewer::lowest_exposure, viewer::highest_exposure));
     app.add_option("--environment", options.environment,
                    "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)");
     app.add_option("--scene", options.import.scene, "Which scene of a glTF file, by number (default: the file's own)");
@@ -72,7 +73,7 @@ Command make_render_command(CLI::App& program) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* app = program.add_subcommand("render", "Renders a scene and writes the last frame as PNG or EXR");
     app->footer("Example: sunfleck render four_pillars -o out.png --lights 300 --camera bench_1 --stats out.json\n"
-                "A scene that names no light is lit by a sky of 0.3 W/(sr m2) and a sun of 2 W/m2.");
+                "A scene in which nothing emits light is lit by a sky of 0.3 W/(sr m2) and a sun of 2 W/m2.");
     add_scene_options(*app, options->scene);
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
         ->required();

@@ -95,16 +95,19 @@ Result<ReferenceSettings> settings_of(const ReferenceOptions& options, Size size
 Result<std::uint64_t> hash_of(const ReferenceOptions& options, const std::filesystem::path& path,
                               const ReferenceSettings& settings, std::uint32_t last_frame) {
     SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
-    return hash_text(scene_bytes + "|" + path.string() + "|" + options.scene.size + "|" + options.scene.camera + "|" +
-                     options.view + "|" + std::to_string(settings.bounces) + "|" + std::to_string(settings.seed) + "|" +
-                     std::to_string(last_frame) + "|" + std::to_string(options.scene.motion) + "|" +
-                     std::to_string(options.scene.orbit_degrees) + "|" + std::to_string(options.antialiasing));
+    constexpr const char* method = "2"; // raised with whatever makes the tracer's pictures differ
+    return hash_text(scene_bytes + "|" + method + "|" + path.string() + "|" + options.scene.size + "|" +
+                     options.scene.camera + "|" + options.view + "|" + std::to_string(settings.bounces) + "|" +
+                     std::to_string(settings.seed) + "|" + std::to_string(last_frame) + "|" +
+                     std::to_string(options.scene.motion) + "|" + std::to_string(options.scene.orbit_degrees) + "|" +
+                     std::to_string(options.antialiasing));
 }
 
 // Traces until there are options.samples a pixel; false if the user stopped it. Returns the seconds that it took.
 Result<double> trace(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
                      Accumulation& accumulation, bool& complete) {
-    const PathTracer tracer(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds));
+    const PathTracer tracer(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds),
+                            gi::collect_backgrounds(scene.registry));
     const auto began = std::chrono::steady_clock::now();
     const auto seconds = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -144,15 +147,20 @@ Status reference(const ReferenceOptions& options) {
         SUNFLECK_TRY(save_accumulation(state_file, accumulation, hash));
         return Error{"interrupted; the same command goes on from '" + state_file + "'"};
     }
-    const float ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(scene.registry);
-    SUNFLECK_TRY(io::write_picture(options.output, to_picture(accumulation, kind == io::PictureKind::png,
-                                                              settings.view != ReferenceView::radiance, ev100)));
+    const bool irradiance = settings.view != ReferenceView::radiance;
+    const std::optional<float> said = exposure_of(options.scene, scene.registry);
+    const float ev100 = said ? *said
+                             : viewer::automatic_exposure(
+                                   to_picture(accumulation, false, irradiance, viewer::default_exposure), irradiance);
+    SUNFLECK_TRY(
+        io::write_picture(options.output, to_picture(accumulation, kind == io::PictureKind::png, irradiance, ev100)));
     std::error_code code;
     std::filesystem::remove(state_file, code);
     if (options.statistics.empty())
         return {};
     const Json json = {{"scene", options.scene.scene},
                        {"samples_per_pixel", accumulation.samples},
+                       {"ev100", ev100},
                        {"seconds", seconds},
                        {"rays", accumulation.rays},
                        {"rays_per_second", double(accumulation.rays - rays_before) / seconds}};

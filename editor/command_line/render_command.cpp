@@ -59,8 +59,21 @@ Result<viewer::FrameRequest> make_request(const RenderOptions& options, viewer::
     request.height = size.height;
     set_view(options.view, request);
     request.tone_map = kind == io::PictureKind::png;
-    request.ev100 = options.scene.ev100 > -100.0f ? options.scene.ev100 : viewer::scene_exposure(renderer.registry());
+    request.ev100 = exposure_of(options.scene, renderer.registry()).value_or(viewer::default_exposure);
     return request;
+}
+
+// Of a scene that says no exposure: the last frame decides, and is then drawn again.
+Status expose_automatically(const RenderOptions& options, viewer::SceneRenderer& renderer,
+                            viewer::FrameRequest& request) {
+    if (!request.tone_map || exposure_of(options.scene, renderer.registry()))
+        return {};
+    request.tone_map = false;
+    SUNFLECK_TRY(renderer.render_and_wait(request));
+    SUNFLECK_ASSIGN(const io::Picture radiance, renderer.read_back());
+    request.ev100 = viewer::automatic_exposure(radiance, request.view == shared::view_irradiance);
+    request.tone_map = true;
+    return renderer.render_and_wait(request);
 }
 
 struct RenderedFrames {
@@ -106,6 +119,7 @@ Status write_statistics(const RenderOptions& options, viewer::SceneRenderer& ren
     measurement.scene = options.scene.scene;
     measurement.settings = renderer.lighting().settings();
     measurement.size = {request.width, request.height};
+    measurement.ev100 = request.ev100;
     measurement.memory = device.memory().usage();
     return write_file(options.statistics, measurement_json(device, measurement).dump(2) + "\n");
 }
@@ -141,6 +155,7 @@ Status render(const RenderOptions& options) {
 
     SUNFLECK_ASSIGN(viewer::FrameRequest request, make_request(options, *renderer));
     SUNFLECK_ASSIGN(const RenderedFrames frames, render_frames(options, *renderer, request));
+    SUNFLECK_TRY(expose_automatically(options, *renderer, request));
     SUNFLECK_ASSIGN(const io::Picture picture, renderer->read_back());
     SUNFLECK_TRY(io::write_picture(options.output, picture));
     if (!options.trace.empty())

@@ -4,6 +4,7 @@
 #include "engine/io/gltf.h"
 #include "engine/io/image.h"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
@@ -122,7 +123,7 @@ ImportedMaterial read_material(const tinygltf::Material& source, TextureTable& t
     };
     for (std::size_t c = 0; c < 3; ++c) {
         material.base_colour[int(c)] = factor(pbr.baseColorFactor, c, 1.0, 1.0);
-        material.emission[int(c)] = factor(source.emissiveFactor, c, 0.0, 1.0);
+        material.emission[int(c)] = factor(source.emissiveFactor, c, 0.0, 1e12); // above 1: see note_factors
     }
     material.alpha = factor(pbr.baseColorFactor, 3, 1.0, 1.0);
     material.metallic = clamped(pbr.metallicFactor, 0.0, 1.0);
@@ -153,6 +154,25 @@ ImportedMaterial read_material(const tinygltf::Material& source, TextureTable& t
     result.has_textures = textures.base_colour || textures.metallic_roughness || textures.normal || textures.emission ||
                           textures.transmission;
     return result;
+}
+
+// glTF ends factors at 1. What emits more is meant to, and is kept; what would reflect more is not.
+void note_factors(const std::vector<tinygltf::Material>& materials, std::vector<std::string>& notes) {
+    const auto above_one = [](const std::vector<double>& values) {
+        return std::any_of(values.begin(), values.end(), [](double value) { return value > 1.0; });
+    };
+    std::string emissive, reflecting;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (above_one(materials[i].emissiveFactor))
+            emissive += " " + std::to_string(i);
+        if (above_one(materials[i].pbrMetallicRoughness.baseColorFactor))
+            reflecting += " " + std::to_string(i);
+    }
+    if (!emissive.empty())
+        notes.push_back("emissiveFactor above 1 is kept as it is; material" + emissive);
+    if (!reflecting.empty())
+        notes.push_back("baseColorFactor above 1 would reflect more light than there is, and is taken as 1; material" +
+                        reflecting);
 }
 
 // Each image once, however many textures use it.
@@ -198,6 +218,7 @@ Result<MaterialImport> MaterialImport::read(const GltfDocument& document, const 
     }
     if (occlusion)
         result.notes.push_back("occlusion textures are ignored: the lighting computes occlusion itself");
+    note_factors(document.model.materials, result.notes);
     result.fallback_.material.base_colour = vec3(1.0f);
     result.fallback_.material.metallic = 1.0f;
     result.fallback_.material.specular = true;

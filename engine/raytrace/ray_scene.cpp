@@ -95,6 +95,8 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
         p[k] = vec3(instance.matrix * vec4(mesh.positions[t[k]], 1.0f));
     SurfacePoint point;
     point.position = ray.origin + hit.distance * ray.direction;
+    point.on_triangle = (1.0f - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2];
+    point.offset = ray_offset(glm::max(glm::max(glm::abs(p[0]), glm::abs(p[1])), glm::abs(p[2])));
     vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
     if (glm::determinant(mat3(instance.matrix)) < 0.0f)
         face = -face; // a mirroring transform turns the winding round
@@ -117,6 +119,7 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
     }
     point.material = material_at(instance.surface, implementation_->textures, place, local_position, local_normal);
     point.entity = instance.entity;
+    point.casts_shadow = instance.casts_shadow;
     return point;
 }
 
@@ -138,6 +141,10 @@ std::uint64_t RayScene::static_generation() const {
 }
 std::uint64_t RayScene::generation() const {
     return implementation_->generation;
+}
+float RayScene::ray_offset_anywhere() const {
+    const Bounds& bounds = implementation_->bounds;
+    return bounds.empty() ? 0.0f : ray_offset(glm::max(glm::abs(bounds.minimum), glm::abs(bounds.maximum)));
 }
 float RayScene::static_area() const {
     return implementation_->static_area;

@@ -6,7 +6,9 @@
 #include "engine/scene/scene_changes.h"
 #include "engine/scene/texture_store.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -32,11 +34,24 @@ struct Hit {
 // What stands at a hit, in world space.
 struct SurfacePoint {
     vec3 position{0.0f};
+    // The same by its place in the triangle, which is nearer to the triangle's plane where the ray was long, and how
+    // far above the surface rays that leave it must start, m; see ray_offset.
+    vec3 on_triangle{0.0f};
+    float offset = 0.0f;
     vec3 geometric_normal{0.0f}; // of the triangle's front side
     vec3 shading_normal{0.0f};   // interpolated, on the geometric normal's side
     scene::Material material;    // at this point: with its textures and pattern
     ecs::Entity entity;
+    bool casts_shadow = true; // false: light passes; see scene::ShadowCasting
 };
+
+// How far above a surface rays must start so that rounding does not let them meet it again: some of the spacings
+// between floats of the size of the surface's coordinates (C. Waechter and N. Binder, "A Fast and Robust Method for
+// Avoiding Self-Intersection", Ray Tracing Gems, 2019), whatever the scene's unit and place. `coordinates`: the largest
+// ones.
+inline float ray_offset(vec3 coordinates) {
+    return 0x1p-17f * std::max({std::abs(coordinates.x), std::abs(coordinates.y), std::abs(coordinates.z)});
+}
 
 // Which geometry a ray can meet.
 enum class Scope { everything, static_only };
@@ -64,6 +79,7 @@ public:
                   const scene::TextureStore* textures = nullptr);
 
     std::optional<Hit> closest_hit(const Ray& ray, Scope scope = Scope::everything) const;
+    // Movers that cast no shadow block nothing.
     bool occluded(const Ray& ray, Scope scope = Scope::everything) const;
     // Bit i is set if ray i is occluded. Same answers as `occluded` one by one.
     std::uint32_t occluded(const ShadowPacket& packet, Scope scope = Scope::everything) const;
@@ -78,6 +94,8 @@ public:
     std::uint64_t static_generation() const;
     // Raised when anything changed, movers included.
     std::uint64_t generation() const;
+    // ray_offset for points whose triangle is not known: by the largest coordinate of static geometry, m.
+    float ray_offset_anywhere() const;
     // Area of all static triangles, m2.
     float static_area() const;
 

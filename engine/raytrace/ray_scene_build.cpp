@@ -24,6 +24,11 @@ void filter_holes(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
+// What casts no shadow stops no shadow ray.
+void pass_through(const RTCFilterFunctionNArguments* arguments) {
+    std::fill_n(arguments->valid, arguments->N, 0);
+}
+
 bool same_holes(const SurfaceDescription& a, const SurfaceDescription& b) {
     return a.material.alpha_mode == b.material.alpha_mode &&
            (!a.has_holes() ||
@@ -45,8 +50,8 @@ bool reflects_alike(const SurfaceDescription& x, const SurfaceDescription& y) {
 }
 
 Instance instance_of(const scene::Drawable& drawable) {
-    Instance instance{drawable.entity,    drawable.mesh,    drawable.matrix, normal_matrix(drawable.matrix), {},
-                      drawable.is_static, drawable.revision};
+    Instance instance{drawable.entity,    drawable.mesh,     drawable.matrix,      normal_matrix(drawable.matrix), {},
+                      drawable.is_static, drawable.revision, drawable.casts_shadow};
     instance.surface.material = drawable.material;
     instance.surface.pattern = drawable.pattern;
     instance.surface.textures = drawable.textures;
@@ -84,6 +89,8 @@ void RayScene::Implementation::attach_triangles(RTCScene target, const Instance&
         rtcSetGeometryIntersectFilterFunction(geometry, filter_holes);
         rtcSetGeometryOccludedFilterFunction(geometry, filter_holes);
     }
+    if (!instance.casts_shadow)
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_through);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(target, geometry, id);
     rtcReleaseGeometry(geometry);
@@ -109,10 +116,10 @@ void RayScene::Implementation::build_static() {
 }
 
 RTCScene RayScene::Implementation::mesh_scene(const Instance& instance) {
-    const EntityBits owner = (instance.surface.has_holes() ? instance.entity : ecs::null_entity).bits();
+    const EntityBits owner = (instance.needs_triangles_of_its_own() ? instance.entity : ecs::null_entity).bits();
     MeshScene& stored = mesh_scenes[{instance.mesh, owner}];
-    // A surface with holes is built again whenever the movers are: its filter may have changed.
-    if (!stored.scene || stored.revision != instance.revision || instance.surface.has_holes()) {
+    // What has filters is built again whenever the movers are: they may have changed.
+    if (!stored.scene || stored.revision != instance.revision || instance.needs_triangles_of_its_own()) {
         stored.scene = new_scene();
         stored.revision = instance.revision;
         attach_triangles(stored.scene.get(), instance, mat4(1.0f), 0, mover_filters);
@@ -162,7 +169,7 @@ void RayScene::Implementation::Differences::compare(const Instance* had, const I
         static_emission = static_emission || had->surface.material.emission != now->surface.material.emission;
     } else {
         movers = movers || had->mesh != now->mesh || had->revision != now->revision ||
-                 !same_holes(had->surface, now->surface);
+                 had->casts_shadow != now->casts_shadow || !same_holes(had->surface, now->surface);
     }
 }
 
@@ -202,6 +209,15 @@ RayScene::Implementation::take_over(std::span<const scene::DrawableChange> chang
     return differences;
 }
 
+// Of what stays: what follows from the bounds must not depend on where movers are, or have been.
+void RayScene::Implementation::measure_bounds() {
+    bounds = {};
+    const std::size_t counted = static_count > 0 ? static_count : instances.size();
+    for (std::size_t i = 0; i < counted; ++i)
+        if (instances[i].mesh < meshes->size())
+            bounds.add(transform_bounds(instances[i].matrix, meshes->bounds(instances[i].mesh)));
+}
+
 // In the order of the scene; where no static geometry changed, its instances stay in the order that they were built in.
 void RayScene::Implementation::list_instances(const scene::SceneChanges& changes, bool static_ones) {
     instances.resize(static_ones ? 0 : static_count);
@@ -215,6 +231,8 @@ void RayScene::Implementation::list_instances(const scene::SceneChanges& changes
     place_of.clear();
     for (std::uint32_t i = 0; i < instances.size(); ++i)
         place_of[instances[i].entity] = i;
+    if (static_ones)
+        measure_bounds();
 }
 
 void RayScene::Implementation::rebuild(const Differences& differences) {

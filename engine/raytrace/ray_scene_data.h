@@ -27,6 +27,10 @@ struct Instance {
     SurfaceDescription surface;
     bool is_static = true;
     std::uint32_t revision = 0; // of the mesh
+    bool casts_shadow = true;
+
+    // Others of the same mesh cannot share its triangles.
+    bool needs_triangles_of_its_own() const { return surface.has_holes() || !casts_shadow; }
 };
 
 // What a filter function needs to tell whether a ray goes through a hole.
@@ -59,7 +63,7 @@ struct RayScene::Implementation {
 
     std::unique_ptr<RTCDeviceTy, DeviceRelease> device;
     ScenePointer static_scene, top_scene;
-    // Of movers, by mesh; where a surface has holes, also by entity.
+    // Of movers, by mesh; where a surface has holes or casts no shadow, also by entity.
     std::map<std::pair<std::uint32_t, EntityBits>, MeshScene> mesh_scenes;
     std::vector<std::unique_ptr<HoleFilter>> static_filters, mover_filters;
     std::vector<Instance> instances; // static ones first; geometry id in static_scene = place in this list
@@ -68,6 +72,7 @@ struct RayScene::Implementation {
     std::uint64_t static_generation = 0;
     std::uint64_t generation = 0;
     float static_area = 0.0f;
+    Bounds bounds; // of static geometry, or of movers at first, where there is none
     const scene::MeshStore* meshes = nullptr;
     const scene::TextureStore* textures = nullptr;
     std::unordered_map<ecs::Entity, std::uint32_t> place_of; // in instances
@@ -77,6 +82,7 @@ struct RayScene::Implementation {
     ScenePointer new_scene() const;
     void attach_triangles(RTCScene target, const Instance& instance, const mat4& matrix, std::uint32_t id,
                           std::vector<std::unique_ptr<HoleFilter>>& filters) const;
+    void measure_bounds();
     void build_static();
     RTCScene mesh_scene(const Instance& instance);
     void attach_instance(RTCScene target, const mat4& matrix, std::uint32_t id) const;

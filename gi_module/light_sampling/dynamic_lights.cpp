@@ -1,6 +1,7 @@
 #include "gi_module/light_sampling/dynamic_lights.h"
 
 #include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/transport/reflectance.h"
 
 #include "engine/core/random.h"
 
@@ -172,7 +173,7 @@ void DynamicLights::trace_path(Path& path, LightSample& sample, raytrace::Ray ra
         const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
         if (bounce == 1)
             path.first_hit = point.position;
-        const vec3 albedo = point.material.base_colour;
+        const vec3 albedo = mean_reflectance(point.material);
         path.throughput *= albedo;
         sample.position = offset_from_surface(point.position, normal, rays, raytrace::Scope::static_only);
         sample.normal = shading;

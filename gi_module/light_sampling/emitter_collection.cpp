@@ -61,6 +61,19 @@ Emitter mesh_light(const scene::Mesh& mesh, const scene::Material& material, con
     return emitter;
 }
 
+Emitter environment_of(const ecs::Registry& registry, ecs::Entity entity, const scene::Environment& environment) {
+    Emitter emitter;
+    emitter.kind = EmitterKind::environment;
+    emitter.entity = entity;
+    emitter.radiance = environment.radiance;
+    if (const auto* map = registry.try_get<scene::EnvironmentMap>(entity); map != nullptr && map->image) {
+        emitter.map = *map;
+        emitter.map_scale = environment.radiance;
+        emitter.radiance *= map->image->mean();
+    }
+    return emitter;
+}
+
 // Collects emitters; those that cannot light anything are dropped, with a warning where that is a mistake.
 class Collector {
 public:
@@ -128,14 +141,7 @@ public:
         registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
             if (!environment.lights)
                 return;
-            Emitter emitter;
-            emitter.kind = EmitterKind::environment;
-            emitter.radiance = environment.radiance;
-            if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity); map != nullptr && map->image) {
-                emitter.map = *map;
-                emitter.map_scale = environment.radiance;
-                emitter.radiance *= map->image->mean();
-            }
+            Emitter emitter = environment_of(registry_, entity, environment);
             emitter.flux = 4.0f * pi * pi * radius_ * radius_ * emitter.radiance;
             add(entity, emitter, mat4(1.0f));
         });
@@ -194,6 +200,15 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
     collector.add_punctual_lights();
     collector.add_environments();
     return collector.sorted();
+}
+
+std::vector<Emitter> collect_backgrounds(ecs::Registry& registry) {
+    std::vector<Emitter> result;
+    registry.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
+        if (!environment.lights)
+            result.push_back(environment_of(registry, entity, environment));
+    });
+    return result;
 }
 
 } // namespace sunfleck::gi

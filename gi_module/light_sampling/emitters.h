@@ -60,6 +60,9 @@ struct EmittedPoint {
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
                                       const std::set<ecs::Entity>& keep_dark = {});
 
+// Environments that light nothing and are only seen (scene::Environment::lights), of kind environment.
+std::vector<Emitter> collect_backgrounds(ecs::Registry& registry);
+
 // Uniformly distributed over the emitter's surface (area kinds), or its position. u, v in [0, 1).
 EmittedPoint sample_emitter_point(const Emitter& emitter, float u, float v);
 

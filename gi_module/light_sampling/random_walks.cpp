@@ -1,6 +1,7 @@
 #include "gi_module/light_sampling/light_sampler.h"
 
 #include "gi_module/light_sampling/sample_clusters.h"
+#include "gi_module/transport/reflectance.h"
 
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
@@ -54,7 +55,7 @@ public:
             const vec3 shading_normal = front ? point.shading_normal : -point.shading_normal;
             random.seek(8 + bounce * 4);
             const float u = random.next(), v = random.next(), survive = random.next();
-            if (!reflect(flux, point.material.base_colour, survive))
+            if (!reflect(flux, mean_reflectance(point.material), survive))
                 break;
             LightSample sample;
             sample.position = offset_from_surface(point.position, normal, rays_, scope_);

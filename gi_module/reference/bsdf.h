@@ -1,8 +1,11 @@
 // The scattering functions of the reference path tracer, in the local frame of the shading normal (z up). glTF 2.0
-// appendix B: a Lambertian base under an optional dielectric GGX layer, metals as GGX alone; and smooth glass.
+// appendix B: a Lambertian base under an optional dielectric GGX coat, metals as GGX alone, and mixes of the two; all
+// with the energy that transport/reflectance.h has. And smooth glass.
 #pragma once
 
-#include "engine/scene/components.h"
+#include "gi_module/transport/reflectance.h"
+
+#include <optional>
 
 namespace sunfleck::gi::reference {
 
@@ -15,13 +18,14 @@ struct BsdfSample {
 
 class Bsdf {
 public:
-    explicit Bsdf(const scene::Material& material);
+    // A material that transmits a part of the light is glass by chance: `choice`, in [0, 1), decides.
+    explicit Bsdf(const scene::Material& material, float choice = 0.0f);
     // A Lambertian surface of albedo 1, in place of a material where irradiance is measured.
     static Bsdf white();
 
     bool is_glass() const { return glass_; }
 
-    // f(outgoing, incoming), without the cosine. Both unit, above the surface (z > 0).
+    // f(outgoing, incoming), without the cosine. Both unit, above the surface (z > 0). Reciprocal.
     vec3 evaluate(vec3 outgoing, vec3 incoming) const;
     // Density of sample() for `incoming`, per solid angle.
     float density(vec3 outgoing, vec3 incoming) const;
@@ -33,13 +37,13 @@ public:
 
 private:
     Bsdf() = default;
-    float specular_probability(vec3 outgoing) const;
-    vec3 fresnel(float cosine) const;
+    vec3 microfacets(vec3 outgoing, vec3 incoming) const;
+    vec3 diffuse(vec3 outgoing, vec3 incoming) const;
+    float microfacet_probability(vec3 outgoing) const;
 
-    vec3 diffuse_{0.0f};
-    vec3 normal_reflectance_{0.0f}; // GGX at normal incidence
-    float alpha_ = 1.0f;
-    bool has_specular_ = false;
+    std::optional<GgxLayer> coat_, metal_; // of equal width
+    float metallic_ = 0.0f;
+    vec3 base_{0.0f};
     bool glass_ = false;
     vec3 tint_{1.0f};
     float index_of_refraction_ = 1.5f;

@@ -7,8 +7,6 @@
 namespace sunfleck::gi::reference {
 namespace {
 
-constexpr float shadow_shortening = 1e-4f; // fraction of a shadow ray's length that is left out at its end
-
 // Emitters of mirrored meshes have their second and third corner swapped.
 vec3 textured_emission(const raytrace::RayScene& rays, const Emitter& emitter, const EmittedPoint& point) {
     const bool mirrored = glm::determinant(mat3(emitter.matrix)) < 0.0f;
@@ -26,13 +24,66 @@ struct PathTracer::EmitterSample {
     bool distant = false; // directional light or environment
 };
 
+PathTracer::Whereabouts PathTracer::find(const Emitter& emitter) {
+    Whereabouts result;
+    result.power = luminance(emitter.flux);
+    result.centre = vec3(emitter.matrix[3]);
+    if (emitter.kind == EmitterKind::directional || emitter.kind == EmitterKind::environment) {
+        result.distant = true;
+        result.power /= pi * emitter.scene_radius * emitter.scene_radius;
+    } else if (emitter.kind == EmitterKind::mesh) {
+        Bounds bounds;
+        for (const vec3 corner : emitter.corners)
+            bounds.add(corner);
+        result.centre = bounds.centre();
+        result.radius2 = 0.25f * glm::dot(bounds.extent(), bounds.extent());
+    } else {
+        const vec2 half(0.5f * emitter.width, 0.5f * emitter.height);
+        result.radius2 = glm::dot(half, half) + emitter.radius * emitter.radius;
+    }
+    return result;
+}
+
+// About the irradiance, were nothing in its way: W/m2.
+float PathTracer::importance(const Whereabouts& emitter, vec3 receiver) const {
+    if (emitter.distant)
+        return emitter.power;
+    const vec3 away = emitter.centre - receiver;
+    return emitter.power / (pi * std::max(glm::dot(away, away) + emitter.radius2, 1e-30f));
+}
+
+float PathTracer::total_importance(vec3 receiver) const {
+    float total = 0.0f;
+    for (const Whereabouts& emitter : whereabouts_)
+        total += importance(emitter, receiver);
+    return total;
+}
+
+// Half of the choices go by what an emitter may do to the receiver, so that a small lamp beside it is not left to
+// chance; half by flux alone, since the near one may be behind a wall.
+float PathTracer::chance(std::size_t emitter, vec3 receiver, float total) const {
+    const float by_flux = float(double(luminance(emitters_[emitter].flux)) / total_flux_);
+    return 0.5f * (by_flux + importance(whereabouts_[emitter], receiver) / total);
+}
+
+std::size_t PathTracer::choose_emitter(float number, vec3 receiver, float& probability) const {
+    const float total = total_importance(receiver);
+    for (std::size_t i = 0;; ++i) {
+        probability = chance(i, receiver, total);
+        number -= probability;
+        if (number < 0.0f || i + 1 == emitters_.size())
+            return i;
+    }
+}
+
 // MIS-weighted radiance of the environment along a scattered ray that hit nothing. pdf: of the ray.
-vec3 PathTracer::environment_found(vec3 direction, float pdf, bool delta) const {
+vec3 PathTracer::environment_found(vec3 receiver, vec3 direction, float pdf, bool delta) const {
     vec3 sum(0.0f);
-    for (const Emitter& emitter : environments_) {
+    for (std::size_t i = 0; i < environments_.size(); ++i) {
+        const Emitter& emitter = environments_[i];
         float other = 0.0f;
-        if (emitter.map.image && !delta)
-            other = float(double(luminance(emitter.flux)) / cumulative_.back()) *
+        if (environment_places_[i] != not_sampled && !delta)
+            other = chance(environment_places_[i], receiver, total_importance(receiver)) *
                     emitter.map.image->density(emitter.map.to_image(direction));
         sum += emitter.environment_radiance(direction) * (other > 0.0f ? power_heuristic(pdf, other) : 1.0f);
     }
@@ -40,14 +91,14 @@ vec3 PathTracer::environment_found(vec3 direction, float pdf, bool delta) const 
 }
 
 // Density, per solid angle, with which direct_light would have sampled the point that a scattered ray has hit.
-float PathTracer::emitter_density(const raytrace::SurfacePoint& point, vec3 direction, float distance) const {
+float PathTracer::emitter_density(vec3 receiver, const raytrace::SurfacePoint& point, vec3 direction) const {
     const auto found = area_emitters_.find(point.entity);
     const float cosine = -glm::dot(point.geometric_normal, direction);
     if (found == area_emitters_.end() || cosine <= 0.0f)
         return 0.0f;
-    const Emitter& emitter = emitters_[found->second];
-    const float chosen = float(double(luminance(emitter.flux)) / cumulative_.back());
-    return chosen / emitter.area * distance * distance / cosine;
+    const vec3 way = point.on_triangle - receiver;
+    const float chosen = chance(found->second, receiver, total_importance(receiver));
+    return chosen / emitters_[found->second].area * glm::dot(way, way) / cosine;
 }
 
 // Point, spot and area kinds. `probability`: of the emitter.
@@ -78,18 +129,13 @@ PathTracer::EmitterSample PathTracer::sample_near(const Emitter& emitter, const 
     return sample;
 }
 
-// Emitters are chosen by flux.
 PathTracer::EmitterSample PathTracer::sample_emitter(Path& path, vec3 receiver) const {
     const float choice = path.random.next(), u = path.random.next(), v = path.random.next();
     EmitterSample sample;
     if (emitters_.empty())
         return sample;
-    const double target = double(choice) * cumulative_.back();
-    const std::size_t index = std::min<std::size_t>(
-        std::size_t(std::upper_bound(cumulative_.begin(), cumulative_.end(), target) - cumulative_.begin()),
-        emitters_.size() - 1);
-    const Emitter& emitter = emitters_[index];
-    const float probability = float(double(luminance(emitter.flux)) / cumulative_.back());
+    float probability = 0.0f;
+    const Emitter& emitter = emitters_[choose_emitter(choice, receiver, probability)];
     const EmittedPoint point = sample_emitter_point(emitter, u, v);
     if (emitter.kind != EmitterKind::environment && emitter.kind != EmitterKind::directional)
         return sample_near(emitter, point, probability, receiver);
@@ -118,9 +164,11 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     if (luminance(scattered) <= 0.0f)
         return vec3(0.0f);
     ++path.rays;
-    const vec3 origin = vertex.position + offset_distance * vertex.geometric_normal;
-    const vec3 target = sample.distant ? origin + sample.to_light : sample.position;
-    if (rays_.occluded(raytrace::Ray{origin, target - origin, 0.0f, 1.0f - shadow_shortening, path.salt}))
+    const vec3 origin = vertex.position + vertex.offset * vertex.geometric_normal;
+    const vec3 way = sample.distant ? sample.to_light : sample.position - origin;
+    // Up to the emitter's own surface, as closely as floats know where it is.
+    const float left_out = sample.distant ? 0.0f : rays_.ray_offset_anywhere() / glm::length(way);
+    if (rays_.occluded(raytrace::Ray{origin, way, 0.0f, 1.0f - std::max(left_out, 0x1p-20f), path.salt}))
         return vec3(0.0f);
     const float weight =
         sample.density > 0.0f ? power_heuristic(sample.density, vertex.bsdf.density(vertex.outgoing, incoming)) : 1.0f;

@@ -9,8 +9,6 @@
 
 namespace sunfleck::gi::reference {
 
-inline constexpr float offset_distance = 1e-4f; // m: offset of ray origins from their surface
-
 // Of multiple importance sampling: weight of the technique with density `a` against that with density `b`.
 inline float power_heuristic(float a, float b) {
     const float a2 = a * a, b2 = b * b;
@@ -27,6 +25,7 @@ struct Frame {
 // A path vertex: a surface that scatters light, seen from the side that the path came from.
 struct PathTracer::Vertex {
     vec3 position;
+    float offset; // of ray origins from the surface, m
     vec3 geometric_normal;
     Frame frame;   // of the shading normal
     vec3 outgoing; // local
@@ -38,7 +37,7 @@ struct PathTracer::Vertex {
         const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
         const Frame frame(front ? point.shading_normal : -point.shading_normal);
         const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
-        Vertex vertex{point.position, normal, frame, frame.to_local(-direction), bsdf, front};
+        Vertex vertex{point.on_triangle, point.offset, normal, frame, frame.to_local(-direction), bsdf, front};
         // A shading normal that faces away from the viewer would make the surface black.
         vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
         return vertex;

@@ -10,7 +10,16 @@ namespace sunfleck::gi::reference {
 namespace {
 
 constexpr std::uint32_t roulette_start = 4;        // bounces before Russian roulette
-constexpr std::uint32_t dimensions_per_vertex = 8; // two sets of four: light, scattering
+constexpr std::uint32_t dimensions_per_vertex = 8; // light: 3, kind of surface: 1, scattering: 3, roulette: 1
+
+std::uint32_t first_dimension(std::uint32_t reflections) {
+    return 8 + reflections * dimensions_per_vertex;
+}
+
+// Of a vertex after so many reflections.
+Bsdf bsdf_at(const raytrace::SurfacePoint& point, const RandomSequence& random, std::uint32_t reflections) {
+    return Bsdf(point.material, random.at(first_dimension(reflections) + 3));
+}
 
 // The first surface that the camera sees along the ray; single-sided surfaces are not seen from behind.
 std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& rays, raytrace::Ray ray,
@@ -24,32 +33,36 @@ std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& 
         const raytrace::SurfacePoint point = rays.surface(ray, *hit);
         if (point.material.double_sided || glm::dot(point.geometric_normal, ray.direction) < 0.0f)
             return point;
-        ray.origin = point.position + offset_distance * ray.direction;
+        ray.origin = point.on_triangle - point.offset * point.geometric_normal; // it is seen from behind
     }
     return std::nullopt;
 }
 
 } // namespace
 
-PathTracer::PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters) : rays_(rays) {
-    double total = 0;
+PathTracer::PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters, std::vector<Emitter> backgrounds)
+    : rays_(rays), backgrounds_(std::move(backgrounds)) {
     for (Emitter& emitter : emitters) {
         if (emitter.kind == EmitterKind::environment) {
             environments_.push_back(emitter); // without an image: found by scattered rays only
+            environment_places_.push_back(emitter.map.image ? emitters_.size() : not_sampled);
             if (!emitter.map.image)
                 continue;
         }
-        cumulative_.push_back(total += double(luminance(emitter.flux)));
         if (!emitter.is_delta() && emitter.kind != EmitterKind::environment)
             area_emitters_[emitter.entity] = emitters_.size();
+        whereabouts_.push_back(find(emitter));
+        total_flux_ += double(luminance(emitter.flux));
         emitters_.push_back(std::move(emitter));
     }
 }
 
+// As the camera sees it.
 vec3 PathTracer::environment(vec3 direction) const {
     vec3 sum(0.0f);
-    for (const Emitter& emitter : environments_)
-        sum += emitter.environment_radiance(direction);
+    for (const std::vector<Emitter>* list : {&environments_, &backgrounds_})
+        for (const Emitter& emitter : *list)
+            sum += emitter.environment_radiance(direction);
     return sum;
 }
 
@@ -59,7 +72,7 @@ vec3 PathTracer::emitted(const raytrace::SurfacePoint& point, vec3 direction) co
 
 // Scatters the path at the vertex; false if it ends.
 bool PathTracer::scatter(Path& path, const Vertex& vertex, std::uint32_t reflections, BsdfSample& scattered) const {
-    const std::uint32_t dimension = 8 + reflections * dimensions_per_vertex;
+    const std::uint32_t dimension = first_dimension(reflections);
     path.random.seek(dimension);
     if (vertex.bsdf.is_glass()) {
         path.random.seek(dimension + 4);
@@ -81,6 +94,33 @@ bool PathTracer::survives(Path& path) const {
     return true;
 }
 
+// The surface that a scattered ray reaches; adds what it finds of emitters. Light passes what casts no shadow.
+std::optional<raytrace::SurfacePoint> PathTracer::follow(Path& path, const Vertex& vertex, std::uint32_t reflections,
+                                                         raytrace::Ray ray, const BsdfSample& scattered) const {
+    constexpr int max_layers = 64;
+    for (int layer = 0; layer < max_layers; ++layer) {
+        ++path.rays;
+        const auto hit = rays_.closest_hit(ray);
+        if (!hit) {
+            path.add(reflections, path.throughput * environment_found(vertex.position, ray.direction, scattered.pdf,
+                                                                      scattered.delta));
+            return std::nullopt;
+        }
+        raytrace::SurfacePoint point = rays_.surface(ray, *hit);
+        const vec3 emission = emitted(point, ray.direction);
+        if (luminance(emission) > 0.0f) {
+            const float other = scattered.delta ? 0.0f : emitter_density(vertex.position, point, ray.direction);
+            path.add(reflections,
+                     path.throughput * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
+        }
+        if (point.casts_shadow)
+            return point;
+        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? -1.0f : 1.0f;
+        ray.origin = point.on_triangle + side * point.offset * point.geometric_normal;
+    }
+    return std::nullopt;
+}
+
 void PathTracer::trace(Path& path, Vertex vertex) const {
     // `reflections`: how often light found at the end of the next ray is reflected before it reaches the first vertex.
     for (std::uint32_t reflections = 0;; ++reflections) {
@@ -92,25 +132,13 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
         if (!vertex.bsdf.is_glass() && side <= 0.0f)
             return;
         path.throughput *= scattered.weight;
-        const vec3 origin =
-            vertex.position + (side > 0.0f ? offset_distance : -offset_distance) * vertex.geometric_normal;
-        const raytrace::Ray ray{origin, direction, 0.0f, 1e30f, path.salt};
-        ++path.rays;
-        const auto hit = rays_.closest_hit(ray);
-        if (!hit) {
-            path.add(reflections, path.throughput * environment_found(direction, scattered.pdf, scattered.delta));
+        const vec3 origin = vertex.position + (side > 0.0f ? vertex.offset : -vertex.offset) * vertex.geometric_normal;
+        const auto point = follow(path, vertex, reflections, {origin, direction, 0.0f, 1e30f, path.salt}, scattered);
+        if (!point)
             return;
-        }
-        const raytrace::SurfacePoint point = rays_.surface(ray, *hit);
-        const vec3 emission = emitted(point, direction);
-        if (luminance(emission) > 0.0f) {
-            const float other = scattered.delta ? 0.0f : emitter_density(point, direction, hit->distance);
-            path.add(reflections,
-                     path.throughput * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
-        }
         if (reflections >= path.bounces || (reflections >= roulette_start && !survives(path)))
             return;
-        vertex = Vertex::at(point, direction, Bsdf(point.material));
+        vertex = Vertex::at(*point, direction, bsdf_at(*point, path.random, reflections + 1));
     }
 }
 
@@ -139,7 +167,7 @@ PathTracer::PixelSample PathTracer::pixel_sample(glm::uvec2 pixel, std::uint32_t
     path.skip_indirect = settings.view == ReferenceView::direct;
     if (path.skip_indirect)
         path.bounces = 0;
-    trace(path, Vertex::at(*found, ray.direction, radiance ? Bsdf(found->material) : Bsdf::white()));
+    trace(path, Vertex::at(*found, ray.direction, radiance ? bsdf_at(*found, path.random, 0) : Bsdf::white()));
     result.rays += path.rays;
     // A white Lambertian surface reflects irradiance / pi.
     result.value = radiance ? path.result + emitted(*found, ray.direction) : path.result * pi;
@@ -201,7 +229,8 @@ std::vector<vec3> PathTracer::irradiance_by_bounce(vec3 position, vec3 normal, s
     for (std::uint32_t s = 0; s < samples; ++s) {
         Path path{RandomSequence(SequenceKind::sobol, seed, s), bounces, s};
         path.by_bounce = &sums;
-        trace(path, {position, normal, Frame(normal), vec3(0.0f, 0.0f, 1.0f), Bsdf::white(), true});
+        trace(path, {position, rays_.ray_offset_anywhere(), normal, Frame(normal), vec3(0.0f, 0.0f, 1.0f),
+                     Bsdf::white(), true});
     }
     for (vec3& sum : sums)
         sum *= pi / float(samples);

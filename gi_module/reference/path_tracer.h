@@ -8,6 +8,7 @@
 #include "gi_module/reference/bsdf.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -37,8 +38,9 @@ struct Accumulation {
 
 class PathTracer {
 public:
-    // The registry's emitters and the ray scene must not change while rendering.
-    PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters);
+    // The registry's emitters and the ray scene must not change while rendering. `backgrounds`: see
+    // collect_backgrounds.
+    PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters, std::vector<Emitter> backgrounds = {});
 
     // Adds `count` samples to every pixel. The result depends on neither the number of threads nor on how the samples
     // are split over calls. Returns false, with the accumulation unchanged, if `cancelled` returned true.
@@ -54,19 +56,34 @@ private:
     struct Path;
     struct Vertex;
     struct EmitterSample;
+    static constexpr std::size_t not_sampled = std::size_t(-1);
     struct PixelSample {
         vec3 value{0.0f};
         bool covered = false; // see Accumulation
         std::uint64_t rays = 0;
     };
+    // Where an emitter is, for the choice between emitters.
+    struct Whereabouts {
+        vec3 centre{0.0f};
+        float radius2 = 0.0f; // of a sphere around it, squared, m2
+        float power = 0.0f;   // luminance of its flux, or of what it lends to each m2 where it is distant
+        bool distant = false;
+    };
+    float importance(const Whereabouts& emitter, vec3 receiver) const;
+    float total_importance(vec3 receiver) const;
+    float chance(std::size_t emitter, vec3 receiver, float total) const;
+    std::size_t choose_emitter(float number, vec3 receiver, float& probability) const;
     EmitterSample sample_near(const Emitter& emitter, const EmittedPoint& point, float probability,
                               vec3 receiver) const;
     EmitterSample sample_emitter(Path& path, vec3 receiver) const;
     vec3 direct_light(Path& path, const Vertex& vertex) const;
     vec3 environment(vec3 direction) const;
-    vec3 environment_found(vec3 direction, float pdf, bool delta) const;
+    vec3 environment_found(vec3 receiver, vec3 direction, float pdf, bool delta) const;
     vec3 emitted(const raytrace::SurfacePoint& point, vec3 direction) const;
-    float emitter_density(const raytrace::SurfacePoint& point, vec3 direction, float distance) const;
+    float emitter_density(vec3 receiver, const raytrace::SurfacePoint& point, vec3 direction) const;
+    static Whereabouts find(const Emitter& emitter);
+    std::optional<raytrace::SurfacePoint> follow(Path& path, const Vertex& vertex, std::uint32_t reflections,
+                                                 raytrace::Ray ray, const BsdfSample& scattered) const;
     void trace(Path& path, Vertex vertex) const;
     bool scatter(Path& path, const Vertex& vertex, std::uint32_t reflections, BsdfSample& scattered) const;
     bool survives(Path& path) const;
@@ -74,9 +91,11 @@ private:
                              const ReferenceSettings& settings) const;
 
     const raytrace::RayScene& rays_;
-    std::vector<Emitter> emitters_;  // those that next-event estimation samples
-    std::vector<double> cumulative_; // of their flux
-    std::vector<Emitter> environments_;
+    std::vector<Emitter> emitters_;        // those that next-event estimation samples
+    std::vector<Whereabouts> whereabouts_; // of the same
+    double total_flux_ = 0.0;              // luminance of theirs
+    std::vector<Emitter> environments_, backgrounds_;
+    std::vector<std::size_t> environment_places_; // in emitters_, or none
     std::unordered_map<ecs::Entity, std::size_t> area_emitters_;
 };
 

@@ -23,7 +23,7 @@ float distance_to_others(const raytrace::RayScene& rays, const raytrace::Ray& vi
         vec3 direction = sample_sphere_direction(to_unit_float(numbers.bits(0)), to_unit_float(numbers.bits(1)));
         if (glm::dot(direction, normal) < 0.0f)
             direction = -direction;
-        const raytrace::Ray ray{point.position + 1e-4f * normal, direction, 0.0f, nearest};
+        const raytrace::Ray ray{point.on_triangle + point.offset * normal, direction, 0.0f, nearest};
         if (const auto found = rays.closest_hit(ray))
             nearest = found->distance;
     }

@@ -124,46 +124,6 @@ TEST(Reference, DirectAndIndirectAddUpToIrradiance) {
     EXPECT_GT(means[1], 0.1 * means[2]);
 }
 
-// The density integrates to what sample() does: a Monte Carlo estimate of the albedo by sampling the BSDF agrees with
-// one by uniform directions, and no surface reflects more than it receives.
-TEST(Bsdf, SamplingAgreesWithEvaluationAndEnergyIsConserved) {
-    for (const float roughness : {0.2f, 0.5f, 1.0f})
-        for (const float metallic : {0.0f, 1.0f})
-            for (const bool specular : {false, true})
-                for (const float cosine : {0.2f, 0.7f, 1.0f}) {
-                    scene::Material material;
-                    material.base_colour = vec3(0.9f, 0.5f, 0.1f);
-                    material.roughness = roughness;
-                    material.metallic = metallic;
-                    material.specular = specular;
-                    const Bsdf bsdf(material);
-                    const vec3 outgoing(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-                    double sampled = 0, uniform = 0, density = 0;
-                    const int count = 1 << 16;
-                    for (int i = 0; i < count; ++i) {
-                        const RandomSequence random(SequenceKind::sobol, 1, std::uint32_t(i));
-                        const float numbers[3] = {random.at(0), random.at(1), random.at(2)};
-                        BsdfSample result;
-                        if (bsdf.sample(outgoing, numbers, result) && result.direction.z > 0.0f)
-                            sampled += double(result.weight.x) / count;
-                        const vec3 direction = [&] {
-                            const float z = random.at(0), angle = 2.0f * pi * random.at(1);
-                            const float r = std::sqrt(1.0f - z * z);
-                            return vec3(r * std::cos(angle), r * std::sin(angle), z);
-                        }();
-                        uniform +=
-                            double(bsdf.evaluate(outgoing, direction).x * direction.z) * 2.0 * double(pi) / count;
-                        density += double(bsdf.density(outgoing, direction)) * 2.0 * double(pi) / count;
-                    }
-                    EXPECT_NEAR(sampled, uniform, 0.01) << roughness << metallic << specular << cosine;
-                    EXPECT_LE(sampled, 1.001);
-                    EXPECT_LE(density, 1.01); // what is missing points below the surface
-                    // Reciprocity.
-                    const vec3 other = glm::normalize(vec3(-0.3f, 0.4f, 0.6f));
-                    EXPECT_NEAR(bsdf.evaluate(outgoing, other).y, bsdf.evaluate(other, outgoing).y, 1e-4f);
-                }
-}
-
 TEST(Bsdf, FresnelOfGlassHasItsKnownValues) {
     EXPECT_NEAR(fresnel_dielectric(1.0f, 1.5f), 0.04f, 1e-6f);
     EXPECT_NEAR(fresnel_dielectric(0.0f, 1.5f), 1.0f, 1e-5f);
@@ -198,6 +158,119 @@ TEST(Reference, AGlassBallInAUniformSkyIsInvisible) {
     ASSERT_TRUE(tracer.accumulate(accumulation, camera, settings, 64));
     for (const double sum : accumulation.sums)
         EXPECT_NEAR(sum / 64, 2.0, 0.02);
+}
+
+// A scene that a test describes, and what a path tracer finds in it.
+struct Traced {
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    assets::SceneBuilder builder{registry, meshes};
+    std::unique_ptr<raytrace::RayScene> rays;
+    std::unique_ptr<PathTracer> tracer;
+
+    void finish() {
+        scene::update_world_transforms(registry);
+        rays = raytrace::RayScene::create().value();
+        ASSERT_TRUE(rays->update(registry, meshes));
+        Bounds bounds;
+        registry.view<scene::MeshInstance, scene::WorldTransform>().each(
+            [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
+                bounds.add(transform_bounds(world.matrix, meshes.bounds(instance.mesh)));
+            });
+        tracer = std::make_unique<PathTracer>(*rays, collect_emitters(registry, meshes, bounds),
+                                              collect_backgrounds(registry));
+    }
+    vec3 direct(vec3 position, vec3 normal, std::uint32_t samples, std::uint32_t seed) const {
+        return tracer->irradiance_by_bounce(position, normal, 0, samples, seed)[0];
+    }
+    Accumulation picture(vec3 from, vec3 to, ReferenceView view, std::uint32_t samples) const {
+        scene::CameraView camera;
+        camera.position = from;
+        camera.target = to;
+        ReferenceSettings settings;
+        settings.width = settings.height = 8;
+        settings.view = view;
+        Accumulation accumulation;
+        EXPECT_TRUE(tracer->accumulate(accumulation, camera, settings, samples));
+        return accumulation;
+    }
+};
+
+// Light passes what casts no shadow, whether it is sought (a shadow ray) or found (a scattered ray), and the camera
+// sees it; so do pictures of the real-time path.
+TEST(Reference, LightPassesWhatCastsNoShadow) {
+    for (const bool casts : {true, false}) {
+        Traced scene;
+        scene.builder.quad("floor", vec3(-5, 0, 5), vec3(10, 0, 0), vec3(0, 0, -10), assets::diffuse(vec3(0.5f)));
+        scene.builder.ceiling_light("lamp", vec3(0, 3, 0), 1.0f, 1.0f, vec3(10.0f));
+        const ecs::Entity shade =
+            scene.builder.box("shade", vec3(-1, 1.9f, -1), vec3(1, 2.0f, 1), assets::diffuse(vec3(0.7f, 0.1f, 0.1f)));
+        scene.builder.mover(shade, {});
+        if (!casts)
+            scene.registry.emplace<scene::ShadowCasting>(shade, {false});
+        scene.finish();
+        // A square of 1 m2 at 3 m, both horizontal: E = L A / d2, less 3 % for its size.
+        const float lit = scene.direct(vec3(0.0f), vec3(0, 1, 0), 1024, 1).x;
+        EXPECT_NEAR(lit, casts ? 0.0f : 10.0f / 9.0f, casts ? 0.0f : 0.06f);
+        const Accumulation seen = scene.picture(vec3(0, 2.5f, 0.5f), vec3(0, 2, 0), ReferenceView::radiance, 64);
+        EXPECT_GT(seen.sums[0], 3.0 * seen.sums[1]) << "the shade is red";
+    }
+}
+
+// A sky that is only seen is in pictures and lights nothing.
+TEST(Reference, BackgroundsAreSeenAndLightNothing) {
+    Traced scene;
+    scene.builder.quad("floor", vec3(-5, 0, 5), vec3(10, 0, 0), vec3(0, 0, -10), assets::diffuse(vec3(0.5f)));
+    scene.registry.emplace<scene::Environment>(scene.registry.create(), {vec3(2.0f), false});
+    scene.finish();
+    EXPECT_EQ(scene.direct(vec3(0.0f), vec3(0, 1, 0), 64, 1), vec3(0.0f));
+    for (const double sum : scene.picture(vec3(0, 1, 0), vec3(0, 5, -1), ReferenceView::radiance, 4).sums)
+        EXPECT_EQ(sum, 4.0 * 2.0);
+}
+
+// A small lamp near a receiver lights it nearly alone, although a lamp with 10,000 times its flux shines behind a wall:
+// chosen by flux, it would be found by one of 10,000 samples.
+TEST(Reference, ANearLampIsNotLeftToChance) {
+    Traced scene;
+    scene.builder.box("wall", vec3(2.0f, -50, -50), vec3(2.2f, 50, 50), assets::diffuse(vec3(0.5f)));
+    scene.builder.point_light("far", vec3(40, 0, 0), vec3(10000.0f));
+    scene.builder.point_light("near", vec3(0, 0.5f, 0), vec3(1.0f));
+    scene.finish();
+    const double truth = 4.0; // I / d2
+    double squares = 0.0;
+    constexpr std::uint32_t seeds = 32;
+    for (std::uint32_t seed = 0; seed < seeds; ++seed) {
+        const double error = double(scene.direct(vec3(0.0f), vec3(0, 1, 0), 64, seed).x) / truth - 1.0;
+        squares += error * error / seeds;
+    }
+    EXPECT_LT(std::sqrt(squares), 0.3); // 64 samples, each with a chance of a third or more; by flux: 12
+}
+
+// The same room at any size and place: no ray meets the surface that it leaves, none passes a wall, and the light is
+// the same as long as the lamp's radiance is.
+TEST(Reference, AnyScaleAndPlaceGivesTheSameLight) {
+    const auto room = [](float scale, vec3 place, ReferenceView view) {
+        Traced scene;
+        const vec3 white(0.7f), low = place - scale * vec3(2, 1.2f, 2), high = place + scale * vec3(2, 1.2f, 2);
+        scene.builder.room(low, high, white, white, {white, white, white, white},
+                           {{"lamp", vec2(place.x, place.z), scale, scale, vec3(5.0f)}});
+        scene.builder.box("box", place + scale * vec3(-1, -1.2f, -1), place + scale * vec3(-0.4f, -0.2f, -0.4f),
+                          assets::diffuse(white));
+        scene.finish();
+        return scene.picture(place + scale * vec3(1.5f, 0.3f, 1.5f), place - scale * vec3(0.5f, 0.5f, 0.5f), view, 256);
+    };
+    const auto mean = [](const Accumulation& picture) {
+        double sum = 0.0;
+        for (const double value : picture.sums)
+            sum += value / double(picture.sums.size()) / picture.samples;
+        return sum;
+    };
+    const double unscaled = mean(room(1.0f, vec3(0.0f), ReferenceView::irradiance));
+    for (const float scale : {0.01f, 0.1f, 10.0f, 100.0f, 1000.0f})
+        EXPECT_NEAR(mean(room(scale, vec3(0.0f), ReferenceView::irradiance)) / unscaled, 1.0, 0.003) << scale;
+    for (const float scale : {0.01f, 1.0f, 100.0f})
+        EXPECT_NEAR(mean(room(scale, scale * vec3(400, 20, -300), ReferenceView::irradiance)) / unscaled, 1.0, 0.003)
+            << scale << ", moved";
 }
 
 } // namespace

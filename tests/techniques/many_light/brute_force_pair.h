@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/techniques/many_light/many_light.h"
+#include "viewer/exposure.h"
 
 namespace sunfleck::tests {
 
@@ -30,7 +31,8 @@ struct Pair {
         for (GpuWorld* world : {&brute, &many}) {
             world->request.view = shared::view_final;
             world->request.tone_map = true;
-            world->request.ev100 = viewer::scene_exposure(world->renderer->registry());
+            world->request.ev100 =
+                viewer::scene_exposure(world->renderer->registry()).value_or(viewer::default_exposure);
         }
     }
     // The many-light system has a past: its maps and lists are from earlier frames. Brute force has none.
