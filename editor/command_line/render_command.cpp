@@ -128,6 +128,7 @@ Status write_statistics(const RenderOptions& options, viewer::SceneRenderer& ren
 
 std::vector<std::string> view_names() {
     std::vector<std::string> names;
+    names.reserve(picture_views.size() + gi::debug_views().size());
     for (const auto& [name, view] : picture_views)
         names.push_back(name);
     for (const gi::DebugView* view : gi::debug_views())
