@@ -10,6 +10,7 @@ function(sunfleck_sources target)
     return()
   endif()
   set(batch "")
+  set(files "")
   get_property(number TARGET ${target} PROPERTY SUNFLECK_BATCH_COUNT) # of earlier calls
   if(NOT number)
     set(number 0)

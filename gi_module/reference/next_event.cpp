@@ -107,7 +107,7 @@ PathTracer::EmitterSample PathTracer::sample_near(const Emitter& emitter, const 
     EmitterSample sample;
     sample.position = point.position;
     sample.to_light = point.position - receiver;
-    const float squared = std::max(glm::dot(sample.to_light, sample.to_light), 1e-12f);
+    const float squared = std::max(glm::dot(sample.to_light, sample.to_light), 1e-30f);
     const vec3 direction = sample.to_light / std::sqrt(squared);
     if (emitter.kind == EmitterKind::point) {
         sample.light = emitter.intensity / (squared * probability);

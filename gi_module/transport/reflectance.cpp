@@ -1,6 +1,5 @@
 #include "gi_module/transport/reflectance.h"
 
-#include "engine/core/jobs.h"
 #include "engine/core/random.h"
 #include "gi_module/transport/ggx.h"
 
@@ -26,20 +25,20 @@ float schlick_weight(float cosine) {
     return m * m * m * m * m;
 }
 
+constexpr std::uint32_t samples = 1024;
+using Numbers = std::array<vec2, samples>;
+
 // By sampling visible normals, the mean of G2 / G1.
-Split integrate(float cosine, float alpha) {
-    constexpr std::uint32_t samples = 1024;
+Split integrate(float cosine, float alpha, const Numbers& numbers) {
     const vec3 outgoing(std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)), 0.0f, cosine);
     double at_normal = 0.0, at_grazing = 0.0;
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        const SobolGroup numbers(1, i, 0);
-        const vec3 half =
-            ggx_visible_normal(outgoing, alpha, to_unit_float(numbers.bits(0)), to_unit_float(numbers.bits(1)));
+    const float lambda = ggx_lambda(outgoing, alpha);
+    for (const vec2 number : numbers) {
+        const vec3 half = ggx_visible_normal(outgoing, alpha, number.x, number.y);
         const float towards = glm::dot(outgoing, half);
         const vec3 incoming = 2.0f * towards * half - outgoing;
         if (incoming.z <= 0.0f)
             continue;
-        const float lambda = ggx_lambda(outgoing, alpha);
         const double seen = double((1.0f + lambda) / (1.0f + lambda + ggx_lambda(incoming, alpha)));
         const double weight = double(schlick_weight(towards));
         at_normal += seen * (1.0 - weight);
@@ -82,14 +81,18 @@ private:
         return root * root;
     }
 
+    // On one thread: it runs when a walk first needs it, and a thread that waited here for others might take up another
+    // walk, which needs it, too.
     Tables() {
-        parallel_for_chunks(roughnesses, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t r = begin; r < end; ++r) {
-                const float alpha = std::max(node(r, roughnesses), smallest_alpha);
-                for (std::size_t c = 0; c < cosines; ++c)
-                    directional_[r * cosines + c] = integrate(std::max(node(c, cosines), 1e-4f), alpha);
-            }
-        });
+        Numbers numbers;
+        for (std::uint32_t i = 0; i < samples; ++i) {
+            const SobolGroup group(1, i, 0);
+            numbers[i] = {to_unit_float(group.bits(0)), to_unit_float(group.bits(1))};
+        }
+        for (std::size_t r = 0; r < roughnesses; ++r)
+            for (std::size_t c = 0; c < cosines; ++c)
+                directional_[r * cosines + c] = integrate(std::max(node(c, cosines), 1e-4f),
+                                                          std::max(node(r, roughnesses), smallest_alpha), numbers);
         // What directions receive from all around is as their cosine: 2 * integral of E(m) m dm.
         constexpr std::size_t steps = 4096;
         for (std::size_t r = 0; r < roughnesses; ++r)

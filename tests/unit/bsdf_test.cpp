@@ -26,7 +26,7 @@ scene::Material material_of(float metallic, float roughness, float index = 1.5f,
     return material;
 }
 
-// Share of light from `outgoing` that is reflected, by midpoints of a grid that is finest near the mirror direction.
+// Share of light from `outgoing` that is reflected, by midpoints of a grid of equal solid angles.
 double reflected_share(const Bsdf& bsdf, double cosine) {
     constexpr int rings = 200, sectors = 96;
     double sum = 0.0;
@@ -117,6 +117,46 @@ TEST(Bsdf, SamplesFollowTheirDensity) {
                 EXPECT_LT(statistic, cells * std::pow(1.0 - term + 4.75 * std::sqrt(term), 3.0))
                     << "metallic " << metallic << ", roughness " << roughness << ", cosine " << cosine;
             }
+}
+
+// The density integrates to what sample() does: a Monte Carlo estimate of the albedo by sampling the BSDF agrees with
+// one by uniform directions, and no surface reflects more than it receives.
+TEST(Bsdf, SamplingAgreesWithEvaluationAndEnergyIsConserved) {
+    for (const float roughness : {0.2f, 0.5f, 1.0f})
+        for (const float metallic : {0.0f, 1.0f})
+            for (const bool specular : {false, true})
+                for (const float cosine : {0.2f, 0.7f, 1.0f}) {
+                    scene::Material material;
+                    material.base_colour = vec3(0.9f, 0.5f, 0.1f);
+                    material.roughness = roughness;
+                    material.metallic = metallic;
+                    material.specular = specular;
+                    const Bsdf bsdf(material);
+                    const vec3 outgoing(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+                    double sampled = 0, uniform = 0, density = 0;
+                    const int count = 1 << 16;
+                    for (int i = 0; i < count; ++i) {
+                        const RandomSequence random(SequenceKind::sobol, 1, std::uint32_t(i));
+                        const float numbers[3] = {random.at(0), random.at(1), random.at(2)};
+                        BsdfSample result;
+                        if (bsdf.sample(outgoing, numbers, result) && result.direction.z > 0.0f)
+                            sampled += double(result.weight.x) / count;
+                        const vec3 direction = [&] {
+                            const float z = random.at(0), angle = 2.0f * pi * random.at(1);
+                            const float r = std::sqrt(1.0f - z * z);
+                            return vec3(r * std::cos(angle), r * std::sin(angle), z);
+                        }();
+                        uniform +=
+                            double(bsdf.evaluate(outgoing, direction).x * direction.z) * 2.0 * double(pi) / count;
+                        density += double(bsdf.density(outgoing, direction)) * 2.0 * double(pi) / count;
+                    }
+                    EXPECT_NEAR(sampled, uniform, 0.01) << roughness << metallic << specular << cosine;
+                    EXPECT_LE(sampled, 1.001);
+                    EXPECT_LE(density, 1.01); // what is missing points below the surface
+                    // Reciprocity.
+                    const vec3 other = glm::normalize(vec3(-0.3f, 0.4f, 0.6f));
+                    EXPECT_NEAR(bsdf.evaluate(outgoing, other).y, bsdf.evaluate(other, outgoing).y, 1e-4f);
+                }
 }
 
 TEST(Bsdf, IsReciprocal) {

@@ -197,7 +197,7 @@ struct Traced {
 };
 
 // Light passes what casts no shadow, whether it is sought (a shadow ray) or found (a scattered ray), and the camera
-// sees it; so do pictures of the real-time path.
+// sees it.
 TEST(Reference, LightPassesWhatCastsNoShadow) {
     for (const bool casts : {true, false}) {
         Traced scene;
@@ -243,7 +243,7 @@ TEST(Reference, ANearLampIsNotLeftToChance) {
         const double error = double(scene.direct(vec3(0.0f), vec3(0, 1, 0), 64, seed).x) / truth - 1.0;
         squares += error * error / seeds;
     }
-    EXPECT_LT(std::sqrt(squares), 0.3); // 64 samples, each with a chance of a third or more; by flux: 12
+    EXPECT_LT(std::sqrt(squares), 0.3); // 64 samples, each with a chance of a fifth; by flux: 12
 }
 
 // The same room at any size and place: no ray meets the surface that it leaves, none passes a wall, and the light is
