@@ -201,12 +201,12 @@ TEST(Bsdf, AClosedBallHasTheRadianceOfItsIntegralEquation) {
     constexpr double emission = 1.0;
     scene::Material material = material_of(0.0f, 1.0f, 1.5f, vec3(0.8f));
     const Bsdf bsdf(material);
-    std::vector<double> kernel(steps * steps, 0.0), radiance(steps, emission);
+    std::vector<double> kernel(std::size_t(steps) * steps, 0.0), radiance(steps, emission);
     for (int i = 0; i < steps; ++i)
         for (int k = 0; k < steps; ++k) {
             const double m = (k + 0.5) / steps;
             for (int s = 0; s < sectors; ++s)
-                kernel[std::size_t(i * steps + k)] +=
+                kernel[std::size_t(i) * steps + std::size_t(k)] +=
                     double(bsdf.evaluate(at_angle((i + 0.5) / steps), at_angle(m, 6.28318530717959 * s / sectors)).x) *
                     m * 6.28318530717959 / (double(sectors) * steps);
         }
@@ -214,7 +214,7 @@ TEST(Bsdf, AClosedBallHasTheRadianceOfItsIntegralEquation) {
         std::vector<double> next(steps, emission);
         for (int i = 0; i < steps; ++i)
             for (int k = 0; k < steps; ++k)
-                next[std::size_t(i)] += kernel[std::size_t(i * steps + k)] * radiance[std::size_t(k)];
+                next[std::size_t(i)] += kernel[std::size_t(i) * steps + std::size_t(k)] * radiance[std::size_t(k)];
         radiance = std::move(next);
     }
     ecs::Registry registry;
