@@ -2,7 +2,8 @@
 # Adds sources, which are named relative to the current folder. With SUNFLECK_BATCHES eight of them are compiled as one:
 # what files of a target have in common is parsed and instantiated once for all of them, which takes a third of the
 # time in all. Files of a target may then not define different things under one name, in unnamed namespaces either.
-# Names are relative to the project's root (CMake's own unity builds have whole paths), so that the compiler cache knows
+# Tests of techniques are in batches of their own: without a technique the others are what they were, so that the
+# compiler cache knows them. Names are relative to the project's root (CMake's own unity builds have whole paths), so that the compiler cache knows
 # a batch in every copy of the project.
 function(sunfleck_sources target)
   if(NOT SUNFLECK_BATCHES)
@@ -15,15 +16,21 @@ function(sunfleck_sources target)
   if(NOT number)
     set(number 0)
   endif()
+  set(sources ${ARGN})
+  set(of_techniques ${ARGN})
+  list(FILTER sources EXCLUDE REGEX "^techniques/")
+  list(FILTER of_techniques INCLUDE REGEX "^techniques/")
+  list(LENGTH sources apart)
   list(LENGTH ARGN left)
-  foreach(source IN LISTS ARGN)
+  foreach(source IN LISTS sources of_techniques)
     cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE path)
     cmake_path(RELATIVE_PATH path BASE_DIRECTORY "${PROJECT_SOURCE_DIR}")
     string(APPEND batch "#include \"${path}\"\n")
     list(APPEND files "${source}")
     math(EXPR left "${left} - 1")
+    math(EXPR apart "${apart} - 1")
     list(LENGTH files count)
-    if(count EQUAL 8 OR left EQUAL 0)
+    if(count EQUAL 8 OR left EQUAL 0 OR apart EQUAL 0)
       set(file "${CMAKE_CURRENT_BINARY_DIR}/batches/${target}_${number}.cpp")
       file(CONFIGURE OUTPUT "${file}" CONTENT "${batch}" @ONLY)
       target_sources(${target} PRIVATE "${file}")

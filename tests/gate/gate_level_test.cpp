@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 using tests::Outcome;
 using tests::shell;
 
-// A frame a second, and few pixels.
-const std::string small = " --steps-per-frame 60 --size 96x54";
+// A frame a second, few pixels and few lights.
+const std::string small = " --steps-per-frame 60 --size 96x54 --set lights=20";
 
 class GateLevel : public testing::Test {
 protected:

@@ -12,7 +12,7 @@ if [[ ${SUNFLECK_TEST_SIZE:-short} == long ]]; then
 else
     files=(gi_module/system.cpp engine/gpu/memory.cpp)
     if changed=$(git diff --name-only --diff-filter=d HEAD~1 -- '*.cpp' 2>/dev/null); then
-        mapfile -t -O "${#files[@]}" files < <(grep -v '^tests/embedding\|^tests/fuzz' <<<"$changed" | head -6)
+        mapfile -t -O "${#files[@]}" files < <(grep -v '^tests/embedding\|^tests/fuzz' <<<"$changed" | head -4)
     fi
 fi
 mapfile -t files < <(printf '%s\n' "${files[@]}" | sort -u | grep .)
