@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace sunfleck::gate_simulation {
@@ -12,25 +13,30 @@ constexpr std::size_t recording = 600;  // frames
 constexpr double drift_frames = 2000.0; // over which the drift forgets
 constexpr double spell_frames = 6.0;    // mean length of a slow spell
 constexpr double loading_frames = 150.0;
-constexpr std::size_t turn = 4, turns = 12;
+constexpr std::size_t turn = 6, turns = 16;                    // as gate::PairOptions
 constexpr double process_common = 0.003, process_own = 0.0095; // together 1 %
-constexpr double noise = 0.05;
 
 // Noise of one pass in one frame, as a factor: Student's t with four degrees of freedom (its quantiles have a closed
 // form), and one time in a hundred a hiccup.
-const std::vector<float>& noise_factors() {
-    static const std::vector<float> table = [] {
-        std::vector<float> factors(65536);
-        for (std::size_t i = 0; i < factors.size(); ++i) {
-            const double u = (double(i) + 0.5) / double(factors.size());
-            const double alpha = 4.0 * u * (1.0 - u);
-            const double q = std::cos(std::acos(std::sqrt(alpha)) / 3.0) / std::sqrt(alpha);
-            const double t = std::copysign(2.0 * std::sqrt(std::max(q - 1.0, 0.0)), u - 0.5);
-            const double hiccup = i % 100 == 37 ? -0.5 * std::log((double(i % 997) + 0.5) / 997.0) : 0.0;
-            factors[i] = float(std::exp(std::clamp(noise * t, -1.0, 2.0) + hiccup));
-        }
-        return factors;
-    }();
+std::vector<float> make_noise_factors(double noise) {
+    std::vector<float> factors(65536);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const double u = (double(i) + 0.5) / double(factors.size());
+        const double alpha = 4.0 * u * (1.0 - u);
+        const double q = std::cos(std::acos(std::sqrt(alpha)) / 3.0) / std::sqrt(alpha);
+        const double t = std::copysign(2.0 * std::sqrt(std::max(q - 1.0, 0.0)), u - 0.5);
+        const double hiccup = i % 100 == 37 ? -0.5 * std::log((double(i % 997) + 0.5) / 997.0) : 0.0;
+        factors[i] = float(std::exp(std::clamp(noise * t, -1.0, 2.0) + hiccup));
+    }
+    return factors;
+}
+
+// Made once for each machine's noise.
+const std::vector<float>& noise_factors(double noise) {
+    static std::map<double, std::vector<float>> tables;
+    std::vector<float>& table = tables[noise];
+    if (table.empty())
+        table = make_noise_factors(noise);
     return table;
 }
 
@@ -112,7 +118,7 @@ void World::load() {
 }
 
 void World::draw(const Process& process, std::size_t first_frame, std::size_t count, statistics::ProcessTimes& times) {
-    const std::vector<float>& noises = noise_factors();
+    const std::vector<float>& noises = noise_factors(machine_.noise);
     for (std::size_t frame = first_frame; frame < first_frame + count; ++frame) {
         step(1.0);
         const double work = frame_work_[frame % recording] * std::exp(0.01 * random_.normal());

@@ -15,9 +15,11 @@ struct Machine {
     double drift;      // standard deviation of the slow change of speed
     double slow_share; // of the time spent in slow spells
     double wild_share; // of the rows of a pair in which one process is off by some 20 %
+    double noise;      // of one pass in one frame, as a scale of its distribution
 };
-constexpr Machine quiet = {0.05, 0.0, 0.0}, shared = {0.15, 0.08, 0.0}, crowded = {0.25, 0.20, 0.0},
-                  wild = {0.15, 0.08, 0.10};
+// `bursts` has what was measured on a machine with restless neighbours: the ratio of two frames scatters by a quarter.
+constexpr Machine quiet = {0.05, 0.0, 0.0, 0.05}, shared = {0.15, 0.08, 0.0, 0.05}, crowded = {0.25, 0.20, 0.0, 0.05},
+                  wild = {0.15, 0.08, 0.10, 0.05}, bursts = {0.15, 0.08, 0.0, 0.12};
 
 // How much slower each pass of a build is than base's, as a factor of its time.
 using Build = std::array<double, passes>;
@@ -50,7 +52,7 @@ public:
     void load(); // time passes while a program loads
     // Draws consecutive frames of the recording and appends their times.
     void draw(const Process& process, std::size_t first_frame, std::size_t count, statistics::ProcessTimes& times);
-    // One pair as the gate measures it: both processes alive, in random order, in turns of four frames, A B B A.
+    // One pair as the gate measures it: both processes alive, in random order, in turns, A B B A.
     statistics::PairTimes measure_pair(const Build& base, const Build& head);
 
 private:
