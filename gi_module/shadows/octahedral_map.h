@@ -20,14 +20,16 @@ SHARED_BEGIN
 // w^2 / (65535 * near): 8 mm at 5 m.
 SHARED_CONSTANT float shadow_near = 0.05f;
 
-// xy: map coordinates in [-1, 1]^2; z: 1 / w.
+// xy: map coordinates in [-1, 1]^2; z: 1 / w. Points behind a hemisphere, and the light's own place, get coordinates
+// far outside the map: finite ones, since what is not lit is multiplied by zero.
+SHARED_CONSTANT float shadow_least_w = 1e-12f;
 SHARED_FUNCTION vec3 hemisphere_map(vec3 d) {
-    float inverse_w = 1.0f / (abs(d.x) + abs(d.y) + d.z);
+    float inverse_w = 1.0f / max(abs(d.x) + abs(d.y) + d.z, shadow_least_w);
     return vec3((d.x + d.y) * inverse_w, (d.x - d.y) * inverse_w, inverse_w);
 }
 
 SHARED_FUNCTION vec3 sphere_map(vec3 d) {
-    float inverse_w = 1.0f / (abs(d.x) + abs(d.y) + abs(d.z));
+    float inverse_w = 1.0f / max(abs(d.x) + abs(d.y) + abs(d.z), shadow_least_w);
     vec2 p = vec2(d.x, d.y) * inverse_w;
     if (d.z < 0.0f)
         p = vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));

@@ -179,5 +179,15 @@ TEST(OctahedralMap, FacesEqualTheMapAndMeetOnTheirEdges) {
     }
 }
 
+// Light from behind a sample, or at its very place, is zero times what the map says: that must be a number.
+TEST(OctahedralMap, PointsOutsideOfMapsHaveFinitePlaces) {
+    for (const vec3 d : {vec3(0.0f), vec3(1.0f, 0.0f, -1.0f), vec3(0.0f, -3.0f, -3.0f), vec3(2.0f, 1.0f, -3.0f),
+                         vec3(0.0f, 0.0f, -5.0f), vec3(1.0f, 1.0f, -1e6f)}) {
+        EXPECT_TRUE(is_finite(hemisphere_map(d))) << d.x << " " << d.y << " " << d.z;
+        EXPECT_TRUE(is_finite(sphere_map(d))) << d.x << " " << d.y << " " << d.z;
+        EXPECT_TRUE(is_finite(cone_map(d, 3.0f))) << d.x << " " << d.y << " " << d.z;
+    }
+}
+
 } // namespace
 } // namespace sunfleck::tests
