@@ -40,7 +40,8 @@ struct Context::Implementation {
     gi::Settings settings;
     ecs::Registry registry;
     scene::MeshStore meshes;
-    scene::ChangeTracker change_tracker;
+    scene::ChangeTracker change_tracker{scene::ChangeTracker::Space::of_scene};
+    scene::SceneSpace space; // of the last update
     scene::TextureStore textures;
     std::vector<SharedMaterial> materials;
     std::vector<ecs::Entity> instances, lights;    // null: removed

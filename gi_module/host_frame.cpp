@@ -67,6 +67,9 @@ Status Context::update(const Frame& frame) {
     self.broken = false;
     self.unrecorded = true;
     const scene::SceneChanges& changes = self.change_tracker.collect(self.registry, self.meshes);
+    if (changes.space != self.space)
+        self.view_projection.reset();
+    self.space = changes.space;
     SUNFLECK_TRY(self.rays->update(changes, self.meshes, &self.textures));
     SUNFLECK_TRY(self.gpu_scene->stage_meshes(self.meshes, *self.resources));
     SUNFLECK_TRY(self.gpu_scene->update(changes, self.meshes, *self.resources));
@@ -98,13 +101,17 @@ std::uint32_t Context::surface_id(std::uint32_t instance) const {
 Status Context::record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images) {
     if (!is_camera(camera))
         return Error{"a camera's numbers must be finite, its direction not zero, its field of view between 0 and pi"};
-    const scene::ProjectedCamera projected{scene::make_camera_row(view_of(camera), images.width, images.height), {}};
+    const scene::SceneSpace& space = implementation_->space;
+    const scene::ProjectedCamera projected{scene::make_camera_row(space.view(view_of(camera)), images.width,
+                                                                  images.height, scene::camera_near / space.unit),
+                                           {}};
     return implementation_->record(commands, projected, images);
 }
 
 Status Context::record(VkCommandBuffer commands, const View& view, const FrameImages& images) {
-    SUNFLECK_ASSIGN(const scene::ProjectedCamera projected,
-                    scene::camera_from_matrix(world_to_clip_of(view), images.width, images.height));
+    SUNFLECK_ASSIGN(
+        const scene::ProjectedCamera projected,
+        scene::camera_from_matrix(implementation_->space.to_clip(world_to_clip_of(view)), images.width, images.height));
     return implementation_->record(commands, projected, images);
 }
 

@@ -95,6 +95,8 @@ Status SceneRenderer::update(const FrameRequest& request) {
         const StageTimer timer(stages_, "scene changes");
         scene::deform_meshes(registry_, meshes_);
         changes = &change_tracker_.collect(registry_, meshes_);
+        has_previous_camera_ = has_previous_camera_ && changes->space == space_;
+        space_ = changes->space;
     }
     {
         const StageTimer timer(stages_, "ray scene");
@@ -118,8 +120,12 @@ Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::
     gi::set_measured_times(input, timers_->latest());
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
-    input.view_projection = scene::make_camera_row(request.camera, request.width, request.height).view_projection;
+    input.view_projection = camera_row(request).view_projection;
     return lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input);
+}
+
+shared::CameraRow SceneRenderer::camera_row(const FrameRequest& request) const {
+    return scene::make_camera_row(space_.view(request.camera), request.width, request.height);
 }
 
 Status SceneRenderer::make_output(const FrameRequest& request) {
@@ -155,7 +161,7 @@ void SceneRenderer::draw_samples() {
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
-    shared::CameraRow camera = scene::make_camera_row(request.camera, request.width, request.height);
+    shared::CameraRow camera = camera_row(request);
     if (has_previous_camera_)
         camera.previous_view_projection = previous_camera_.view_projection;
     previous_camera_ = camera;

@@ -58,6 +58,8 @@ public:
     gpu::ShaderLibrary& shader_library() { return *shaders_; }
     gpu::PipelineStore& pipelines() { return *pipelines_; }
     const scene::GpuScene& gpu_scene() const { return *gpu_scene_; }
+    // Where the GPU scene, the ray scene and light samples lie since the last update.
+    const scene::SceneSpace& space() const { return space_; }
 
     // Loads a scene into the (empty) registry. A scene without any light gets the default lighting: a sky of
     // 0.3 W/(sr m2) and a sun of 2 W/m2 from above. `modify` may change the scene before that.
@@ -91,12 +93,14 @@ private:
     Status make_output(const FrameRequest& request);
     Status update_lighting(const FrameRequest& request, const scene::SceneChanges& changes, std::uint64_t completed);
     void draw_samples();
+    shared::CameraRow camera_row(const FrameRequest& request) const;
 
     gpu::Device& device_;
     ecs::Registry registry_;
     scene::MeshStore meshes_;
     scene::TextureStore textures_;
-    scene::ChangeTracker change_tracker_;
+    scene::ChangeTracker change_tracker_{scene::ChangeTracker::Space::of_scene};
+    scene::SceneSpace space_; // of the last update
     std::unique_ptr<gpu::ShaderLibrary> shaders_;
     std::unique_ptr<gpu::PipelineStore> pipelines_;
     std::unique_ptr<gpu::Submission> submission_;

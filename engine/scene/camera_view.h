@@ -22,9 +22,10 @@ struct CameraView {
     }
 };
 
-inline constexpr float camera_near = 0.01f; // m
+inline constexpr float camera_near = 0.01f; // m, or units of the space that the camera is in
 
-inline shared::CameraRow make_camera_row(const CameraView& view, std::uint32_t width, std::uint32_t height) {
+inline shared::CameraRow make_camera_row(const CameraView& view, std::uint32_t width, std::uint32_t height,
+                                         float near_distance = camera_near) {
     const vec3 forward = glm::normalize(view.target - view.position);
     vec3 side = glm::cross(forward, view.up);
     if (glm::length(side) < 1e-6f) // looking along `up`
@@ -46,11 +47,11 @@ inline shared::CameraRow make_camera_row(const CameraView& view, std::uint32_t w
     projection[0][0] = 1.0f / half_width;
     projection[1][1] = 1.0f / half_height;
     projection[2][3] = 1.0f;
-    projection[3][2] = camera_near;
+    projection[3][2] = near_distance;
     shared::CameraRow row;
     row.view_projection = projection * to_view;
     row.previous_view_projection = row.view_projection;
-    row.position = vec4(view.position, camera_near);
+    row.position = vec4(view.position, near_distance);
     row.forward = vec4(forward, float(width));
     row.right = vec4(side * half_width, float(height));
     row.down = vec4(-up * half_height, 0.0f);

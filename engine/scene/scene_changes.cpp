@@ -12,7 +12,8 @@ std::optional<T> optional_of(const ecs::Registry& registry, ecs::Entity entity) 
     return stored != nullptr ? std::optional<T>(*stored) : std::nullopt;
 }
 
-std::optional<Drawable> describe(const ecs::Registry& registry, const MeshStore& meshes, ecs::Entity entity) {
+std::optional<Drawable> describe(const ecs::Registry& registry, const MeshStore& meshes, const SceneSpace& space,
+                                 ecs::Entity entity) {
     const MeshInstance* instance = registry.try_get<MeshInstance>(entity);
     const WorldTransform* world = registry.try_get<WorldTransform>(entity);
     if (instance == nullptr || world == nullptr || instance->mesh >= meshes.size())
@@ -21,8 +22,8 @@ std::optional<Drawable> describe(const ecs::Registry& registry, const MeshStore&
     drawable.entity = entity;
     drawable.mesh = instance->mesh;
     drawable.revision = meshes.revision(instance->mesh);
-    drawable.matrix = world->matrix;
-    drawable.bounds = transform_bounds(world->matrix, meshes.bounds(instance->mesh));
+    drawable.matrix = space.place(world->matrix);
+    drawable.bounds = transform_bounds(drawable.matrix, meshes.bounds(instance->mesh));
     if (const Material* material = registry.try_get<Material>(entity))
         drawable.material = *material;
     if (const MaterialTextures* textures = registry.try_get<MaterialTextures>(entity)) {
@@ -77,7 +78,7 @@ bool DrawableChange::surface_changed() const {
     return before == nullptr || now == nullptr || !same_surface(*before, *now);
 }
 
-ChangeTracker::ChangeTracker() {
+ChangeTracker::ChangeTracker(Space space) : wanted_space_(space) {
     static std::atomic<std::uint64_t> made{0};
     changes_.tracker = ++made;
 }
@@ -94,6 +95,22 @@ const SceneChanges& ChangeTracker::collect(ecs::Registry& registry, const MeshSt
     forced_ = false;
     registry_ = registry.id();
     meshes_ = &meshes;
+    compare_all(registry, meshes);
+    if (wanted_space_ == Space::of_scene && changes_.static_geometry) {
+        const SceneSpace space = find_space(registry, meshes);
+        if (space != space_) {
+            space_ = space;
+            changes_.everything = true;
+            forget(registry);
+            compare_all(registry, meshes);
+        }
+    }
+    seen_ = until;
+    changes_.space = space_;
+    return changes_;
+}
+
+void ChangeTracker::compare_all(ecs::Registry& registry, const MeshStore& meshes) {
     candidates_.clear();
     before_.clear();
     changed_drawables_.clear();
@@ -104,16 +121,24 @@ const SceneChanges& ChangeTracker::collect(ecs::Registry& registry, const MeshSt
         compare_drawable(registry, meshes, entity);
         compare_emitter(registry, meshes, entity);
     }
-    changes_.examined = candidates_.size();
+    changes_.examined += candidates_.size();
     list_all(registry);
-    seen_ = until;
     changes_.drawables = changed_drawables_;
     changes_.meshes = changed_meshes_;
     changes_.emitters = changed_emitters_;
     changes_.all = all_;
     changes_.static_geometry =
         std::any_of(changed_drawables_.begin(), changed_drawables_.end(), changes_static_geometry);
-    return changes_;
+}
+
+SceneSpace ChangeTracker::find_space(ecs::Registry& registry, const MeshStore& meshes) const {
+    std::vector<PlacedMesh> geometry;
+    registry.view<MeshInstance, WorldTransform>().each(
+        [&](ecs::Entity entity, const MeshInstance& instance, const WorldTransform& world) {
+            if (instance.mesh < meshes.size() && is_static(registry, entity))
+                geometry.push_back({instance.mesh, world.matrix});
+        });
+    return space_of(geometry, meshes);
 }
 
 void ChangeTracker::forget(const ecs::Registry& registry) {
@@ -245,7 +270,7 @@ void ChangeTracker::add_users_of_changed_meshes(const ecs::Registry& registry, c
 }
 
 void ChangeTracker::compare_drawable(const ecs::Registry& registry, const MeshStore& meshes, ecs::Entity entity) {
-    std::optional<Drawable> now = describe(registry, meshes, entity);
+    std::optional<Drawable> now = describe(registry, meshes, space_, entity);
     const auto known = drawables_.find(entity);
     if (known == drawables_.end()) {
         if (now)

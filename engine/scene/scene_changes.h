@@ -16,6 +16,7 @@
 #include "engine/scene/components.h"
 #include "engine/scene/environment_map.h"
 #include "engine/scene/mesh_store.h"
+#include "engine/scene/scene_space.h"
 
 #include <deque>
 #include <optional>
@@ -31,8 +32,8 @@ struct Drawable {
     ecs::Entity entity;
     std::uint32_t mesh = 0;
     std::uint32_t revision = 0; // of the mesh
-    mat4 matrix{1.0f};
-    Bounds bounds; // world space
+    mat4 matrix{1.0f};          // to the space of the changes
+    Bounds bounds;              // in that space
     Material material;
     MaterialTextures textures;
     SurfacePattern pattern{PatternKind::none};
@@ -61,9 +62,11 @@ struct DrawableChange {
 struct SceneChanges {
     std::uint64_t tracker = 0; // differs from tracker to tracker
     std::uint64_t serial = 0;  // of this collect, from 1
-    // The first collect, one of another registry or mesh store, or one that was forced: all drawables and emitters are
-    // listed as new, and what was known before is not listed as removed.
+    // The first collect, one of another registry, mesh store or space, or one that was forced: all drawables and
+    // emitters are listed as new, and what was known before is not listed as removed.
     bool everything = false;
+    // Where matrices and bounds lie: the world, unless the tracker finds a space for the scene.
+    SceneSpace space;
     bool order_changed = false; // `all` has other entities, or the same ones in another order
     // Static geometry came, went, moved, or has other holes; or a drawable became static or ceased to be.
     bool static_geometry = false;
@@ -96,7 +99,8 @@ private:
 
 class ChangeTracker {
 public:
-    ChangeTracker();
+    enum class Space { world, of_scene }; // of_scene: space_of(static geometry), found anew whenever that changes
+    explicit ChangeTracker(Space space = Space::world);
     ChangeTracker(const ChangeTracker&) = delete;
     ChangeTracker& operator=(const ChangeTracker&) = delete;
 
@@ -126,6 +130,8 @@ private:
         bool has_light() const { return area || point || spot || directional || environment; }
     };
 
+    void compare_all(ecs::Registry& registry, const MeshStore& meshes);
+    SceneSpace find_space(ecs::Registry& registry, const MeshStore& meshes) const;
     void forget(const ecs::Registry& registry);
     void find_candidates(ecs::Registry& registry, const MeshStore& meshes);
     template <typename T>
@@ -142,6 +148,8 @@ private:
     static std::pair<int, std::uint64_t> order_of(const ecs::Registry& registry);
 
     SceneChanges changes_;
+    Space wanted_space_;
+    SceneSpace space_;
     bool forced_ = false;
     std::uint64_t registry_ = 0;
     const MeshStore* meshes_ = nullptr;

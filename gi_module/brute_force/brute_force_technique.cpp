@@ -72,10 +72,11 @@ Result<std::unique_ptr<Technique>> BruteForceTechnique::create(gpu::Device& devi
     return std::unique_ptr<Technique>(std::move(technique));
 }
 
-Status BruteForceTechnique::update(const SceneView&, Services& services, CellSet cells) {
+Status BruteForceTechnique::update(const SceneView& scene, Services& services, CellSet cells) {
     if (services.input.previous_frame_lost)
         kernel_->drop_last_counts();
     cells_ = cells;
+    unit_ = scene.changes.space.unit;
     batches_ = 0;
     return {};
 }
@@ -111,7 +112,7 @@ Status BruteForceTechnique::add_passes(gpu::FrameGraph& graph, Services& service
 
 void BruteForceTechnique::report(Report& report) const {
     report.add(light_batch_counter, double(batches_));
-    report.set(clamped_flux, kernel_->clamped().flux);
+    report.set(clamped_flux, kernel_->clamped().flux * double(unit_) * double(unit_));
     report.set(clamped_irradiance, kernel_->clamped().mean_irradiance);
 }
 

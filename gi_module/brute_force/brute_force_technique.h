@@ -19,6 +19,7 @@ private:
     std::unique_ptr<BruteForce> kernel_;
     KernelShape standard_shape_; // the fastest known one on this device
     CellSet cells_;
+    float unit_ = 1.0f; // m, of the space that flux is counted in
     std::size_t batches_ = 0;
 };
 

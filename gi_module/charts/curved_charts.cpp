@@ -230,7 +230,8 @@ std::vector<CurvedMesh> curved_parts(ecs::Registry& registry, const scene::MeshS
         [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
             if (patches.instance(entity) == nullptr || has_normal_map(registry, entity))
                 return;
-            parts.push_back(curved_part(entity, meshes[instance.mesh], world.matrix, patches));
+            const mat4 matrix = patches.space().place(world.matrix);
+            parts.push_back(curved_part(entity, meshes[instance.mesh], matrix, patches));
         });
     std::erase_if(parts, [](const CurvedMesh& part) { return part.triangles.empty(); });
     return parts;

@@ -78,8 +78,8 @@ Emitter environment_of(const ecs::Registry& registry, ecs::Entity entity, const 
 class Collector {
 public:
     Collector(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-              const std::set<ecs::Entity>& keep_dark)
-        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark),
+              const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space)
+        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark), space_(space),
           radius_(std::max(0.5f * glm::length(scene.extent()), 1e-3f)),
           centre_(scene.empty() ? vec3(0.0f) : scene.centre()) {}
 
@@ -92,10 +92,10 @@ public:
                 if (light.shape == scene::AreaShape::sphere && instance != nullptr && instance->mesh < meshes_.size()) {
                     scene::Material material;
                     material.emission = light.radiance;
-                    add(entity, mesh_light(meshes_[instance->mesh], material, world.matrix), world.matrix);
+                    add(entity, mesh_light(meshes_[instance->mesh], material, place(world)), place(world));
                     return;
                 }
-                add(entity, area_light(light, world.matrix), world.matrix);
+                add(entity, area_light(light, place(world)), place(world));
             });
     }
 
@@ -106,13 +106,13 @@ public:
                 if (registry_.has<scene::AreaLight>(entity) ||
                     (material.emission == vec3(0.0f) && !keep_dark_.count(entity)) || instance.mesh >= meshes_.size())
                     return;
-                Emitter emitter = mesh_light(meshes_[instance.mesh], material, world.matrix);
+                Emitter emitter = mesh_light(meshes_[instance.mesh], material, place(world));
                 if (const auto* textures = registry_.try_get<scene::MaterialTextures>(entity);
                     textures && textures->emission) {
                     emitter.radiance *= textures->emission_average;
                     emitter.textured = true;
                 }
-                add(entity, std::move(emitter), world.matrix);
+                add(entity, std::move(emitter), place(world));
             });
     }
 
@@ -120,20 +120,20 @@ public:
     void add_punctual_lights() {
         registry_.view<scene::PointLight, scene::WorldTransform>().each(
             [&](ecs::Entity entity, const scene::PointLight& light, const scene::WorldTransform& world) {
-                add(entity, delta_light(EmitterKind::point, light.intensity, 4.0f * pi), world.matrix);
+                add(entity, delta_light(EmitterKind::point, strength(light.intensity), 4.0f * pi), place(world));
             });
         registry_.view<scene::SpotLight, scene::WorldTransform>().each(
             [&](ecs::Entity entity, const scene::SpotLight& light, const scene::WorldTransform& world) {
-                Emitter emitter = delta_light(EmitterKind::spot, light.intensity, 0.0f);
+                Emitter emitter = delta_light(EmitterKind::spot, strength(light.intensity), 0.0f);
                 emitter.outer_cosine = std::cos(light.outer_angle);
                 emitter.inner_cosine = std::max(std::cos(light.inner_angle), emitter.outer_cosine);
-                emitter.flux = spot_solid_angle(emitter) * light.intensity;
-                add(entity, emitter, world.matrix);
+                emitter.flux = spot_solid_angle(emitter) * emitter.intensity;
+                add(entity, emitter, place(world));
             });
         registry_.view<scene::DirectionalLight, scene::WorldTransform>().each(
             [&](ecs::Entity entity, const scene::DirectionalLight& light, const scene::WorldTransform& world) {
                 add(entity, delta_light(EmitterKind::directional, light.irradiance, pi * radius_ * radius_),
-                    world.matrix);
+                    place(world));
             });
     }
 
@@ -154,6 +154,10 @@ public:
     }
 
 private:
+    mat4 place(const scene::WorldTransform& world) const { return space_.place(world.matrix); }
+    // Of a point: irradiance is intensity over the square of a distance, which is counted in units of the space.
+    vec3 strength(vec3 intensity) const { return intensity / (space_.unit * space_.unit); }
+
     static Emitter delta_light(EmitterKind kind, vec3 intensity, float flux_scale) {
         Emitter emitter;
         emitter.kind = kind;
@@ -185,6 +189,7 @@ private:
     ecs::Registry& registry_;
     const scene::MeshStore& meshes_;
     const std::set<ecs::Entity>& keep_dark_;
+    const scene::SceneSpace space_;
     float radius_; // of the scene's bounding sphere
     vec3 centre_;
     std::vector<Emitter> emitters_;
@@ -193,8 +198,8 @@ private:
 } // namespace
 
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-                                      const std::set<ecs::Entity>& keep_dark) {
-    Collector collector(registry, meshes, scene, keep_dark);
+                                      const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space) {
+    Collector collector(registry, meshes, scene, keep_dark, space);
     collector.add_area_lights();
     collector.add_emissive_meshes();
     collector.add_punctual_lights();

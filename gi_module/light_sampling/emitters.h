@@ -3,7 +3,7 @@
 
 #include "engine/scene/components.h"
 #include "engine/scene/environment_map.h"
-#include "engine/scene/mesh_store.h"
+#include "engine/scene/scene_space.h"
 #include "gi_module/transport/light_sample.h"
 
 #include <set>
@@ -16,7 +16,7 @@ enum class EmitterKind { rectangle, disc, sphere, mesh, point, spot, directional
 struct Emitter {
     EmitterKind kind = EmitterKind::point;
     ecs::Entity entity;
-    mat4 matrix{1.0f};                                // local to world
+    mat4 matrix{1.0f};                                // local to the space of the scene
     vec3 radiance{0.0f};                              // area kinds and environment, W/(sr m2)
     vec3 intensity{0.0f};                             // point and spot: W/sr; directional: irradiance W/m2
     float width = 0.0f, height = 0.0f, radius = 0.0f; // world sizes of the analytic shapes
@@ -56,9 +56,10 @@ struct EmittedPoint {
 
 // Emitters in ascending order of entity index. `scene`: box around all geometry. Emitters whose flux is zero, not
 // finite or negative, and those of zero area, are left out; all but those of zero flux are logged once as a warning.
-// Emitters of zero flux are kept if they are in `keep_dark`.
+// Emitters of zero flux are kept if they are in `keep_dark`. `space`: of the results and of `scene`; where its unit is
+// not 1 m, "m" is that unit, and flux and intensity are such that irradiance stays W/m2.
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-                                      const std::set<ecs::Entity>& keep_dark = {});
+                                      const std::set<ecs::Entity>& keep_dark = {}, const scene::SceneSpace& space = {});
 
 // Environments that light nothing and are only seen (scene::Environment::lights), of kind environment.
 std::vector<Emitter> collect_backgrounds(ecs::Registry& registry);

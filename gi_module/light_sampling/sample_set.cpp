@@ -96,9 +96,13 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
         return;
     emitters_as_static_ = request.movers_are_static;
     emitter_bounds_ = bounds;
-    emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
+    const scene::SceneSpace& space = scene.changes.space;
+    if (space != emitter_space_) // flux is counted in other units
+        last_flux_.clear();
+    emitter_space_ = space;
+    emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
     if (find_varying(scene.registry))
-        emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_);
+        emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
     dynamic_emitters_.clear();
     if (request.movers_are_static)
         return;

@@ -40,6 +40,7 @@ struct ProbeScene {
     std::span<const shared::LightRow> rows; // of the samples
     std::span<const scene::DrawItem> draws;
     const VisibilityDatabase* database = nullptr; // null: every sample is tested by rays
+    scene::SceneSpace space{};                    // where all of them lie
 };
 
 // The environments of all points of the grid. Occlusion between samples and points is found by rays; samples that are

@@ -83,7 +83,7 @@ Status TransferLighting::update(const ecs::Registry& registry, const scene::Mesh
         if (item.is_static)
             continue;
         const std::uint32_t mesh = registry.get<scene::MeshInstance>(item.entity).mesh;
-        const mat4 matrix = registry.get<scene::WorldTransform>(item.entity).matrix;
+        const mat4 matrix = scene.space.place(registry.get<scene::WorldTransform>(item.entity).matrix);
         if (!supports(item, matrix, meshes, mesh))
             continue;
         SUNFLECK_ASSIGN(const TransferData* transfer, transfer_of(meshes, mesh, options));

@@ -64,8 +64,12 @@ Status TransferTechnique::update(const SceneView& scene, Services& services, Cel
     options.reflections = own.transfer_reflections;
     options.cache = services.cache_folder;
     options.progress = services.input.progress;
-    const ProbeScene probe{scene.rays, services.samples.samples(), owned_rows(services.samples, cells, owned_rows_),
-                           scene.gpu_scene.draws(), services.visibility};
+    const ProbeScene probe{scene.rays,
+                           services.samples.samples(),
+                           owned_rows(services.samples, cells, owned_rows_),
+                           scene.gpu_scene.draws(),
+                           services.visibility,
+                           scene.changes.space};
     lighting_.clear();
     return lighting_.update(scene.registry, scene.meshes, probe, options, services.resources);
 }

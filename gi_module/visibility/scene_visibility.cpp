@@ -38,6 +38,7 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
     VisibilityOptions options;
     options.patches.levels = settings.patch_levels;
     options.tests = settings.visibility_tests;
+    options.patches.space = input.changes.space;
     const bool same_options =
         options_ && options.patches.levels == options_->patches.levels && options.tests == options_->tests;
     std::span<const std::uint32_t> moved = input.moved_samples;

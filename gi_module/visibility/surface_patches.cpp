@@ -64,11 +64,12 @@ shared::SurfaceChart row_of(const Chart& chart) {
 void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
                            StaticBlockers& blockers) {
     *this = {};
+    space_ = options.space;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
             if (instance.mesh >= meshes.size() || !scene::is_static(registry, entity))
                 return;
-            const FlatMesh flat = find_planar_faces(meshes[instance.mesh], world.matrix);
+            const FlatMesh flat = find_planar_faces(meshes[instance.mesh], space_.place(world.matrix));
             if (!(flat.area > 0.0))
                 return;
             const scene::Material* material = registry.try_get<scene::Material>(entity);

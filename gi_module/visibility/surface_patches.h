@@ -6,6 +6,7 @@
 
 #include "engine/ecs/registry.h"
 #include "engine/scene/components.h"
+#include "engine/scene/scene_space.h"
 #include "gi_module/visibility/static_blockers.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
@@ -46,6 +47,7 @@ struct Chart {
 struct PatchOptions {
     std::uint32_t levels = 3; // of subdivision at most
     float smallest = 0.2f;    // m: patches are not divided below this side
+    scene::SceneSpace space;  // where patches lie
 };
 
 class SurfacePatches {
@@ -54,6 +56,7 @@ public:
     void build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
                StaticBlockers& blockers);
 
+    const scene::SceneSpace& space() const { return space_; }
     const std::vector<SurfacePatch>& nodes() const { return nodes_; }
     const std::vector<Chart>& charts() const { return charts_; }
     std::uint32_t roots() const { return roots_; } // the first nodes are the roots
@@ -85,6 +88,7 @@ private:
 
     std::vector<SurfacePatch> nodes_;
     std::vector<Chart> charts_;
+    scene::SceneSpace space_;
     std::uint32_t roots_ = 0;
     std::vector<shared::SurfaceChart> chart_rows_;
     std::vector<std::uint32_t> cells_;

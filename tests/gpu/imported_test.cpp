@@ -54,6 +54,7 @@ struct Stage : GpuWorld {
     }
     gi::reference::Accumulation reference(gi::reference::ReferenceView view, std::uint32_t samples) {
         const Bounds bounds = viewer::scene_bounds(renderer->registry(), renderer->meshes());
+        EXPECT_TRUE(renderer->rays().update(renderer->registry(), renderer->meshes(), &renderer->textures()));
         const gi::reference::PathTracer tracer(renderer->rays(),
                                                gi::collect_emitters(renderer->registry(), renderer->meshes(), bounds));
         gi::reference::ReferenceSettings settings;
@@ -275,6 +276,7 @@ TEST_F(Imported, SurroundingsLightAsTheirIntegralSays) {
     const io::Picture picture = world.picture();
     const vec4 middle = picture.pixels[picture.pixels.size() / 2 + world.request.width / 2];
     const Bounds bounds = viewer::scene_bounds(world.renderer->registry(), world.renderer->meshes());
+    EXPECT_TRUE(world.renderer->rays().update(world.renderer->registry(), world.renderer->meshes()));
     const gi::reference::PathTracer tracer(
         world.renderer->rays(), gi::collect_emitters(world.renderer->registry(), world.renderer->meshes(), bounds));
     const vec3 truth = tracer.irradiance_by_bounce(vec3(0.0f), vec3(0, 1, 0), 0, 4096, 3)[0];

@@ -25,7 +25,8 @@ protected:
     gi::Settings settings;
 };
 
-std::vector<float> contributions(GpuWorld& world, const scene::CameraView& camera) {
+std::vector<float> contributions(GpuWorld& world, const scene::CameraView& in_world) {
+    const scene::CameraView camera = world.renderer->space().view(in_world);
     gi::System& lighting = world.renderer->lighting();
     const std::vector<std::uint8_t> wanted(lighting.samples().size(), 1);
     return gi::map_contributions(lighting.visibility(), lighting.samples(), lighting.sample_set().rows(),
@@ -34,7 +35,8 @@ std::vector<float> contributions(GpuWorld& world, const scene::CameraView& camer
 }
 
 // By sample: the light that only movers take away, or that falls on movers, summed over the picture's pixels.
-std::vector<float> light_that_movers_decide(GpuWorld& world, const scene::CameraView& camera) {
+std::vector<float> light_that_movers_decide(GpuWorld& world, const scene::CameraView& in_world) {
+    const scene::CameraView camera = world.renderer->space().view(in_world);
     const raytrace::RayScene& rays = world.renderer->rays();
     gi::System& lighting = world.renderer->lighting();
     const shared::CameraRow row = scene::make_camera_row(camera, 160, 120);

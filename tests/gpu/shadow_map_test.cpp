@@ -78,7 +78,8 @@ void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits
     const raytrace::RayScene& rays = world.renderer->rays();
     const SurfaceSampler surface(world);
     // Walls reach 2 mm above the ceiling, where nothing is ever lit or seen.
-    const float ceiling = scene::world_matrix(world.renderer->registry(), first_lamp(world))[3].y;
+    const vec3 lamp(scene::world_matrix(world.renderer->registry(), first_lamp(world))[3]);
+    const float ceiling = world.renderer->space().point(lamp).y;
     RandomSequence random(SequenceKind::pseudo_random, 17, 0);
     const int half = pairs / 2;
     int counted[2] = {}, agreed[2] = {}, agreed_filtered[2] = {}, unexplained = 0;
@@ -164,20 +165,21 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
     const ShadowMapValues maps(world, 16);
     RandomSequence random(SequenceKind::pseudo_random, 23, 0);
     const vec3 up(0, 1, 0);
+    const scene::SceneSpace& space = world.renderer->space();
     int leaks = 0, acne = 0, open_pairs = 0;
     for (int i = 0; i < 200000; ++i) {
         const std::size_t light = std::min(maps.rows.size() - 1, std::size_t(random.next() * float(maps.rows.size())));
         const vec3 inside(1.58f * (random.next() - 0.5f), 0.0f, 1.58f * (random.next() - 0.5f));
-        leaks += maps.look(light, inside, up).lit ? 1 : 0;
+        leaks += maps.look(light, space.point(inside), up).lit ? 1 : 0;
         const vec3 open(11.9f * (random.next() - 0.5f), 0.0f, 11.9f * (random.next() - 0.5f));
-        const vec3 v = vec3(maps.rows[light].position_bound) - open;
+        const vec3 place = space.point(open), v = vec3(maps.rows[light].position_bound) - place;
         // Where the slope limit holds (83 degrees), and not in or near a true shadow.
         if (v.y < 0.13f * (std::abs(v.x) + std::abs(v.y) + std::abs(v.z)) ||
             std::max(std::abs(open.x), std::abs(open.z)) < 1.1f)
             continue;
         bool near_shadow = false;
         for (int k = 0; k < 9 && !near_shadow; ++k) {
-            const vec3 around = open + 0.12f * vec3(float(k % 3 - 1), 0.0f, float(k / 3 - 1)) * glm::length(v) / 3.0f;
+            const vec3 around = place + 0.12f * vec3(float(k % 3 - 1), 0.0f, float(k / 3 - 1)) * glm::length(v) / 3.0f;
             const vec3 from = around + 1e-4f * up;
             near_shadow = world.renderer->rays().occluded(
                 raytrace::Ray{from, vec3(maps.rows[light].position_bound) - from, 0.0f, 0.999f});
@@ -185,7 +187,7 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
         if (near_shadow)
             continue;
         ++open_pairs;
-        acne += maps.look(light, open, up).lit ? 0 : 1;
+        acne += maps.look(light, place, up).lit ? 0 : 1;
     }
     EXPECT_EQ(leaks, 0);
     EXPECT_EQ(acne, 0);

@@ -110,8 +110,9 @@ struct SurfaceSampler {
         registry.view<scene::MeshInstance, scene::WorldTransform>().each(
             [&](ecs::Entity, const scene::MeshInstance& instance, const scene::WorldTransform& transform) {
                 const scene::Mesh& mesh = world.renderer->meshes()[instance.mesh];
+                const mat4 matrix = world.renderer->space().place(transform.matrix);
                 for (std::size_t i = 0; i < mesh.indices.size(); ++i)
-                    corners.push_back(vec3(transform.matrix * vec4(mesh.positions[mesh.indices[i]], 1.0f)));
+                    corners.push_back(vec3(matrix * vec4(mesh.positions[mesh.indices[i]], 1.0f)));
             });
         for (std::size_t i = 0; i < corners.size(); i += 3)
             cumulative.push_back(

@@ -24,7 +24,8 @@ void make_edge(assets::SceneBuilder& scene) {
 // Pixels whose centre shows the entity.
 std::vector<std::size_t> pixels_of(GpuWorld& world, const std::string& name) {
     const ecs::Entity entity = scene::find_by_name(world.renderer->registry(), name);
-    const shared::CameraRow camera = scene::make_camera_row(world.request.camera, width, height);
+    const shared::CameraRow camera =
+        scene::make_camera_row(world.renderer->space().view(world.request.camera), width, height);
     std::vector<std::size_t> pixels;
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
@@ -116,6 +117,7 @@ TEST_F(TransferTest, AKnotInARoomIsAsThePathTracerSees) {
     const std::vector<std::size_t> knot = pixels_of(world, name);
     ASSERT_GT(knot.size(), 80u);
     const Bounds bounds = viewer::scene_bounds(world.renderer->registry(), world.renderer->meshes());
+    EXPECT_TRUE(world.renderer->rays().update(world.renderer->registry(), world.renderer->meshes())); // in the world
     const gi::reference::PathTracer tracer(
         world.renderer->rays(), gi::collect_emitters(world.renderer->registry(), world.renderer->meshes(), bounds));
     gi::reference::ReferenceSettings reference;
