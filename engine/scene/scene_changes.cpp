@@ -274,7 +274,7 @@ void ChangeTracker::compare_drawable(const ecs::Registry& registry, const MeshSt
     const auto known = drawables_.find(entity);
     if (known == drawables_.end()) {
         if (now)
-            changed_drawables_.push_back({entity, nullptr, &drawables_.emplace(entity, std::move(*now)).first->second});
+            changed_drawables_.push_back({entity, nullptr, &drawables_.emplace(entity, *now).first->second});
         return;
     }
     if (now && same_drawable(known->second, *now))
@@ -285,7 +285,7 @@ void ChangeTracker::compare_drawable(const ecs::Registry& registry, const MeshSt
         changed_drawables_.push_back({entity, &before_.back(), nullptr});
         return;
     }
-    known->second = std::move(*now);
+    known->second = *now;
     changed_drawables_.push_back({entity, &before_.back(), &known->second});
 }
 
