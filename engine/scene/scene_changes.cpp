@@ -96,7 +96,7 @@ const SceneChanges& ChangeTracker::collect(ecs::Registry& registry, const MeshSt
     registry_ = registry.id();
     meshes_ = &meshes;
     compare_all(registry, meshes);
-    if (wanted_space_ == Space::of_scene && changes_.static_geometry) {
+    if (wanted_space_ == Space::of_scene && (changes_.everything || changes_.static_geometry)) {
         const SceneSpace space = find_space(registry, meshes);
         if (space != space_) {
             space_ = space;

@@ -99,7 +99,8 @@ private:
 
 class ChangeTracker {
 public:
-    enum class Space { world, of_scene }; // of_scene: space_of(static geometry), found anew whenever that changes
+    // of_scene: space_of(static geometry), computed again whenever that changes.
+    enum class Space { world, of_scene };
     explicit ChangeTracker(Space space = Space::world);
     ChangeTracker(const ChangeTracker&) = delete;
     ChangeTracker& operator=(const ChangeTracker&) = delete;

@@ -19,7 +19,6 @@ struct SceneSpace {
     // From local coordinates to the world -> from local coordinates to this space.
     mat4 place(const mat4& to_world) const;
     vec3 point(vec3 world) const { return (world - origin) / unit; }
-    vec3 world_point(vec3 point) const { return point * unit + origin; }
     CameraView view(CameraView world) const;
     // What leads from the world to clip space -> what leads there from this space.
     glm::dmat4 to_clip(const glm::dmat4& world_to_clip) const;

@@ -66,7 +66,7 @@ TEST(SceneSpace, OnlyFarAwayScenesGetAnOriginOfTheirOwn) {
 TEST(SceneSpace, PointsCamerasAndMatricesAgree) {
     const SceneSpace space{8.0f, vec3(1024.0f, 0.0f, -2048.0f)};
     const vec3 world(1030.0f, 4.0f, -2000.0f);
-    EXPECT_EQ(space.world_point(space.point(world)), world);
+    EXPECT_EQ(space.point(world) * space.unit + space.origin, world);
     const mat4 matrix = placed(world, vec3(2.0f, 3.0f, 4.0f));
     const vec3 corner(0.5f, -0.5f, 0.5f);
     EXPECT_EQ(vec3(space.place(matrix) * vec4(corner, 1.0f)), space.point(vec3(matrix * vec4(corner, 1.0f))));
@@ -116,6 +116,14 @@ TEST(SceneSpace, AnotherSpaceChangesEverything) {
     EXPECT_FALSE(tracker.collect(registry, meshes).everything);
     EXPECT_FALSE(world.collect(registry, meshes).everything);
     EXPECT_EQ(world.collect(registry, meshes).space, SceneSpace());
+    // Another scene, without static geometry: the space of the one before is not its own.
+    ecs::Registry other;
+    register_components(other);
+    const ecs::Entity alone = other.create();
+    other.emplace<MeshInstance>(alone, MeshInstance{0});
+    other.emplace<WorldTransform>(alone, WorldTransform{});
+    other.emplace<Mover>(alone, Mover{});
+    EXPECT_EQ(tracker.collect(other, meshes).space, SceneSpace());
 }
 
 } // namespace
