@@ -31,7 +31,7 @@ struct Hit {
     float u = 0.0f, v = 0.0f; // barycentric weights of the second and third vertex
 };
 
-// What stands at a hit, in world space.
+// What stands at a hit, in the space of the changes that the scene follows (SceneChanges::space): "m" is its unit.
 struct SurfacePoint {
     vec3 position{0.0f};
     // The same by its place in the triangle, which is nearer to the triangle's plane where the ray was long, and how

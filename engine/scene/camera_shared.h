@@ -5,7 +5,7 @@
 SHARED_BEGIN
 
 struct CameraRow {
-    mat4 view_projection;          //   0: world to clip; reverse Z without far plane, y down
+    mat4 view_projection;          //   0: world, or the scene's space, to clip; reverse Z without far plane, y down
     mat4 previous_view_projection; //  64
     vec4 position;                 // 128: xyz; w: near distance, m
     vec4 forward;                  // 144: xyz, ray through the picture's centre; w: picture width in pixels

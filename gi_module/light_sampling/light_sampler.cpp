@@ -9,7 +9,7 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float surface_offset = 1e-3f; // m
+constexpr float surface_offset = 1e-3f; // units of the scene (engine/scene/scene_space.h)
 
 LightSample delta_sample(const Emitter& emitter) {
     LightSample sample;

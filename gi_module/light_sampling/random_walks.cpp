@@ -11,7 +11,7 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr float ray_offset = 1e-4f; // m, off the surface that a walk leaves
+constexpr float ray_offset = 1e-4f; // units of the scene, off the surface that a walk leaves
 constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t max_walks = 1u << 22; // a scene that absorbs this many walks gets fewer samples
 constexpr std::uint64_t max_candidates = 1u << 18;

@@ -16,8 +16,8 @@
 #include "engine/core/shader_language.h"
 SHARED_BEGIN
 
-// Blockers nearer than this (in w) are treated as if at this distance. Determines the quantisation step of 16 bits,
-// w^2 / (65535 * near): 8 mm at 5 m.
+// In units of the scene (engine/scene/scene_space.h). Blockers nearer than this (in w) are treated as if at this
+// distance. Determines the quantisation step of 16 bits, w^2 / (65535 * near): 8 mm at 5 m.
 SHARED_CONSTANT float shadow_near = 0.05f;
 
 // xy: map coordinates in [-1, 1]^2; z: 1 / w. Points behind a hemisphere, and the light's own place, get coordinates
