@@ -46,11 +46,21 @@ Result<GateReport> draw_run(const Samples& samples, const SelfTestOptions& optio
     return report;
 }
 
+// Empty where the gate raised no alarm.
+std::string culprit_of(const GateReport& report) {
+    if (report.verdict != Verdict::slower)
+        return {};
+    return report.culprit ? report.rows[*report.culprit].name : "whole frame";
+}
+
 Status judge_equal(const std::vector<const Triple*>& triples, const SelfTestOptions& options, SelfTestRates& rates) {
     SUNFLECK_ASSIGN(const Samples samples, samples_of(triples, &Triple::same));
     for (; rates.runs < options.runs; ++rates.runs) {
         SUNFLECK_ASSIGN(const GateReport report, draw_run(samples, options, rates.runs));
-        rates.alarms += report.verdict == Verdict::slower;
+        if (const std::string culprit = culprit_of(report); !culprit.empty()) {
+            ++rates.alarms;
+            ++rates.culprits[culprit];
+        }
         rates.fine += report.verdict == Verdict::fine;
         rates.pairs_for_equal += double(report.pairs) / options.runs;
         if (!options.progress(0.5 * rates.runs / options.runs))
@@ -81,9 +91,12 @@ Result<SlowedRates> judge_slowed(const std::string& row, const std::vector<const
     SUNFLECK_TRY(describe_slowed(samples, options, rates));
     for (; rates.runs < options.runs; ++rates.runs) {
         SUNFLECK_ASSIGN(const GateReport report, draw_run(samples, options, rates.runs));
-        rates.caught += report.verdict == Verdict::slower;
+        const std::string culprit = culprit_of(report);
+        rates.caught += !culprit.empty();
         rates.fine += report.verdict == Verdict::fine;
-        rates.named += report.verdict == Verdict::slower && report.culprit && report.rows[*report.culprit].name == row;
+        rates.named += culprit == row;
+        if (!culprit.empty() && culprit != row)
+            ++rates.others[culprit];
         rates.pairs += double(report.pairs) / options.runs;
         if (!options.progress(0.5 + 0.5 * rates.runs / options.runs))
             return Error{"interrupted"};
@@ -134,23 +147,35 @@ Result<SelfTestReport> judge_triples(const std::vector<Triple>& triples, const S
     return report;
 }
 
+namespace {
+
+// "; instead: 'recording (CPU)' 12, ..." with the number of runs of each.
+std::string culprits_text(const char* what, const Culprits& culprits) {
+    std::string text;
+    for (const auto& [row, runs] : culprits)
+        text += (text.empty() ? std::string(what) : ",") + " '" + row + "' " + std::to_string(runs);
+    return text;
+}
+
+} // namespace
+
 std::string self_test_text(const SelfTestReport& report) {
     char line[256];
     const SelfTestRates& equal = report.equal;
     const double runs = equal.runs;
     std::snprintf(line, sizeof line,
-                  "equal builds: %u alarms, %.1f %% fine, %.1f %% cannot tell, of %u runs; %.1f pairs in the mean\n",
+                  "equal builds: %u alarms, %.1f %% fine, %.1f %% cannot tell, of %u runs; %.1f pairs in the mean",
                   equal.alarms, 100.0 * equal.fine / runs, 100.0 * (equal.runs - equal.alarms - equal.fine) / runs,
                   equal.runs, equal.pairs_for_equal);
-    std::string text = line;
+    std::string text = line + culprits_text("; alarms:", equal.culprits) + "\n";
     for (const SlowedRates& rates : report.slowed) {
         std::snprintf(line, sizeof line,
                       "'%s' (%.1f %% of the frame) slower by %.1f %%: caught %.1f %%, named %.1f %%, wrongly fine "
-                      "%.1f %%; %.1f pairs in the mean, %u triples\n",
+                      "%.1f %%; %.1f pairs in the mean, %u triples",
                       rates.row.c_str(), rates.share * 100.0, rates.slow_down * 100.0,
                       100.0 * rates.caught / rates.runs, 100.0 * rates.named / rates.runs,
                       100.0 * rates.fine / rates.runs, rates.pairs, rates.triples);
-        text += line;
+        text += line + culprits_text("; named instead:", rates.others) + "\n";
     }
     text += "what other bytes of the same source do, the ten largest:\n";
     for (std::size_t i = 0; i < std::min<std::size_t>(report.shifts.size(), 10); ++i) {

@@ -3,10 +3,16 @@
 
 #include "editor/gate/triples.h"
 
+#include <map>
+
 namespace sunfleck::gate {
+
+// How often each row was named as the culprit; "whole frame" where only that was slower.
+using Culprits = std::map<std::string, std::uint32_t>;
 
 struct SelfTestRates {
     std::uint32_t runs = 0;
+    Culprits culprits;                  // of the alarms
     std::uint32_t alarms = 0, fine = 0; // of equal builds; the rest could not tell
     double pairs_for_equal = 0.0;       // in the mean
 };
@@ -14,6 +20,7 @@ struct SlowedRates {
     std::string row;
     std::uint32_t triples = 0, runs = 0;
     std::uint32_t caught = 0, named = 0, fine = 0;
+    Culprits others; // that were named instead
     double pairs = 0.0;
     double share = 0.0, slow_down = 0.0; // of the frame; as measured over all triples
 };

@@ -13,13 +13,14 @@ namespace sunfleck::statistics {
 struct GateOptions {
     // Numbers of pairs at which a verdict is sought; each look spends an equal part of the errors below.
     std::vector<std::uint32_t> looks = {12, 20, 32, 48};
-    double tolerance = 0.01;     // slower by no more than this share is no slow-down
-    double slower_error = 0.01;  // probability of "slower", of whichever row, where nothing is beyond the tolerance
-    double harm = 0.05;          // "fine" promises that no judged row is slower by this share
-    double fine_error = 0.05;    // probability of "fine" where one is
-    double judged_share = 0.02;  // "fine" speaks of the rows that take at least this share of the frame
-    double tested_share = 0.002; // rows below this share are listed but not tested
-    std::uint32_t flips = 4095;  // random changes of signs, where there are more than that
+    double tolerance = 0.01;         // slower by no more than this share of the row is no slow-down,
+    double frame_tolerance = 0.0005; // nor by no more than this share of the whole frame
+    double slower_error = 0.01;      // probability of "slower", of whichever row, where nothing is beyond the tolerance
+    double harm = 0.05;              // "fine" promises that no judged row is slower by this share
+    double fine_error = 0.05;        // probability of "fine" where one is
+    double judged_share = 0.02;      // "fine" speaks of the rows that take at least this share of the frame
+    double tested_share = 0.002;     // rows below this share are listed but not tested
+    std::uint32_t flips = 4095;      // random changes of signs, where there are more than that
     std::uint32_t seed = 1;
 };
 
@@ -46,6 +47,7 @@ struct GateRow {
     double ratio = 1.0;                  // head / base
     double low = 0.0, high = 0.0; // its interval at 95 %, not corrected for rows and looks; 0 and infinity: unknown
     double harm_limit = 0.0;      // "fine" needs this below 1 + harm
+    double tolerance = 0.0;       // share by which it may be slower
     double p = 1.0;               // of a slow-down beyond the tolerance, corrected for rows and looks
     double change_ms = 0.0;       // base_ms x (ratio - 1)
     bool slower = false;

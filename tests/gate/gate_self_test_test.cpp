@@ -65,6 +65,22 @@ TEST(GateSelfTest, RatesAreThoseOfTheRuns) {
     EXPECT_FALSE(judge_triples(made_up_triples(5, 1.0), options));
 }
 
+// What was slowed is one pass, what got slower another.
+TEST(GateSelfTest, SaysWhatWasNamedInstead) {
+    SelfTestOptions options;
+    options.runs = tests::by_size(20u, 200u);
+    std::vector<Triple> triples = made_up_triples(30, 1.05);
+    for (Triple& triple : triples)
+        triple.slowed = "shadows";
+    const SelfTestReport report = judge_triples(triples, options).value();
+    EXPECT_EQ(report.slowed[0].caught, options.runs);
+    EXPECT_EQ(report.slowed[0].named, 0u);
+    EXPECT_EQ(report.slowed[0].others, (Culprits{{"light", options.runs}}));
+    const std::string text = self_test_text(report);
+    EXPECT_NE(text.find("named instead: 'light' " + std::to_string(options.runs)), std::string::npos) << text;
+    EXPECT_EQ(text.find("alarms: '"), std::string::npos) << text;
+}
+
 class GateTriples : public testing::Test {
 protected:
     void SetUp() override {

@@ -40,6 +40,13 @@ const std::vector<float>& noise_factors(double noise) {
     return table;
 }
 
+std::vector<std::string> pass_names() {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < passes; ++i)
+        names.push_back("pass " + std::to_string(i));
+    return names;
+}
+
 } // namespace
 
 Build same_build() {
@@ -150,6 +157,20 @@ statistics::PairTimes World::measure_pair(const Build& base, const Build& head) 
         draw(swapped ? base_process : head_process, frame, turn, swapped ? times.base : times.head);
     }
     return times;
+}
+
+statistics::GateReport run_gate(World& world, const Build& base, const Build& head, statistics::GateOptions options) {
+    static const std::vector<std::string> names = pass_names();
+    options.seed = std::uint32_t(world.random().bits());
+    std::vector<statistics::PairSummary> pairs;
+    statistics::GateReport report;
+    report.next_look = options.looks.front();
+    while (report.next_look) {
+        while (pairs.size() < report.next_look)
+            pairs.push_back(statistics::summarise_pair(world.measure_pair(base, head), passes).value());
+        report = statistics::judge(names, pairs, options).value();
+    }
+    return report;
 }
 
 } // namespace sunfleck::gate_simulation

@@ -2,7 +2,7 @@
 // for one pass, and gives each new process a speed of its own. Two programs draw frames on it.
 #pragma once
 
-#include "engine/statistics/pair_summary.h"
+#include "engine/statistics/gate.h"
 
 #include <array>
 #include <cstdint>
@@ -65,5 +65,9 @@ private:
     std::array<double, passes + 1> sensitivity_, slowness_, pass_ms_;
     std::vector<double> frame_work_; // of each frame of the recording
 };
+
+// The gate over pairs of this world, measured up to each look as the tool does it.
+statistics::GateReport run_gate(World& world, const Build& base, const Build& head,
+                                statistics::GateOptions options = {});
 
 } // namespace sunfleck::gate_simulation
