@@ -81,8 +81,7 @@ SHARED_CONSTANT uint maps_storage_buffer = 2u; // storage buffer of packed words
 // sphere map (u = x, v = y) it gives sqrt(t^2/4 + t^2/4 + t^2) = t * sqrt(3/2), and folding does not change that; on a
 // cone's map t / (scale * sqrt(2)). At grazing angles 1/h grows without bound while the light that arrives vanishes; a
 // bias that grew along would leak light under walls. It is limited to a slope of 8 (83 degrees): beyond, a surface may
-// shadow itself a little. So  bias = near * texel_reach * min(1 / h, 8 / w),  and a receiver in a sphere's or a cone's
-// map is lit if  near / w + bias + step >= stored.
+// shadow itself a little. So  bias = near * texel_reach * min(1 / h, 8 / w).
 SHARED_CONSTANT float shadow_slope_limit = 8.0f;
 SHARED_FUNCTION float perspective_bias(float texel_reach, float plane_distance, float inverse_w) {
     return shadow_near * texel_reach * min(1.0f / max(plane_distance, 1e-9f), shadow_slope_limit * inverse_w);
@@ -131,9 +130,34 @@ SHARED_FUNCTION float receiver_centre_value(float inverse_w, vec3 normal, float 
 // Blends the comparisons of the four nearest texels (percentage-closer filtering). Each texel is compared with the
 // receiver's own plane at that texel's centre, which is exact for planes; the plane's value may differ from the
 // receiver's by at most `shadow_filter_window` times the bias above (the four centres are up to three times as far as
-// the nearest), and a quarter of a head-on bias is added for surfaces that are not quite planar.
+// the nearest).
+//
+// A texel has a vote only where it is sure. One that shows something behind the plane lies beyond the edge of the
+// receiver's surface: were the surface there, it would be seen. Of the receiver, which is on the surface, it says
+// nothing: light that passes outside of two walls does not come in where they meet. One that shows something nearer to
+// the light by less than a quarter of a head-on bias shows the other wall of a corner, or a surface that is not quite
+// planar. Where no texel has a vote, the receiver is lit.
 SHARED_CONSTANT float shadow_filter_window = 3.0f;
 SHARED_CONSTANT float shadow_filter_slack = 0.25f;
+
+// Of one texel, which stores `stored`. `on_plane`: value of the receiver's plane at its centre; `receiver`: the value
+// at the receiver; `window`: by how much they may differ; `step`: largest error of a comparison. x: 1 if lit, y: 1 if
+// the texel has a vote.
+SHARED_FUNCTION vec2 texel_vote(float on_plane, float receiver, float window, float slack, float step, float stored) {
+    float held = min(clamp(on_plane, receiver - window, receiver + window), 1.0f) + step;
+    bool lit = held + slack >= stored;
+    bool on_surface = held >= stored && stored >= min(on_plane, 1.0f) - slack - step;
+    return vec2(lit ? 1.0f : 0.0f, on_surface || !lit ? 1.0f : 0.0f);
+}
+
+// Blend of four votes: of the texels at corner + (i & 1, i >> 1), with the receiver at `place`, 0 to 1, between them.
+SHARED_FUNCTION float count_votes(vec4 lit, vec4 vote, vec2 place) {
+    vec4 weight = vec4((1.0f - place.x) * (1.0f - place.y), place.x * (1.0f - place.y), (1.0f - place.x) * place.y,
+                       place.x * place.y) *
+                  vote;
+    float sum = weight.x + weight.y + weight.z + weight.w;
+    return sum > 0.0f ? dot(weight, lit) / sum : 1.0f;
+}
 
 // Directions with w = 1 through map coordinates.
 SHARED_FUNCTION vec3 hemisphere_direction(vec2 uv) {
@@ -151,14 +175,10 @@ SHARED_FUNCTION vec3 cone_direction(vec2 uv, float scale) {
     return vec3(uv.x / scale, uv.y / scale, 1.0f);
 }
 
-// The receiver's value to compare with a texel whose centre has direction `centre`. `receiver`: near / w at the
-// receiver; `normal`: its normal in light space; `plane_distance`: from the light to its plane; `bias`, `texel_reach`:
-// as above.
-SHARED_FUNCTION float receiver_plane_value(float receiver, vec3 normal, float plane_distance, vec3 centre, float bias,
-                                           float texel_reach) {
-    float window = shadow_filter_window * bias;
-    float on_plane = value_on_plane(normal, plane_distance, centre);
-    return clamp(on_plane, receiver - window, receiver + window) + shadow_filter_slack * texel_reach * receiver;
+// Orthographic: value of the receiver's plane at map coordinates that differ from its own by `by`. A length of the
+// map's radius is 1 across the map and 1/2 in the stored value.
+SHARED_FUNCTION float orthographic_plane_value(float receiver, vec3 normal, vec2 by) {
+    return receiver + 0.5f * (normal.x * by.x + normal.y * by.y) / min(normal.z, -1e-6f);
 }
 
 // Largest error of a comparison: half a step of 16-bit depth for the stored value, and rounding of the receiver's.

@@ -1,8 +1,9 @@
 // Light of one sample (VPL) at one pixel: shared by all kernels that evaluate samples per pixel.
 //
-// The including shader first defines, as constants: light_class; maps (maps_none: no shadow test); filtered; map_bits;
-// stale_maps (some maps show movers where they were); simplified_movers (in the maps). And as functions: map_side(),
-// the texels along a map's side; and map_value(slot, texel), the stored value.
+// The including shader first defines, as constants: light_class; maps (maps_none: no shadow test); filtered (0: look-ups
+// of surface samples are not; all others always are, see light_row.h); map_bits; stale_maps (some maps show movers where
+// they were); simplified_movers (in the maps). And as functions: map_side(), the texels along a map's side; and
+// map_value(slot, texel), the stored value.
 #include "gi_module/shadows/octahedral_map.h"
 
 struct Pixel {
@@ -22,40 +23,31 @@ struct LightFactor {
 vec2 map_texel(vec2 uv) { return (uv * 0.5 + 0.5) * map_side(); }
 ivec2 inside_map(ivec2 texel) { return clamp(texel, ivec2(0), ivec2(int(map_side()) - 1)); }
 
-// 1 if nothing in the map is nearer to the light than the receiver, whose value including its bias is `receiver`.
-float nearest_visibility(uint slot, vec2 uv, float receiver) {
-    return receiver >= map_value(slot, inside_map(ivec2(map_texel(uv)))) ? 1.0 : 0.0;
-}
-
-float blend(vec4 lit, vec2 weight) { return mix(mix(lit.x, lit.y, weight.x), mix(lit.z, lit.w, weight.x), weight.y); }
-
-// The same, filtered over the four nearest texels, for the parallel light of an orthographic map.
-float filtered_visibility(uint slot, vec2 uv, float receiver) {
-    const vec2 position = map_texel(uv) - 0.5;
+// Filtered over the four nearest texels. `place`: map coordinates and value of the receiver; `normal`: in light space;
+// `bias`: see octahedral_map.h; `reach`: of a head-on texel, in the stored value; `lag`: see below.
+float filtered_visibility(uint slot, float scale, vec3 place, vec3 normal, float plane_distance, float bias, float reach,
+                          float lag) {
+    const vec2 position = map_texel(place.xy) - 0.5;
     const ivec2 corner = ivec2(floor(position));
-    vec4 lit;
-    [[unroll]] for (int i = 0; i < 4; ++i)
-        lit[i] = receiver >= map_value(slot, inside_map(corner + ivec2(i & 1, i >> 1))) ? 1.0 : 0.0;
-    return blend(lit, position - floor(position));
-}
-
-// The same for other maps: each texel is compared with the receiver's plane at the texel's centre. `scale`: of a cone's
-// map, or 0.
-float filtered_plane_visibility(uint slot, float scale, vec2 uv, float receiver, vec3 light_space_normal,
-                                float plane_distance, float bias, float reach, float lag) {
-    const vec2 position = map_texel(uv) - 0.5;
-    const ivec2 corner = ivec2(floor(position));
-    vec4 lit;
+    vec4 lit, vote;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
-        const vec2 centre_uv = (vec2(texel) + 0.5) / map_side() * 2.0 - 1.0;
-        vec3 centre = hemisphere_direction(centre_uv);
-        if (light_class == light_class_point)
-            centre = scale > 0.0 ? cone_direction(centre_uv, scale) : sphere_direction(centre_uv);
-        const float value = receiver_plane_value(receiver, light_space_normal, plane_distance, centre, bias, reach);
-        lit[i] = min(value, 1.0) + depth_step(map_bits) + lag >= map_value(slot, texel) ? 1.0 : 0.0;
+        const vec2 uv = (vec2(texel) + 0.5) / map_side() * 2.0 - 1.0;
+        float on_plane;
+        if (light_class == light_class_directional) {
+            on_plane = orthographic_plane_value(place.z, normal, uv - place.xy);
+        } else {
+            vec3 centre = hemisphere_direction(uv);
+            if (light_class == light_class_point)
+                centre = scale > 0.0 ? cone_direction(uv, scale) : sphere_direction(uv);
+            on_plane = value_on_plane(normal, plane_distance, centre);
+        }
+        const vec2 result = texel_vote(on_plane, place.z, shadow_filter_window * bias, shadow_filter_slack * reach,
+                                       depth_step(map_bits) + lag, map_value(slot, texel));
+        lit[i] = result.x;
+        vote[i] = result.y;
     }
-    return blend(lit, position - floor(position));
+    return count_votes(lit, vote, position - floor(position));
 }
 
 // Extra bias for a receiver on a mover in a stale map: the mover's old image in the map may be nearer to the light by
@@ -91,18 +83,20 @@ LightFactor unshadowed_factor(LightRow light, Pixel pixel) {
     return factor;
 }
 
-float directional_visibility(LightRow light, Pixel pixel, vec3 v, float along) {
-    const float geometric_cosine = -dot(pixel.geometric_normal, light.normal_offset.xyz);
-    const vec2 uv = vec2(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v)) * light.tangent_scale.w;
-    const float bias = orthographic_bias(map_side(), geometric_cosine);
-    const float lag = stale_maps == 0 ? 0.0 : pixel.on_mover * light.bitangent.w;
-    const float receiver = 1.0 - (along - lag) * light.normal_offset.w + depth_step(map_bits);
-    const uint slot = uint(light.intensity_slot.w);
-    return filtered == 0 ? nearest_visibility(slot, uv, receiver + bias)
-                         : filtered_visibility(slot, uv, receiver + shadow_filter_window * bias);
+vec3 to_light_space(LightRow light, vec3 v) {
+    return vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), dot(light.normal_offset.xyz, v));
 }
 
-// Unfiltered look-up in a hemisphere map: the nearest texel against the receiver's plane at its centre.
+float directional_visibility(LightRow light, Pixel pixel, vec3 d) {
+    const vec3 normal = to_light_space(light, pixel.geometric_normal);
+    const float bias = orthographic_bias(map_side(), -normal.z);
+    const float lag = stale_maps == 0 ? 0.0 : pixel.on_mover * light.bitangent.w * light.normal_offset.w;
+    const vec3 place = vec3(d.xy * light.tangent_scale.w, 1.0 - d.z * light.normal_offset.w);
+    const uint slot = uint(light.intensity_slot.w);
+    return filtered_visibility(slot, 0.0, place, normal, 0.0, bias, orthographic_bias(map_side(), 1.0), lag);
+}
+
+// Unfiltered look-up, which only surface samples have: the nearest texel against the receiver's plane at its centre.
 float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, float plane_distance,
                             float simplified, float lag) {
     const vec2 texel = clamp(floor(map_texel(place.xy)), vec2(0.0), vec2(map_side() - 1.0));
@@ -115,20 +109,17 @@ float hemisphere_visibility(uint slot, vec3 place, vec3 light_space_normal, floa
 // Result of the shadow test, 0 to 1.
 float map_visibility(LightRow light, Pixel pixel) {
     const vec3 v = pixel.position - light.position_bound.xyz;
-    const float along = dot(light.normal_offset.xyz, v);
+    const vec3 d = to_light_space(light, v);
     if (light_class == light_class_directional)
-        return directional_visibility(light, pixel, v, along);
+        return directional_visibility(light, pixel, d);
     const float plane_distance = -dot(pixel.geometric_normal, v);
-    const vec3 d = vec3(dot(light.tangent_scale.xyz, v), dot(light.bitangent.xyz, v), along);
     const bool hemisphere = light_class == light_class_surface;
     const float scale = light.position_bound.w;
     const bool cone = !hemisphere && scale > 0.0;
     const vec3 place = hemisphere ? hemisphere_map(d) : cone ? cone_map(d, scale) : sphere_map(d);
     const float lag = lag_value(light, pixel, place.z);
     const uint slot = uint(light.intensity_slot.w);
-    const vec3 normal = vec3(dot(light.tangent_scale.xyz, pixel.geometric_normal),
-                             dot(light.bitangent.xyz, pixel.geometric_normal),
-                             dot(light.normal_offset.xyz, pixel.geometric_normal));
+    const vec3 normal = to_light_space(light, pixel.geometric_normal);
     if (filtered == 0 && hemisphere)
         return hemisphere_visibility(slot, place, normal, plane_distance,
                                      simplified_movers != 0 ? pixel.on_mover : 0.0, lag);
@@ -136,10 +127,8 @@ float map_visibility(LightRow light, Pixel pixel) {
                         : cone     ? cone_texel_reach(map_side(), scale)
                                    : sphere_texel_reach(map_side());
     const float bias = perspective_bias(reach, plane_distance, place.z);
-    if (filtered == 0)
-        return nearest_visibility(slot, place.xy,
-                                  min(shadow_near * place.z, 1.0) + bias + depth_step(map_bits) + lag);
-    return filtered_plane_visibility(slot, scale, place.xy, shadow_near * place.z, normal, plane_distance, bias, reach, lag);
+    const float receiver = shadow_near * place.z;
+    return filtered_visibility(slot, scale, vec3(place.xy, receiver), normal, plane_distance, bias, reach * receiver, lag);
 }
 
 // `test`: whether to test against the shadow map; a constant at each call, so that it is folded.

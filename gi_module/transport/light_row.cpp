@@ -35,7 +35,7 @@ std::uint32_t light_class(SampleKind kind) {
 }
 
 bool filters_maps(bool filter_requested, std::uint32_t light_class) {
-    return filter_requested || light_class == shared::light_class_point;
+    return filter_requested || light_class != shared::light_class_surface;
 }
 
 shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, float geometry_bound,

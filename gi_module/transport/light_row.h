@@ -8,8 +8,8 @@ namespace sunfleck::gi {
 
 std::uint32_t light_class(SampleKind kind);
 
-// Whether shadow map look-ups of a class are filtered (percentage-closer): if requested, and always for point and spot
-// lights, whose light is a single sample, so that every texel of the shadow's edge would be visible.
+// Whether shadow map look-ups of a class are filtered (percentage-closer): if requested, and always for point, spot and
+// directional lights, whose light is a single sample, so that every texel of the shadow's edge would be visible.
 bool filters_maps(bool filter_requested, std::uint32_t light_class);
 
 // `geometry_bound`: see transport/clamping.h. `scene`: box around all geometry; the map of a directional sample covers

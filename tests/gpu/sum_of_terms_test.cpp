@@ -163,6 +163,14 @@ const Scene all_scenes[] = {{"furnace", assets::make_furnace, {0}, 1.52e-4, 1.52
                             {"arena", assets::make_arena, {0, 20, 75}, 1.36e-5, 1.73e-4},
                             {"lantern_house", assets::make_lantern_house, {0, 20, 75}, 1.21e-4, 1.42e-4}};
 
+// With the light of two techniques a share of it is smoother than all is, so more of it is interpolated.
+double allowed_baseline_error(const Scene& scene, const Assignment& assignment, const gi::Settings& settings) {
+    constexpr double shared_light = 5e-5;
+    if (uses_partial_technique(settings))
+        return scene.with_transfer;
+    return assignment.plan.empty() ? scene.many_light : std::max(scene.many_light, shared_light);
+}
+
 class SumOfTermsOf : public SumOfTerms, public testing::WithParamInterface<std::size_t> {
 protected:
     void check(const Scene& scene, const Assignment& assignment, std::uint64_t step) {
@@ -179,7 +187,7 @@ protected:
             return;
         }
         const double off = error(picture(settings, step), picture(baseline(), step));
-        EXPECT_LE(off, uses_partial_technique(settings) ? scene.with_transfer : scene.many_light) << what;
+        EXPECT_LE(off, allowed_baseline_error(scene, assignment, settings)) << what;
         std::printf(", to the baseline %.1e\n", off);
     }
 };

@@ -63,15 +63,19 @@ struct ShadowMapValues {
             result.bias = std::min(held, 1.0f) + depth_step(bits) - result.receiver;
         }
         result.lit = result.receiver + result.bias >= value(light, result.texel);
-        const vec2 corner = glm::floor(at - 0.5f), weight = at - 0.5f - corner;
-        result.filtered = 0.0f;
+        const vec2 corner = glm::floor(at - 0.5f);
+        vec4 filter_lit(0.0f), vote(0.0f);
         for (int i = 0; i < 4; ++i) {
             const ivec2 t = glm::clamp(ivec2(corner) + ivec2(i & 1, i >> 1), ivec2(0), ivec2(int(resolution) - 1));
-            const float held = receiver_plane_value(shadow_near * result.place.z, to_light_space(light, normal),
-                                                    -glm::dot(normal, v), centre(light, t), bias, reach);
-            if (std::min(held, 1.0f) + depth_step(bits) >= value(light, t))
-                result.filtered += (i & 1 ? weight.x : 1.0f - weight.x) * (i >> 1 ? weight.y : 1.0f - weight.y);
+            const float receiver = shadow_near * result.place.z;
+            const float on_plane =
+                value_on_plane(to_light_space(light, normal), -glm::dot(normal, v), centre(light, t));
+            const vec2 said = texel_vote(on_plane, receiver, shadow_filter_window * bias,
+                                         shadow_filter_slack * reach * receiver, depth_step(bits), value(light, t));
+            filter_lit[i] = said.x;
+            vote[i] = said.y;
         }
+        result.filtered = count_votes(filter_lit, vote, at - 0.5f - corner);
         return result;
     }
     float value(std::size_t light, ivec2 texel) const {
