@@ -131,6 +131,7 @@ Result<SelfTestReport> judge_triples(const std::vector<Triple>& triples, const S
                      std::to_string(least_triples) + " are needed to draw runs from"};
     SelfTestReport report;
     std::vector<const Triple*> all;
+    all.reserve(triples.size());
     for (const Triple& triple : triples)
         all.push_back(&triple);
     SUNFLECK_TRY(judge_equal(all, options, report.equal));
