@@ -78,6 +78,7 @@ Status describe_slowed(const Samples& samples, const SelfTestOptions& options, S
         if (row.name == rates.row) {
             rates.share = row.share;
             rates.slow_down = row.ratio - 1.0;
+            rates.below_harm = rates.slow_down < options.gate.harm;
         }
     return {};
 }
@@ -177,6 +178,9 @@ std::string self_test_text(const SelfTestReport& report) {
                       100.0 * rates.caught / rates.runs, 100.0 * rates.named / rates.runs,
                       100.0 * rates.fine / rates.runs, rates.pairs, rates.triples);
         text += line + culprits_text("; named instead:", rates.others) + "\n";
+        if (rates.below_harm)
+            text +=
+                "  less than the gate promises to see: the amount of extra work is too small on this machine today\n";
     }
     text += "what other bytes of the same source do, the ten largest:\n";
     for (std::size_t i = 0; i < std::min<std::size_t>(report.shifts.size(), 10); ++i) {

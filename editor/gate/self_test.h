@@ -23,6 +23,7 @@ struct SlowedRates {
     Culprits others; // that were named instead
     double pairs = 0.0;
     double share = 0.0, slow_down = 0.0; // of the frame; as measured over all triples
+    bool below_harm = false;             // slower by less than the gate promises to see: the rates prove nothing
 };
 // What another build of the same source does to a row.
 struct RebuildShift {

@@ -62,6 +62,10 @@ TEST(GateSelfTest, RatesAreThoseOfTheRuns) {
     EXPECT_EQ(none.slowed[0].caught, 0u);
     EXPECT_EQ(none.slowed[0].fine, options.runs);
     EXPECT_NE(self_test_text(none).find("caught 0.0 %"), std::string::npos);
+    // Nor is anything proven of 5 % by it.
+    EXPECT_TRUE(none.slowed[0].below_harm);
+    EXPECT_NE(self_test_text(none).find("less than the gate promises"), std::string::npos);
+    EXPECT_FALSE(judge_triples(made_up_triples(30, 1.06), options).value().slowed[0].below_harm);
     EXPECT_FALSE(judge_triples(made_up_triples(5, 1.0), options));
 }
 
