@@ -151,7 +151,8 @@ double allowed_sum_error(const gi::Settings& settings) {
 }
 
 // Relative MSE of irradiance to the baseline, of the many-light system alone and with transfer for movers, as measured
-// before light was a sum of terms (60 samples, 96x72 pixels, maps of 128 texels; greatest of the steps), plus 2 %.
+// before light was a sum of terms (60 samples, 96x72 pixels, maps of 128 texels; greatest of the steps), plus 2 %. That
+// of lantern_house with transfer was measured again when filtered shadows of lamps came nearer to those of finer maps.
 struct Scene {
     const char* name;
     void (*make)(assets::SceneBuilder&);
@@ -161,7 +162,7 @@ struct Scene {
 const Scene all_scenes[] = {{"furnace", assets::make_furnace, {0}, 1.52e-4, 1.52e-4},
                             {"four_pillars", assets::make_four_pillars, {0, 20, 75}, 7.15e-5, 2.75e-3},
                             {"arena", assets::make_arena, {0, 20, 75}, 1.36e-5, 1.73e-4},
-                            {"lantern_house", assets::make_lantern_house, {0, 20, 75}, 1.21e-4, 1.42e-4}};
+                            {"lantern_house", assets::make_lantern_house, {0, 20, 75}, 1.21e-4, 1.76e-4}};
 
 // With the light of two techniques a share of it is smoother than all is, so more of it is interpolated.
 double allowed_baseline_error(const Scene& scene, const Assignment& assignment, const gi::Settings& settings) {
