@@ -3,8 +3,8 @@
 # what files of a target have in common is parsed and instantiated once for all of them, which takes a third of the
 # time in all. Files of a target may then not define different things under one name, in unnamed namespaces either.
 # Tests of techniques are in batches of their own: without a technique the others are what they were, so that the
-# compiler cache knows them. Names are relative to the project's root (CMake's own unity builds have whole paths), so that the compiler cache knows
-# a batch in every copy of the project.
+# compiler cache knows them. Names are relative to the project's root (CMake's own unity builds have whole paths), so that
+# it knows a batch in every copy of the project.
 function(sunfleck_sources target)
   if(NOT SUNFLECK_BATCHES)
     target_sources(${target} PRIVATE ${ARGN})
