@@ -52,8 +52,7 @@ TEST_F(Anywhere, InAnotherUnitEveryBitIsTheSame) {
             ScaledWorld unscaled(make, 1.0f);
             const io::Picture expected = draw(unscaled, few_lights(technique));
             EXPECT_GT(mean(expected), 0.01);
-            for (const float scale :
-                 tests::by_size(std::vector{0x1p-7f, 0x1p10f}, {0x1p-7f, 0x1p-3f, 0x1p3f, 0x1p10f})) {
+            for (const float scale : tests::by_size(std::vector{0x1p-7f}, {0x1p-7f, 0x1p-3f, 0x1p3f, 0x1p10f})) {
                 ScaledWorld world(make, scale);
                 const io::Picture picture = draw(world, few_lights(technique));
                 EXPECT_LE(difference(picture, expected), 1e-6) << name << ", " << technique << " at " << scale;
@@ -72,14 +71,16 @@ TEST_F(Anywhere, AnyScaleAndPlaceHasTheSameLight) {
         settings.lights = 1000;
         ScaledWorld unscaled(make, 1.0f);
         const double expected = mean(draw(unscaled, settings));
+        // The short size scales and moves at once.
+        const vec3 place = long_size() ? vec3(0.0f) : vec3(7.0f, 1.0f, -6.0f);
         for (const float scale : tests::by_size(std::vector{0.01f}, {0.01f, 0.1f, 10.0f, 100.0f, 1000.0f})) {
-            ScaledWorld world(make, scale);
+            ScaledWorld world(make, scale, place);
             EXPECT_NEAR(mean(draw(world, settings)) / expected, 1.0, 0.003) << name << " at " << scale;
         }
-        ScaledWorld moved(make, 1.0f, vec3(700.0f, 100.0f, -600.0f));
-        EXPECT_NEAR(mean(draw(moved, settings)) / expected, 1.0, 0.003) << name << ", moved";
         if (!long_size())
             break;
+        ScaledWorld moved(make, 1.0f, vec3(700.0f, 100.0f, -600.0f));
+        EXPECT_NEAR(mean(draw(moved, settings)) / expected, 1.0, 0.003) << name << ", moved";
     }
 }
 

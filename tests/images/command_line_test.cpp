@@ -246,7 +246,7 @@ std::vector<fs::path> sample_models() {
     return files;
 }
 
-// The short size renders every third of the valid ones.
+// The short size renders every twelfth of the valid ones.
 TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
     const std::vector<fs::path> files = sample_models();
     if (files.size() < 20)
@@ -261,7 +261,7 @@ TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
                 invalid = true;
                 problem = what;
             }
-        if (!invalid && thin_out && valid++ % 6 != 0)
+        if (!invalid && thin_out && valid++ % 12 != 0)
             continue;
         const Outcome outcome =
             tool("render '" + file.string() + "' -o model.png --validation --set patch_levels=1" + small);

@@ -47,14 +47,14 @@ gi::Settings truth_settings(std::uint32_t lights, std::uint32_t seed) {
 
 // Mean irradiance within 1 %, relative MSE at most 0.01, over all pixels: also those near other surfaces, where the
 // bound of the geometry term acts. (Four thousand paths a pixel leave about 0.1 % of noise in the reference's mean.)
-// The short size has an eighth of the paths, 0.3 % of noise, and a quarter of the samples; the bounds, several times
+// The short size has an eighth of the paths, 0.3 % of noise, and an eighth of the samples; the bounds, several times
 // what is measured, hold for it, too.
 void expect_truth(void (*make)(assets::SceneBuilder&)) {
     GpuWorld world(make, "view");
     world.request.width = 80;
     world.request.height = 60;
     const io::Picture truth = reference_picture(world, by_size(512u, 4096u));
-    world.set(truth_settings(by_size(4096u, 16384u), 1));
+    world.set(truth_settings(by_size(2048u, 16384u), 1));
     const io::Picture picture = world.picture();
     const auto metrics = command_line::compare_pictures(picture, truth, true);
     std::printf("mean %.4f of %.4f (%+.2f %%), relative MSE %.4f, %llu pixels\n", metrics.mean_a, metrics.mean_b,
