@@ -1,6 +1,7 @@
 #include "gi_module/light_sampling/sample_set.h"
 
 #include "engine/core/hash.h"
+#include "gi_module/light_sampling/clamping_loss.h"
 #include "gi_module/light_sampling/sample_source.h"
 #include "gi_module/transport/clamping.h"
 #include "gi_module/transport/light_plan.h"
@@ -56,11 +57,15 @@ constexpr Counter moved_samples{"light_samples_moved", "samples", "light samples
 constexpr Counter blocked_samples{
     "light_samples_blocked", "samples", "light samples",
     "Reflected samples that are dark because a door or the like blocks the path of their light"};
+constexpr Counter clamped_share{"clamped_share", "%", "clamping",
+                                "Share of the light of static surface samples that the bound of the geometry term "
+                                "takes away; estimated by rays"};
 
 } // namespace
 
 std::span<const Counter> SampleSet::counters() {
-    static const Counter all[] = {light_samples, direct_samples, dynamic_samples, moved_samples, blocked_samples};
+    static const Counter all[] = {light_samples, direct_samples,  dynamic_samples,
+                                  moved_samples, blocked_samples, clamped_share};
     return all;
 }
 
@@ -72,6 +77,7 @@ void SampleSet::report(Report& report) const {
     report.set(dynamic_samples, double(dynamic_samples_.size()));
     report.set(moved_samples, double(moved_.size()));
     report.set(blocked_samples, double(blocked_paths_.count()));
+    report.set(clamped_share, 100.0 * loss_);
 }
 
 void SampleSet::update(const SceneView& scene, const SampleRequest& request) {
@@ -211,6 +217,22 @@ void SampleSet::update_bounds(const SceneView& scene, const LightSettings& setti
     dynamic_bound_ = gi::geometry_bound(dynamic_reflected, area, settings.clamp_scale);
 }
 
+float SampleSet::bound_of(const LightSample& sample, const LightSettings& settings) const {
+    const bool alone = sample.dynamic && sample.bounce > 0;
+    return geometry_bound_of(sample.radius, alone ? dynamic_bound_ : bound_, settings.clamp_scale);
+}
+
+void SampleSet::find_loss(const SceneView& scene, const LightSettings& settings) {
+    const LossCause now{generation_, bound_, settings.clamp_scale};
+    if (now == loss_cause_)
+        return;
+    loss_cause_ = now;
+    std::vector<float> bounds;
+    for (const LightSample& sample : samples_)
+        bounds.push_back(bound_of(sample, settings));
+    loss_ = clamping_loss(samples_, bounds, scene.rays);
+}
+
 void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
                             float indirect_scale) {
     if (settings.mover_paths && !sampled_.movers_are_static)
@@ -220,6 +242,7 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
     remapped_.clear();
     slots_ = std::max(slots, 1u);
     update_bounds(scene, settings);
+    find_loss(scene, settings);
     // The maps of directional lights cover the scene's bounds and change with them.
     const Bounds bounds = scene.gpu_scene.bounds();
     const bool resized = bounds.minimum != bounds_.minimum || bounds.maximum != bounds_.maximum;
@@ -229,9 +252,7 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
         const LightSample& sample = samples_[i];
         const bool reflected = sample.bounce > 0;
         const float cone = rows_[i].position_bound.w;
-        const float bound = geometry_bound_of(sample.radius, sample.dynamic && reflected ? dynamic_bound_ : bound_,
-                                              settings.clamp_scale);
-        rows_[i] = make_light_row(sample, slot(i), bound, bounds_);
+        rows_[i] = make_light_row(sample, slot(i), bound_of(sample, settings), bounds_);
         // A spot light's map covers its cone, whose angle may change while the light stays.
         if ((resized && sample.kind == SampleKind::directional) ||
             (sample.kind == SampleKind::spot && rows_[i].position_bound.w != cone))

@@ -70,6 +70,8 @@ private:
     void sort_samples();
     void follow_dynamic_lights(const raytrace::RayScene& rays);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
+    float bound_of(const LightSample& sample, const LightSettings& settings) const;
+    void find_loss(const SceneView& scene, const LightSettings& settings);
 
     std::vector<LightSample> samples_;
     std::vector<shared::LightRow> rows_;
@@ -91,6 +93,13 @@ private:
     std::uint64_t generation_ = 0, geometry_generation_ = 0, emitter_hash_ = 0;
     Bounds bounds_;                             // of the scene, at the last update_rows
     float bound_ = 0.0f, dynamic_bound_ = 0.0f; // of the geometry term
+    // What the loss by the bound was found for.
+    struct LossCause {
+        std::uint64_t generation = 0;
+        float bound = 0.0f, clamp_scale = 0.0f;
+        bool operator==(const LossCause&) const = default;
+    } loss_cause_;
+    double loss_ = 0.0; // clamping_loss
 };
 
 } // namespace sunfleck::gi

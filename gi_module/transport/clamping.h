@@ -8,7 +8,8 @@
 // The medoid of a cluster of random walks (light_sampling/sample_clusters.h) has a disc of its own, which is wide where
 // little light comes from. At a distance of its radius a disc is half as bright along its axis as the point is,
 // pi L r^2 / (d^2 + r^2): such a sample's term is clamped to 1 / (2 r^2), where that is less. The energy that clamping
-// removes (its bias) is counted (see BruteForce) and reported as clamped_flux.
+// removes (its bias) is reported: as a share of all light for any technique (light_sampling/clamping_loss.h,
+// clamped_share), and where it shows by BruteForce (clamped_flux).
 #pragma once
 
 #include <algorithm>

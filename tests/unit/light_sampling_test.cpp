@@ -1,6 +1,7 @@
 #include "tests/support/sampled_scene.h"
 #include "tests/support/test_size.h"
 
+#include "gi_module/light_sampling/clamping_loss.h"
 #include "gi_module/light_sampling/sample_clusters.h"
 
 #include "engine/core/jobs.h"
@@ -272,6 +273,32 @@ TEST(LightSampling, ClustersKnowTheDarkSideOfTheGap) {
         return (squares - sum * sum) / (sum * sum);
     };
     EXPECT_LT(4.0 * variance(32), variance(1));
+}
+
+// A sample on the floor under a parallel ceiling at height h: over its lobe the squared cosine u is uniform in [0, 1],
+// the term is u^2 / h^2, so a bound b takes away the integral of 1 - b h^2 / u^2 from sqrt(b) h to 1, (1 - sqrt(b)
+// h)^2.
+TEST(LightSampling, TheBoundsLossHasItsClosedForm) {
+    SampledScene world;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    const float far = 1e4f, height = 2.0f;
+    builder.quad("ceiling", vec3(-far, height, -far), vec3(2 * far, 0, 0), vec3(0, 0, 2 * far),
+                 assets::diffuse(vec3(1)));
+    world.finish();
+    std::vector<LightSample> samples(64);
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        samples[i].flux = vec3(float(i + 1));
+        samples[i].index = i;
+    }
+    samples[7].dynamic = true;
+    samples[8].kind = SampleKind::point;
+    for (const float share : {0.1f, 0.5f, 0.9f, 1.5f}) {
+        const float bound = share * share / (height * height);
+        const std::vector<float> bounds(samples.size(), bound);
+        const double expected = share < 1.0f ? std::pow(1.0 - double(share), 2.0) : 0.0;
+        EXPECT_NEAR(clamping_loss(samples, bounds, *world.rays), expected, 1e-3) << share;
+    }
+    EXPECT_EQ(clamping_loss({}, {}, *world.rays), 0.0);
 }
 
 } // namespace
