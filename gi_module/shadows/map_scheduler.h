@@ -15,7 +15,7 @@ namespace sunfleck::gi {
 
 class MapScheduler {
 public:
-    // All maps of `count` samples are stale, including their static parts.
+    // All maps of `count` samples are stale, including their static parts, and hold something else or nothing at all.
     void reset(std::size_t count);
     // Something in the sample's map moved by `distance`, m.
     void mark(std::uint32_t sample, float distance = 0.0f) {
@@ -27,6 +27,11 @@ public:
         mark(sample);
         static_stale_[sample] = 1;
     }
+    // And the map holds something else or nothing at all.
+    void mark_lost(std::uint32_t sample) {
+        mark_static(sample);
+        lost_[sample] = 1;
+    }
     // Stale maps age by a frame. Once a frame, before marking.
     void advance();
 
@@ -36,6 +41,10 @@ public:
                                       std::span<const float> contributions = {}) const;
     // The maps were redrawn and are up to date.
     void done(std::span<const std::uint32_t> samples);
+    // Maps that hold something else or nothing at all, and are not among `drawn`: to be cleared. Ascending, as `drawn`.
+    std::vector<std::uint32_t> to_clear(std::span<const std::uint32_t> drawn) const;
+    // The maps hold nothing that would let light through.
+    void cleared(std::span<const std::uint32_t> samples);
     // Starts a frame. `previous_lost`: nothing that was done since the last call reached the GPU, and those maps are as
     // stale as before.
     void begin_frame(bool previous_lost);
@@ -58,10 +67,11 @@ private:
 
     std::vector<std::uint32_t> age_;
     std::vector<std::uint8_t> static_stale_;
+    std::vector<std::uint8_t> lost_; // 1: the map's content is of another sample, or was never written
     std::vector<float> lags_;
     struct Done {
         std::uint32_t sample, age;
-        std::uint8_t static_stale;
+        std::uint8_t static_stale, lost;
         float lag;
     };
     std::vector<Done> done_; // in this frame, with the state before

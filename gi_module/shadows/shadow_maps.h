@@ -77,6 +77,9 @@ public:
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,
                       std::span<const ShadowRequest> requests, const MapOptions& options, ShadowCounters& counters);
 
+    // Adds a pass after which the maps, and their static parts, let no light through.
+    void add_clearing(gpu::FrameGraph& graph, std::span<const std::uint32_t> slots);
+
     // A bit per face: set if the box may be visible in it. For directional lights only bit 0.
     static std::uint32_t faces_that_see(const ShadowRequest& request, const Bounds& bounds);
 
@@ -94,6 +97,7 @@ private:
                        const gpu::Buffer& target, bool over_static);
     Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk, bool load) const;
     Status draw_holes(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const;
+    void fill_slots(gpu::PassContext& context, std::span<const std::uint32_t> slots, const gpu::Buffer& texels) const;
     Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;

@@ -212,6 +212,45 @@ TEST_F(ShadowMapTest, FacesWithoutOccludersAreNotDrawn) {
     EXPECT_EQ(world.renderer->lighting().counters()["shadow_map_updates"], 0u) << "nothing moves, nothing is drawn";
 }
 
+// A host's budget may leave maps undrawn that were of other samples: their samples then give no shadowed light, instead
+// of light through the other samples' maps.
+TEST_F(ShadowMapTest, MapsOfOtherSamplesLetNoLightThrough) {
+    for (const std::string_view technique : techniques_for_all_light())
+        for (const std::uint32_t bits : {16u, 32u}) {
+            gi::Settings settings = gi::Settings().all_light_by(technique);
+            settings.lights = 60;
+            settings.shadow_map_resolution = 64;
+            settings.shadow_map_bits = bits;
+            settings.low_resolution = 1;
+            set_if_known(settings, "baked_light", "off");
+            GpuWorld fresh(assets::make_cornell, "view");
+            fresh.set(settings);
+            const io::Picture settled = fresh.picture();
+            GpuWorld world(assets::make_cornell, "view");
+            gi::Settings other = settings;
+            other.seed = 2;
+            world.set(other);
+            world.render();
+            world.set(settings);
+            world.request.map_budget = 15;
+            double before = 0.0;
+            for (int frame = 0; frame < 4; ++frame) {
+                const io::Picture picture = world.picture();
+                double sum = 0.0;
+                int brighter = 0;
+                for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+                    sum += double(picture.pixels[i].x);
+                    brighter += picture.pixels[i].x > settled.pixels[i].x * 1.001f + 1e-4f;
+                }
+                EXPECT_EQ(brighter, 0) << technique << ", " << bits << " bits, frame " << frame;
+                EXPECT_GT(sum, before);
+                before = sum;
+            }
+            const io::Picture last = world.picture();
+            EXPECT_TRUE(std::equal(last.pixels.begin(), last.pixels.end(), settled.pixels.begin())) << technique;
+        }
+}
+
 TEST_F(ShadowMapTest, ABudgetSpreadsUpdatesOverFrames) {
     GpuWorld world(assets::make_four_pillars, "view");
     gi::Settings settings = plain_light();
