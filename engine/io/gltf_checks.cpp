@@ -1,5 +1,7 @@
 #include "engine/io/gltf_checks.h"
 
+#include "engine/io/gltf_references.h"
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -18,45 +20,6 @@ constexpr std::array known_extensions = {
     std::string_view("KHR_mesh_quantization"),     std::string_view("KHR_node_visibility"),
     std::string_view("EXT_mesh_gpu_instancing"),   std::string_view("EXT_meshopt_compression"),
     std::string_view("KHR_draco_mesh_compression")};
-
-// "section[].key" holds the index (or indices) of elements of another section.
-struct Reference {
-    std::string_view section;
-    std::vector<std::string_view> path; // "[]" steps into all elements of an array or object
-    std::string_view target;
-};
-
-const std::vector<Reference>& references() {
-    static const std::vector<Reference> list = {
-        {"accessors", {"bufferView"}, "bufferViews"},
-        {"accessors", {"sparse", "indices", "bufferView"}, "bufferViews"},
-        {"accessors", {"sparse", "values", "bufferView"}, "bufferViews"},
-        {"bufferViews", {"buffer"}, "buffers"},
-        {"images", {"bufferView"}, "bufferViews"},
-        {"textures", {"source"}, "images"},
-        {"textures", {"sampler"}, "samplers"},
-        {"materials", {"pbrMetallicRoughness", "baseColorTexture", "index"}, "textures"},
-        {"materials", {"pbrMetallicRoughness", "metallicRoughnessTexture", "index"}, "textures"},
-        {"materials", {"normalTexture", "index"}, "textures"},
-        {"materials", {"occlusionTexture", "index"}, "textures"},
-        {"materials", {"emissiveTexture", "index"}, "textures"},
-        {"meshes", {"primitives", "[]", "material"}, "materials"},
-        {"meshes", {"primitives", "[]", "indices"}, "accessors"},
-        {"meshes", {"primitives", "[]", "attributes", "[]"}, "accessors"},
-        {"meshes", {"primitives", "[]", "targets", "[]", "[]"}, "accessors"},
-        {"nodes", {"mesh"}, "meshes"},
-        {"nodes", {"camera"}, "cameras"},
-        {"nodes", {"skin"}, "skins"},
-        {"nodes", {"children", "[]"}, "nodes"},
-        {"scenes", {"nodes", "[]"}, "nodes"},
-        {"skins", {"joints", "[]"}, "nodes"},
-        {"skins", {"skeleton"}, "nodes"},
-        {"skins", {"inverseBindMatrices"}, "accessors"},
-        {"animations", {"samplers", "[]", "input"}, "accessors"},
-        {"animations", {"samplers", "[]", "output"}, "accessors"},
-        {"animations", {"channels", "[]", "target", "node"}, "nodes"}};
-    return list;
-}
 
 // A property whose type tinygltf does not check. `kinds`: n number, s string, b boolean, a list of numbers, o object.
 struct Property {
@@ -151,36 +114,6 @@ Status check_names(const json& file, const char* section) {
         if (const auto name = (*found)[i].find("name"); name != (*found)[i].end())
             SUNFLECK_TRY(check_kind(*name, 's', std::string(section) + "[" + std::to_string(i) + "].name"));
     return {};
-}
-
-std::size_t section_size(const json& file, std::string_view name) {
-    const auto found = file.find(std::string(name));
-    return found != file.end() && found->is_array() ? found->size() : 0;
-}
-
-Status check_reference(const json& at, const Reference& reference, std::size_t step, std::size_t targets,
-                       const std::string& place) {
-    if (step == reference.path.size()) {
-        if (!at.is_number_integer() || at.get<std::int64_t>() < 0 || std::uint64_t(at.get<std::int64_t>()) >= targets)
-            return Error{place + " is " + at.dump().substr(0, 40) + ", but there are " + std::to_string(targets) + " " +
-                         std::string(reference.target)};
-        return {};
-    }
-    const std::string_view key = reference.path[step];
-    if (key == "[]") {
-        if (!at.is_array() && !at.is_object())
-            return Error{place + " must be a list"};
-        for (const auto& [name, value] : at.items())
-            SUNFLECK_TRY(check_reference(value, reference, step + 1, targets,
-                                         place + (at.is_array() ? "[" + name + "]" : "." + name)));
-        return {};
-    }
-    if (!at.is_object())
-        return Error{place + " must be an object"};
-    const auto found = at.find(std::string(key));
-    if (found == at.end())
-        return {};
-    return check_reference(*found, reference, step + 1, targets, place + "." + std::string(key));
 }
 
 Status check_sections(const json& file) {
@@ -322,21 +255,13 @@ bool is_known_extension(std::string_view name) {
     return std::find(known_extensions.begin(), known_extensions.end(), name) != known_extensions.end();
 }
 
-Status check_gltf_json(const json& file) {
+Status check_gltf_json(json& file, std::vector<std::string>& notes) {
     if (!file.is_object())
         return Error{"its JSON is not an object"};
     SUNFLECK_TRY(check_version(file));
     SUNFLECK_TRY(check_extensions(file));
     SUNFLECK_TRY(check_sections(file));
-    for (const Reference& reference : references()) {
-        const auto section = file.find(std::string(reference.section));
-        if (section == file.end())
-            continue;
-        const std::size_t targets = section_size(file, reference.target);
-        for (std::size_t i = 0; i < section->size(); ++i)
-            SUNFLECK_TRY(check_reference((*section)[i], reference, 0, targets,
-                                         std::string(reference.section) + "[" + std::to_string(i) + "]"));
-    }
+    SUNFLECK_TRY(check_references(file, notes));
     for (const char* section : {"accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials",
                                 "meshes", "nodes", "samplers", "scenes", "skins", "textures"})
         SUNFLECK_TRY(check_names(file, section));

@@ -180,6 +180,43 @@ Result<std::string> image_bytes(const json& image, const tinygltf::Model& model,
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
+// What fails is an error, or, where nothing uses it, a note.
+Status noted_if_unused(const Status& status, const char* section, std::size_t index, GltfDocument& document) {
+    if (status || document.usage.uses(section, index))
+        return status;
+    document.notes.push_back(status.error().message + "; nothing uses it, so it is left out");
+    return {};
+}
+
+Status read_buffers(const json& file, Chunks& chunks, const std::filesystem::path& folder, GltfDocument& document) {
+    tinygltf::Model& model = document.model;
+    for (std::size_t i = 0; i < model.buffers.size(); ++i) {
+        model.buffers[i].data.clear();
+        auto content = buffer_bytes(file["buffers"][i], i, chunks, folder);
+        SUNFLECK_TRY(noted_if_unused(content ? Status() : Status(content.error()), "buffers", i, document));
+        if (content)
+            model.buffers[i].data.assign(content->begin(), content->end());
+    }
+    for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
+        if (model.bufferViews[i].extensions.count("EXT_meshopt_compression"))
+            SUNFLECK_TRY(noted_if_unused(decompress_view(model, i), "bufferViews", i, document));
+    return {};
+}
+
+Status read_images(const json& file, const std::filesystem::path& folder, GltfDocument& document) {
+    const auto images = file.find("images");
+    if (images == file.end())
+        return {};
+    for (std::size_t i = 0; i < images->size(); ++i) {
+        auto content = image_bytes((*images)[i], document.model, folder);
+        const Status status =
+            content ? Status() : Status(Error{"image " + std::to_string(i) + ": " + content.error().message});
+        SUNFLECK_TRY(noted_if_unused(status, "images", i, document));
+        document.images.push_back(content ? std::move(*content) : std::string());
+    }
+    return {};
+}
+
 } // namespace
 
 Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder) {
@@ -188,11 +225,12 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
     SUNFLECK_ASSIGN(Chunks chunks, split_chunks(std::move(bytes)));
     if (!nesting_is_sane(chunks.json))
         return Error{"its JSON is nested too deeply"};
-    const json file = json::parse(chunks.json, nullptr, false);
+    json file = json::parse(chunks.json, nullptr, false);
     if (file.is_discarded())
         return Error{"its JSON is not valid"};
-    SUNFLECK_TRY(check_gltf_json(file));
-    GltfDocument document;
+    std::vector<std::string> notes;
+    SUNFLECK_TRY(check_gltf_json(file, notes));
+    GltfDocument document{{}, {}, GltfUsage(file), std::move(notes)};
     tinygltf::TinyGLTF loader;
     std::string error, warning;
     const std::string reduced = for_tinygltf(file).dump(-1, ' ', false, json::error_handler_t::replace);
@@ -200,21 +238,8 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
         error = error.substr(0, error.find('\n'));
         return Error{error.empty() ? "it is not valid glTF" : error};
     }
-    tinygltf::Model& model = document.model;
-    for (std::size_t i = 0; i < model.buffers.size(); ++i) {
-        SUNFLECK_ASSIGN(const std::string content, buffer_bytes(file["buffers"][i], i, chunks, folder));
-        model.buffers[i].data.assign(content.begin(), content.end());
-    }
-    for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
-        if (model.bufferViews[i].extensions.count("EXT_meshopt_compression"))
-            SUNFLECK_TRY(decompress_view(model, i));
-    if (const auto images = file.find("images"); images != file.end())
-        for (std::size_t i = 0; i < images->size(); ++i) {
-            auto content = image_bytes((*images)[i], model, folder);
-            if (!content)
-                return Error{"image " + std::to_string(i) + ": " + content.error().message};
-            document.images.push_back(std::move(*content));
-        }
+    SUNFLECK_TRY(read_buffers(file, chunks, folder, document));
+    SUNFLECK_TRY(read_images(file, folder, document));
     return document;
 }
 

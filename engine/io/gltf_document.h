@@ -4,6 +4,7 @@
 #pragma once
 
 #include "engine/io/gltf_accessor.h"
+#include "engine/io/gltf_references.h"
 
 #include <filesystem>
 
@@ -13,6 +14,8 @@ struct GltfDocument {
     tinygltf::Model model;
     // Encoded bytes of each image, by index, wherever they were stored.
     std::vector<std::string> images;
+    GltfUsage usage;
+    std::vector<std::string> notes; // what is broken, and left out because nothing uses it
 };
 
 Result<GltfDocument> read_gltf_document(const std::filesystem::path& path);

@@ -33,13 +33,14 @@ Result<int> find_variant(const tinygltf::Model& model, const std::string& wanted
     return int(place - report.variants.begin());
 }
 
-Status read_skins(const tinygltf::Model& model, GltfContent& content) {
+Status read_skins(const GltfDocument& document, GltfContent& content) {
+    const tinygltf::Model& model = document.model;
     for (std::size_t i = 0; i < model.skins.size(); ++i) {
         const tinygltf::Skin& source = model.skins[i];
         const std::string place = "skin " + std::to_string(i);
         ImportedSkin skin;
         skin.joints = source.joints;
-        if (skin.joints.empty())
+        if (skin.joints.empty() && document.usage.uses("skins", i))
             return Error{place + " has no joints"};
         skin.inverse_bind_matrices.assign(skin.joints.size(), mat4(1.0f));
         if (source.inverseBindMatrices >= 0) {
@@ -58,15 +59,21 @@ Status read_skins(const tinygltf::Model& model, GltfContent& content) {
     return {};
 }
 
-Status read_meshes(const tinygltf::Model& model, GltfContent& content, ImportReport& report) {
+Status read_meshes(const GltfDocument& document, GltfContent& content, ImportReport& report) {
+    const tinygltf::Model& model = document.model;
     for (std::size_t m = 0; m < model.meshes.size(); ++m) {
         const tinygltf::Mesh& mesh = model.meshes[m];
         content.meshes.emplace_back();
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
             auto primitive = read_primitive(model, mesh.primitives[p], report.variants.size());
-            if (!primitive)
-                return Error{"mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " + std::to_string(p) +
-                             ": " + primitive.error().message};
+            if (!primitive) {
+                const std::string problem = "mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " +
+                                            std::to_string(p) + ": " + primitive.error().message;
+                if (document.usage.uses("meshes", m))
+                    return Error{problem};
+                report.notes.push_back(problem + "; nothing uses it, so it is left out");
+                continue;
+            }
             primitive->mesh.rest.name = mesh.name.empty() ? "mesh " + std::to_string(m) : mesh.name;
             if (!primitive->drawn)
                 report.notes.push_back("mesh '" + primitive->mesh.rest.name +
@@ -170,14 +177,15 @@ Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& r
     const GltfDocument& document = *read;
     const tinygltf::Model& model = document.model;
     ImportReport report;
+    report.notes = document.notes;
     note_extensions(model, report);
     SUNFLECK_ASSIGN(const int scene, choose_scene(model, options, report));
     GltfContent content;
     SUNFLECK_ASSIGN(content.variant, find_variant(model, options.variant, report));
     SUNFLECK_ASSIGN(content.materials, MaterialImport::read(document, options.progress));
     report.notes.insert(report.notes.end(), content.materials.notes.begin(), content.materials.notes.end());
-    SUNFLECK_TRY(read_meshes(model, content, report));
-    SUNFLECK_TRY(read_skins(model, content));
+    SUNFLECK_TRY(read_meshes(document, content, report));
+    SUNFLECK_TRY(read_skins(document, content));
     SUNFLECK_TRY(check_skinned_nodes(model, content));
     for (std::size_t i = 0; i < model.animations.size(); ++i) {
         const std::string& name = model.animations[i].name;

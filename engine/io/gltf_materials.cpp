@@ -212,7 +212,12 @@ Result<MaterialImport> MaterialImport::read(const GltfDocument& document, const 
     MaterialImport result;
     TextureTable table(document.model);
     bool occlusion = false;
-    for (const tinygltf::Material& source : document.model.materials) {
+    for (std::size_t i = 0; i < document.model.materials.size(); ++i) {
+        const tinygltf::Material& source = document.model.materials[i];
+        if (!document.usage.uses("materials", i)) { // nor are its pictures read
+            result.materials_.emplace_back();
+            continue;
+        }
         result.materials_.push_back(read_material(source, table));
         occlusion = occlusion || source.occlusionTexture.index >= 0;
     }

@@ -63,7 +63,7 @@ struct GltfBuilder {
 
     std::string glb() {
         if (!binary.empty())
-            file["buffers"] = {{{"byteLength", binary.size()}}};
+            file["buffers"][0] = {{"byteLength", binary.size()}};
         std::string text = file.dump(), body = binary;
         text.resize((text.size() + 3) / 4 * 4, ' ');
         body.resize((body.size() + 3) / 4 * 4, '\0');

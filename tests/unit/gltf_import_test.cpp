@@ -238,5 +238,52 @@ TEST(GltfImport, MeshoptBuffers) {
     EXPECT_EQ(world.meshes[0].triangle_count(), 2u);
 }
 
+// Broken parts that nothing uses do no harm; those that something uses are named.
+TEST(GltfImport, BrokenPartsMatterWhereTheyAreUsed) {
+    struct Case {
+        const char *section, *element; // added as the last of its section
+        const char *user, *use;        // "use" merged into the first element of section "user" uses it
+        const char* named;
+    };
+    const Case cases[] = {
+        {"textures", R"({"source":9})", "materials", R"({"normalTexture":{"index":0}})", "textures[0].source is 9"},
+        {"images", R"({"uri":"missing.png"})", "textures", R"({"source":0})", "image 0"},
+        {"accessors", R"({"bufferView":55,"componentType":5126,"count":4,"type":"VEC3"})", "meshes",
+         R"({"primitives":[{"attributes":{"POSITION":2}}]})", "bufferView is 55"},
+        {"accessors", R"({"bufferView":0,"componentType":5126,"count":400,"type":"VEC3"})", "meshes",
+         R"({"primitives":[{"attributes":{"POSITION":2}}]})", "primitive 0"},
+        {"skins", R"({"joints":[99]})", "nodes", R"({"skin":0})", "joints[0] is 99"},
+        {"nodes", R"({"mesh":77})", "scenes", R"({"nodes":[0,1]})", "nodes[1].mesh is 77"},
+        {"buffers", R"({"byteLength":4,"uri":"missing.bin"})", "bufferViews", R"({"buffer":1})", "buffer 1"},
+    };
+    for (const Case& broken : cases) {
+        GltfBuilder file;
+        file.add_square();
+        file.file["materials"] = {json::object()};
+        file.file["meshes"][0]["primitives"][0]["material"] = 0;
+        file.glb(); // adds the buffer
+        const bool used_by_texture = std::string_view(broken.user) == "textures";
+        file.file[broken.section].push_back(json::parse(broken.element));
+        World unused;
+        const auto report = unused.import(file.glb());
+        ASSERT_TRUE(report) << broken.element << ": " << report.error().message;
+        EXPECT_EQ(unused.mesh_of("square").triangle_count(), 2u);
+        const auto tells = [&](const std::string& note) {
+            return note.find(broken.named) != std::string::npos && note.find("nothing uses it") != std::string::npos;
+        };
+        // An accessor that is too long is only found out by who reads it.
+        const bool readable = std::string_view(broken.named) == "primitive 0";
+        EXPECT_EQ(std::any_of(report->notes.begin(), report->notes.end(), tells), !readable) << broken.element;
+        if (used_by_texture) {
+            file.file["textures"] = {json::object()};
+            file.file["materials"][0]["normalTexture"] = {{"index", 0}};
+        }
+        file.file[broken.user][0].merge_patch(json::parse(broken.use));
+        const auto refused = World().import(file.glb());
+        ASSERT_FALSE(refused) << broken.element;
+        EXPECT_NE(refused.error().message.find(broken.named), std::string::npos) << refused.error().message;
+    }
+}
+
 } // namespace
 } // namespace sunfleck

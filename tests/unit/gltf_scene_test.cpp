@@ -217,6 +217,7 @@ TEST(GltfImport, ProgressCanStopIt) {
     file.file["images"] = {{{"bufferView", file.view(png.data(), png.size())}}};
     file.file["textures"] = {{{"source", 0}}};
     file.file["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
+    file.primitive()["material"] = 0;
     io::ImportOptions options;
     options.progress = [](float) { return false; };
     World world;

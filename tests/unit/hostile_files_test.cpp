@@ -150,6 +150,7 @@ TEST(HostileFiles, Images) {
             file.file["images"] = {{{"bufferView", file.view(bytes.data(), bytes.size())}}};
         file.file["textures"] = {{{"source", 0}}};
         file.file["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+        file.primitive()["material"] = 0;
         return file;
     };
     const std::string png = io::encode_png(2, 1, {1, 2, 3, 4, 5, 6, 7, 8}).value();
