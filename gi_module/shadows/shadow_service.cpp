@@ -33,7 +33,7 @@ void ShadowService::report(Report& report) const {
     report.set(map_updates, double(drawn_.maps));
     report.set(map_faces, double(drawn_.faces));
     report.set(map_vertices, double(drawn_.vertices));
-    report.set(maps_stale, double(scheduler_.stale()));
+    report.set(maps_stale, settings_.shadows ? double(scheduler_.stale()) : 0.0);
     report.set(map_memory, double(maps_->texels().size() + maps_->static_texels().size()));
 }
 

@@ -58,22 +58,6 @@ TEST_F(Systems, TwoLightOneRegistry) {
     EXPECT_NE(different_pixels(alone[0], alone[1]), 0);
 }
 
-// A room where all stays but one box.
-void make_moving_box_room(assets::SceneBuilder& scene) {
-    const vec3 white(0.7f), red(0.7f, 0.3f, 0.3f);
-    scene.room(vec3(-2, 0, -2), vec3(2, 2.5f, 2), white, white, {red, white, white, white},
-               {{"lamp", vec2(0.5f, 0.3f), 0.6f, 0.6f, vec3(9.0f)}});
-    scene.box("pillar", vec3(-0.9f, 0.0f, -0.9f), vec3(-0.6f, 1.8f, -0.6f), assets::diffuse(white));
-    const ecs::Entity box = scene.box("box", vec3(-0.2f), vec3(0.2f), assets::diffuse(vec3(0.3f, 0.5f, 0.7f)));
-    scene.registry().patch<scene::Transform>(box,
-                                             [](scene::Transform& place) { place.position = vec3(0.0f, 0.7f, 0.3f); });
-    scene::Mover line;
-    line.path = scene::MoverPath::line;
-    line.travel = vec3(1.0f, 0.0f, 0.0f);
-    scene.mover(box, line);
-    scene.camera("view", vec3(1.8f, 1.7f, 1.8f), vec3(-0.4f, 0.8f, -0.4f), 65.0f);
-}
-
 // Where in the course of frames one is lost: the first one, one of those in which light is baked, one in which the box
 // moved, and two in a row.
 struct Loss {

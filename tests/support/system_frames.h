@@ -12,6 +12,22 @@ std::span<const EmbeddedShader> sunfleck_render_shaders();
 
 namespace sunfleck::tests {
 
+// A room where all stays but one box.
+inline void make_moving_box_room(assets::SceneBuilder& scene) {
+    const vec3 white(0.7f), red(0.7f, 0.3f, 0.3f);
+    scene.room(vec3(-2, 0, -2), vec3(2, 2.5f, 2), white, white, {red, white, white, white},
+               {{"lamp", vec2(0.5f, 0.3f), 0.6f, 0.6f, vec3(9.0f)}});
+    scene.box("pillar", vec3(-0.9f, 0.0f, -0.9f), vec3(-0.6f, 1.8f, -0.6f), assets::diffuse(white));
+    const ecs::Entity box = scene.box("box", vec3(-0.2f), vec3(0.2f), assets::diffuse(vec3(0.3f, 0.5f, 0.7f)));
+    scene.registry().patch<scene::Transform>(box,
+                                             [](scene::Transform& place) { place.position = vec3(0.0f, 0.7f, 0.3f); });
+    scene::Mover line;
+    line.path = scene::MoverPath::line;
+    line.travel = vec3(1.0f, 0.0f, 0.0f);
+    scene.mover(box, line);
+    scene.camera("view", vec3(1.8f, 1.7f, 1.8f), vec3(-0.4f, 0.8f, -0.4f), 65.0f);
+}
+
 // What becomes of a system's frame.
 enum class Fate {
     drawn,
@@ -27,18 +43,25 @@ public:
 
     explicit SystemFrames(void (*make)(assets::SceneBuilder&)) : pipelines_(device(), shaders_) {
         scene::register_components(registry);
-        assets::SceneBuilder builder(registry, meshes);
-        make(builder);
-        scene::update_world_transforms(registry);
         shaders_.add(gpu::sunfleck_render_shaders());
         shaders_.add(gi::shaders());
         submission_ = gpu::Submission::create(device(), 2).value();
         rays_ = raytrace::RayScene::create().value();
         g_buffer_pass_ = render::GBufferPass::create(pipelines_).value();
-        EXPECT_TRUE(gpu_scene_.update_meshes(meshes, *submission_));
+        load(make);
         camera_ = viewer::find_camera(registry, viewer::scene_bounds(registry, meshes), "view").value();
     }
     ~SystemFrames() { static_cast<void>(device().wait_idle()); }
+
+    // Another scene in place of what there is; the camera stays.
+    void load(void (*make)(assets::SceneBuilder&)) {
+        for (const ecs::Entity entity : registry.entities())
+            registry.destroy(entity);
+        assets::SceneBuilder builder(registry, meshes);
+        make(builder);
+        scene::update_world_transforms(registry);
+        EXPECT_TRUE(gpu_scene_.update_meshes(meshes, *submission_));
+    }
 
     // The new system's number.
     std::size_t add(const gi::Settings& settings) {
@@ -107,6 +130,7 @@ public:
 
     ecs::Registry registry;
     scene::MeshStore meshes;
+    std::uint32_t map_budget = 0xffffffffu; // of the next frames (gi::FrameInput)
 
 private:
     struct Lit {
@@ -150,6 +174,7 @@ private:
         input.serial = submission_->serial() + lost_serials_;
         input.completed_serial = completed + lost_serials_;
         input.previous_frame_lost = lost_;
+        input.map_budget = map_budget;
         if (fate == Fate::stopped)
             input.progress = [](float) { return false; };
         input.view_projection = camera_row().view_projection;
