@@ -97,7 +97,8 @@ Status check_property(const json& at, const Property& property, std::size_t step
     const std::string_view key = property.path[step];
     if (key == "[]") {
         for (const auto& [name, value] : at.items())
-            SUNFLECK_TRY(check_property(value, property, step + 1, place + "[" + name + "]"));
+            SUNFLECK_TRY(
+                check_property(value, property, step + 1, std::string(place).append("[").append(name).append("]")));
         return {};
     }
     if (!at.is_object())

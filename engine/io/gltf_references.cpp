@@ -76,8 +76,9 @@ Status check_reference(const json& at, const Reference& reference, std::size_t s
         if (!at.is_array() && !at.is_object())
             return Error{place + " must be a list"};
         for (const auto& [name, value] : at.items())
-            SUNFLECK_TRY(check_reference(value, reference, step + 1, targets,
-                                         place + (at.is_array() ? "[" + name + "]" : "." + name)));
+            SUNFLECK_TRY(check_reference(
+                value, reference, step + 1, targets,
+                std::string(place).append(at.is_array() ? "[" : ".").append(name).append(at.is_array() ? "]" : "")));
         return {};
     }
     if (!at.is_object())
@@ -166,8 +167,8 @@ Status check_references(json& file, std::vector<std::string>& notes) {
             continue;
         const std::size_t targets = section_size(file, reference.target);
         for (std::size_t i = 0; i < section->size(); ++i) {
-            const Status status = check_reference((*section)[i], reference, 0, targets,
-                                                  std::string(reference.section) + "[" + std::to_string(i) + "]");
+            Status status = check_reference((*section)[i], reference, 0, targets,
+                                            std::string(reference.section) + "[" + std::to_string(i) + "]");
             if (status)
                 continue;
             if (usage.uses(reference.section, i))

@@ -25,7 +25,7 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
         add(&emitter.area, sizeof emitter.area);
         add(&emitter.inner_cosine, sizeof emitter.inner_cosine);
         add(&emitter.outer_cosine, sizeof emitter.outer_cosine);
-        const scene::EnvironmentImage* image = emitter.map.image.get();
+        const auto image = reinterpret_cast<std::uintptr_t>(emitter.map.image.get());
         add(&image, sizeof image);
         add(&emitter.map.rotation, sizeof emitter.map.rotation);
     }
@@ -228,6 +228,7 @@ void SampleSet::find_loss(const SceneView& scene, const LightSettings& settings)
         return;
     loss_cause_ = now;
     std::vector<float> bounds;
+    bounds.reserve(samples_.size());
     for (const LightSample& sample : samples_)
         bounds.push_back(bound_of(sample, settings));
     loss_ = clamping_loss(samples_, bounds, scene.rays);

@@ -192,6 +192,7 @@ Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& 
 void ShadowService::clear_lost(gpu::FrameGraph& graph, const SampleSet& samples) {
     const std::vector<std::uint32_t> lost = scheduler_.to_clear(to_draw_);
     std::vector<std::uint32_t> slots;
+    slots.reserve(lost.size());
     for (const std::uint32_t sample : lost)
         slots.push_back(samples.slot(sample));
     maps_->add_clearing(graph, slots);

@@ -179,7 +179,8 @@ TEST_F(ShadowMapTest, NoLightUnderWallsAndNoAcne) {
             continue;
         bool near_shadow = false;
         for (int k = 0; k < 9 && !near_shadow; ++k) {
-            const vec3 around = place + 0.12f * vec3(float(k % 3 - 1), 0.0f, float(k / 3 - 1)) * glm::length(v) / 3.0f;
+            const int row = k / 3, column = k % 3;
+            const vec3 around = place + 0.12f * vec3(float(column - 1), 0.0f, float(row - 1)) * glm::length(v) / 3.0f;
             const vec3 from = around + 1e-4f * up;
             near_shadow = world.renderer->rays().occluded(
                 raytrace::Ray{from, vec3(maps.rows[light].position_bound) - from, 0.0f, 0.999f});
