@@ -13,8 +13,8 @@
 namespace sunfleck::gi {
 namespace {
 
-// Rays for all samples together: a few hundredths of a second.
-constexpr std::size_t ray_budget = 1u << 15;
+// Rays for all samples together.
+constexpr std::size_t ray_budget = 1u << 13;
 constexpr std::size_t min_rays = 4, max_rays = 128;
 
 float loss_of(const LightSample& sample, float bound, std::size_t ray_count, const raytrace::RayScene& rays) {

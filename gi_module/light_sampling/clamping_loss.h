@@ -1,8 +1,6 @@
 // What the bound of the geometry term (transport/clamping.h) takes away: near a surface sample the bound makes light
 // darker, so a picture of few samples is a little darker than the truth as a whole. With more samples the bound rises,
-// and the loss vanishes. (Giving it back as more light elsewhere was tried: means come nearer to the path tracer's in
-// small rooms, by 1 %, and become too bright by 2 % in lantern_house, where the camera does not see the corners that
-// lose.)
+// and the loss vanishes.
 #pragma once
 
 #include "engine/raytrace/ray_scene.h"

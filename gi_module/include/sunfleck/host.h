@@ -159,9 +159,11 @@ struct FrameImages {
 };
 
 struct Frame {
-    std::uint64_t serial = 1;               // of this frame; rises by one each frame
-    std::uint64_t completed_serial = 0;     // all frames up to this one are finished on the GPU
-    std::uint32_t map_budget = 0xffffffffu; // shadow maps redrawn in this frame at most
+    std::uint64_t serial = 1;           // of this frame; rises by one each frame
+    std::uint64_t completed_serial = 0; // all frames up to this one are finished on the GPU
+    // Shadow maps redrawn in this frame at most. A light sample without one yet shines only where nothing is in the
+    // way.
+    std::uint32_t map_budget = 0xffffffffu;
     // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the
     // first one of a level); from any thread, but by one at a time. Returning false ends the update with an error; the
     // next one begins again.
