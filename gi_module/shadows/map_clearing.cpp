@@ -8,14 +8,17 @@ namespace sunfleck::gi {
 void ShadowMaps::add_clearing(gpu::FrameGraph& graph, std::span<const std::uint32_t> slots) {
     if (slots.empty())
         return;
-    for (const gpu::Buffer* buffer : {&texels_, &static_texels_})
-        if (*buffer)
-            graph.add_pass("shadow map clearing")
-                .write(graph.import_buffer(*buffer), gpu::Usage::transfer_destination)
-                .execute([this, buffer, all = std::vector(slots.begin(), slots.end())](gpu::PassContext& context) {
-                    fill_slots(context, all, *buffer);
-                    return Status();
-                });
+    std::vector<const gpu::Buffer*> layers = {&texels_};
+    if (static_texels_)
+        layers.push_back(&static_texels_);
+    auto pass = graph.add_pass("shadow map clearing");
+    for (const gpu::Buffer* layer : layers)
+        pass.write(graph.import_buffer(*layer), gpu::Usage::transfer_destination);
+    pass.execute([this, layers, all = std::vector(slots.begin(), slots.end())](gpu::PassContext& context) {
+        for (const gpu::Buffer* layer : layers)
+            fill_slots(context, all, *layer);
+        return Status();
+    });
 }
 
 // With what is nearest to the light.

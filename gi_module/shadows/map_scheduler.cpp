@@ -32,7 +32,7 @@ std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority 
 void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
     static_stale_.assign(count, 1);
-    lost_.assign(count, 1);
+    undefined_.assign(count, 1);
     lags_.assign(count, 0.0f);
     done_.clear();
 }
@@ -43,7 +43,7 @@ void MapScheduler::begin_frame(bool previous_lost) {
         for (const Done& done : done_) {
             age_[done.sample] = std::max(age_[done.sample], done.age);
             static_stale_[done.sample] |= done.static_stale;
-            lost_[done.sample] |= done.lost;
+            undefined_[done.sample] |= done.undefined;
             lags_[done.sample] += done.lag;
         }
     done_.clear();
@@ -110,26 +110,26 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {
     for (const std::uint32_t sample : samples) {
-        done_.push_back({sample, age_[sample], static_stale_[sample], lost_[sample], lags_[sample]});
+        done_.push_back({sample, age_[sample], static_stale_[sample], undefined_[sample], lags_[sample]});
         age_[sample] = 0;
         static_stale_[sample] = 0;
-        lost_[sample] = 0;
+        undefined_[sample] = 0;
         lags_[sample] = 0.0f;
     }
 }
 
 std::vector<std::uint32_t> MapScheduler::to_clear(std::span<const std::uint32_t> drawn) const {
     std::vector<std::uint32_t> result;
-    for (std::uint32_t sample = 0; sample < lost_.size(); ++sample)
-        if (lost_[sample] && !std::binary_search(drawn.begin(), drawn.end(), sample))
+    for (std::uint32_t sample = 0; sample < undefined_.size(); ++sample)
+        if (undefined_[sample] && !std::binary_search(drawn.begin(), drawn.end(), sample))
             result.push_back(sample);
     return result;
 }
 
 void MapScheduler::cleared(std::span<const std::uint32_t> samples) {
     for (const std::uint32_t sample : samples) {
-        done_.push_back({sample, age_[sample], static_stale_[sample], lost_[sample], 0.0f});
-        lost_[sample] = 0;
+        done_.push_back({sample, age_[sample], static_stale_[sample], undefined_[sample], 0.0f});
+        undefined_[sample] = 0;
     }
 }
 

@@ -28,9 +28,9 @@ public:
         static_stale_[sample] = 1;
     }
     // And the map holds something else or nothing at all.
-    void mark_lost(std::uint32_t sample) {
+    void mark_undefined(std::uint32_t sample) {
         mark_static(sample);
-        lost_[sample] = 1;
+        undefined_[sample] = 1;
     }
     // Stale maps age by a frame. Once a frame, before marking.
     void advance();
@@ -67,11 +67,11 @@ private:
 
     std::vector<std::uint32_t> age_;
     std::vector<std::uint8_t> static_stale_;
-    std::vector<std::uint8_t> lost_; // 1: the map's content is of another sample, or was never written
+    std::vector<std::uint8_t> undefined_; // 1: the map's content is of another sample, or was never written
     std::vector<float> lags_;
     struct Done {
         std::uint32_t sample, age;
-        std::uint8_t static_stale, lost;
+        std::uint8_t static_stale, undefined;
         float lag;
     };
     std::vector<Done> done_; // in this frame, with the state before

@@ -75,7 +75,7 @@ void ShadowService::follow(const SampleSet& samples, bool static_changed) {
         scheduler_.reset(samples.size());
     sample_generation_ = samples.generation();
     for (std::uint32_t sample = 0; cleared_ && sample < samples.size(); ++sample)
-        scheduler_.mark_lost(sample);
+        scheduler_.mark_undefined(sample);
     for (std::uint32_t sample = 0; redetailed_ && sample < samples.size(); ++sample)
         scheduler_.mark(sample);
     for (const std::span<const std::uint32_t> changed : {samples.moved(), samples.remapped()})
@@ -184,19 +184,19 @@ Status ShadowService::draw(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sc
 Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                                  gpu::FrameResources& resources) {
     if (settings_.shadows)
-        clear_lost(graph, samples);
+        clear_undefined(graph, samples);
     return draw(graph, gpu_scene, samples, to_draw_, resources);
 }
 
 // What the budget leaves undrawn: through a map of some other sample, light would fall anywhere.
-void ShadowService::clear_lost(gpu::FrameGraph& graph, const SampleSet& samples) {
-    const std::vector<std::uint32_t> lost = scheduler_.to_clear(to_draw_);
+void ShadowService::clear_undefined(gpu::FrameGraph& graph, const SampleSet& samples) {
+    const std::vector<std::uint32_t> undefined = scheduler_.to_clear(to_draw_);
     std::vector<std::uint32_t> slots;
-    slots.reserve(lost.size());
-    for (const std::uint32_t sample : lost)
+    slots.reserve(undefined.size());
+    for (const std::uint32_t sample : undefined)
         slots.push_back(samples.slot(sample));
     maps_->add_clearing(graph, slots);
-    scheduler_.cleared(lost);
+    scheduler_.cleared(undefined);
 }
 
 Status ShadowService::add_map_range(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,

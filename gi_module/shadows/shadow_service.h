@@ -88,7 +88,7 @@ private:
     std::uint32_t budget_of(const ScheduleInput& input) const;
     std::vector<float> contributions(const SampleSet& samples, const ScheduleInput& input, std::uint32_t budget) const;
     std::vector<ShadowRequest> requests(const SampleSet& samples, std::span<const std::uint32_t> drawn) const;
-    void clear_lost(gpu::FrameGraph& graph, const SampleSet& samples);
+    void clear_undefined(gpu::FrameGraph& graph, const SampleSet& samples);
     Status draw(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
                 std::span<const std::uint32_t> drawn, gpu::FrameResources& resources);
 
