@@ -45,7 +45,7 @@ std::vector<LightComposer::Part> LightComposer::parts_of(const LightPlan& plan, 
         }
         if (shares)
             shared = parts.size();
-        parts.push_back({{i}, receivers, entry.supports != nullptr});
+        parts.push_back({{i}, receivers, entry.adds_in_place, entry.supports != nullptr});
     }
     return parts;
 }
@@ -69,7 +69,8 @@ Status LightComposer::add_part(gpu::FrameGraph& graph, std::span<const std::uniq
     return low_resolution_->add_passes(graph, services.settings, frame, contributors, services.resources);
 }
 
-// The first part writes the picture, if it lights every receiver; the light of the others is added.
+// The first part writes the picture, if it lights every receiver; the light of the others is added, by themselves or
+// from a layer.
 Status LightComposer::add_passes(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> all,
                                  const LightPlan& plan, Services& services, LightTarget target) {
     const gpu::ResourceId picture = target.irradiance;
@@ -77,7 +78,8 @@ Status LightComposer::add_passes(gpu::FrameGraph& graph, std::span<const std::un
     for (const Part& part : parts_of(plan, target.view)) {
         target.area = {0, 0, target.g_buffer.width, target.g_buffer.height};
         target.irradiance = picture;
-        if (empty && !part.replaces && part.receivers == all_receivers) {
+        target.holds_light = !empty;
+        if ((empty || part.adds_in_place) && !part.replaces && part.receivers == all_receivers) {
             SUNFLECK_TRY(add_part(graph, all, part, services, target));
             empty = false;
             continue;
@@ -85,6 +87,7 @@ Status LightComposer::add_passes(gpu::FrameGraph& graph, std::span<const std::un
         if (empty)
             SUNFLECK_TRY(light_sum_->clear(graph, target.g_buffer, picture, services.resources));
         empty = false;
+        target.holds_light = false;
         target.irradiance =
             graph.create_image("light of " + std::string(techniques()[part.techniques.front()].name),
                                VK_FORMAT_R16G16B16A16_SFLOAT, target.g_buffer.width, target.g_buffer.height);

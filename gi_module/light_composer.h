@@ -25,6 +25,7 @@ private:
     struct Part {
         std::vector<std::size_t> techniques;
         std::uint32_t receivers = 0;
+        bool adds_in_place = false;
         bool replaces = false; // its receivers are lit by nobody else
     };
     static std::vector<Part> parts_of(const LightPlan& plan, const DebugView* view);

@@ -7,9 +7,14 @@
 namespace sunfleck::gi {
 namespace {
 
-CellSet cells_of_term(bool direct) {
-    return cells_where(
-        [&](LightCell cell) { return !cell.specular && !cell.on_mover && (cell.path == PathPart::direct) == direct; });
+CellSet cells_of_term(bool (*holds)(PathPart)) {
+    return cells_where([&](LightCell cell) { return !cell.specular && !cell.on_mover && holds(cell.path); });
+}
+bool is_punctual(PathPart path) {
+    return path == PathPart::punctual;
+}
+bool is_direct(PathPart path) {
+    return path == PathPart::direct;
 }
 CellSet specular_cells() {
     return ~all_diffuse_cells();
@@ -20,6 +25,11 @@ bool lights_movers_only(const TechniqueEntry& technique) {
            (technique.can_light & ~cells_where([](LightCell cell) { return cell.on_mover; })).none();
 }
 
+bool lights_punctual_only(const TechniqueEntry& technique) {
+    return technique.can_light.any() &&
+           (technique.can_light & ~cells_where([](LightCell cell) { return is_punctual(cell.path); })).none();
+}
+
 // Appends the techniques that can light all of `cells`.
 void add_choices(Field& field, CellSet cells) {
     for (const TechniqueEntry& technique : techniques())
@@ -28,11 +38,18 @@ void add_choices(Field& field, CellSet cells) {
 }
 
 std::vector<Field> term_fields() {
+    Field punctual =
+        SUNFLECK_CHOICE(TermSettings, punctual,
+                        "Technique for light straight from suns, point lights and spots (punctual_lights of them): "
+                        "by sharp shadows of its own, or as light samples by whoever lights direct light",
+                        "automatic");
+    add_choices(punctual, cells_of_term(is_punctual));
+    punctual.choices.push_back("none");
     Field direct = SUNFLECK_CHOICE(TermSettings, direct, "Technique for light straight from emitters");
-    add_choices(direct, cells_of_term(true));
+    add_choices(direct, cells_of_term(is_direct));
     direct.choices.push_back("none");
     Field indirect = SUNFLECK_CHOICE(TermSettings, indirect, "Technique for light that was reflected");
-    add_choices(indirect, cells_of_term(false));
+    add_choices(indirect, cells_of_term(is_reflected));
     indirect.choices.push_back("none");
     Field specular = SUNFLECK_CHOICE(TermSettings, specular, "Technique for mirror-like and glossy reflection", "none");
     add_choices(specular, specular_cells());
@@ -43,7 +60,10 @@ std::vector<Field> term_fields() {
     for (const TechniqueEntry& technique : techniques())
         if (lights_movers_only(technique))
             movers.choices.push_back(technique.name);
-    return {direct.flagged(needs_new_samples), indirect.flagged(needs_new_samples), specular,
+    return {punctual.flagged(needs_new_samples),
+            direct.flagged(needs_new_samples),
+            indirect.flagged(needs_new_samples),
+            specular,
             movers.flagged(needs_new_samples),
             SUNFLECK_FIELD(TermSettings, plan, "", 0, 0,
                            "Exceptions for parts of the light, such as first_bounce.dynamic=none; see the "
@@ -58,6 +78,14 @@ std::int32_t technique_of(std::string_view field, std::uint32_t choice) {
         if (techniques()[i].name == name)
             return std::int32_t(i);
     return nobody;
+}
+
+// Of punctual light, where the settings leave it open.
+std::int32_t automatic_owner(std::int32_t direct_owner) {
+    for (std::size_t i = 0; direct_owner != nobody && i < techniques().size(); ++i)
+        if (lights_punctual_only(techniques()[i]))
+            return std::int32_t(i);
+    return direct_owner;
 }
 
 std::vector<const TypeDescription*> all_types() {
@@ -157,6 +185,8 @@ Result<LightPlan> Settings::light_plan() const {
         known.push_back({technique.name, technique.can_light, technique.supports != nullptr});
     TermOwners owners;
     owners.direct = technique_of("direct", direct);
+    owners.punctual =
+        punctual == punctual_automatic ? automatic_owner(owners.direct) : technique_of("punctual", punctual);
     owners.indirect = technique_of("indirect", indirect);
     owners.specular = technique_of("specular", specular);
     owners.movers = technique_of("movers", movers);
@@ -166,7 +196,7 @@ Result<LightPlan> Settings::light_plan() const {
 
 SampleRequest Settings::sample_request(const LightPlan& light_plan) const {
     SampleRequest request(*this);
-    const CellSet direct_cells = cells_where([](LightCell cell) { return cell.path == PathPart::direct; });
+    const CellSet direct_cells = cells_where([](LightCell cell) { return !is_reflected(cell.path); });
     const bool all = sampled_light == SampledLight::all;
     request.direct = all || light_plan.lights_any(direct_cells);
     request.indirect = all || light_plan.lights_any(~direct_cells);

@@ -18,6 +18,7 @@ namespace sunfleck::gi {
 
 // Who lights what, by name: the choices are the names of techniques, and "none".
 struct TermSettings {
+    std::uint32_t punctual = 0; // the first choice is punctual_automatic
     std::uint32_t direct = 0;
     std::uint32_t indirect = 0;
     std::uint32_t specular = 0;
@@ -26,6 +27,8 @@ struct TermSettings {
 
     static const TypeDescription& description();
 };
+// Whoever lights nothing else, if there is such a technique and direct light is lit at all; else as `direct`.
+inline constexpr std::uint32_t punctual_automatic = 0;
 inline constexpr std::uint32_t movers_per_pixel = 0, movers_static = 1;
 
 // The settings struct of a technique, without its type.
@@ -84,7 +87,9 @@ struct Settings : TermSettings,
     // For values known to be right: asserts.
     Settings& with(std::string_view name, std::string_view value);
     // Gives all diffuse light to one technique.
-    Settings& all_light_by(std::string_view technique) { return with("direct", technique).with("indirect", technique); }
+    Settings& all_light_by(std::string_view technique) {
+        return with("punctual", technique).with("direct", technique).with("indirect", technique);
+    }
 
     // Checks every value, and that every part of the light has one owner that can light it.
     Status validate() const;

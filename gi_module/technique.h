@@ -81,6 +81,8 @@ struct LightTarget {
     std::uint64_t bytes_per_group = 4;
     // False colours instead, if they are one of the technique's views; else null.
     const DebugView* view = nullptr;
+    // TechniqueEntry::adds_in_place: the image holds light, to which the technique adds its own.
+    bool holds_light = false;
 };
 
 class Technique {
@@ -111,6 +113,8 @@ struct TechniqueEntry {
     bool needs_full_maps = false;
     // It evaluates light pixel by pixel, at low resolution (low_resolution/): light_pixels is called.
     bool lights_pixels = false;
+    // It can add its light to a picture that holds other light, which saves a layer and a pass.
+    bool adds_in_place = false;
     TechniqueSettings settings;
     std::span<const Counter> counters{};
     std::span<const DebugView> views{};

@@ -78,7 +78,7 @@ Command make_render_command(CLI::App& program) {
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
         ->required();
     add_setting_options(*app, options->scene.lighting,
-                        {"direct", "indirect", "specular", "source", "lights", "direct_share"});
+                        {"punctual", "direct", "indirect", "specular", "source", "lights", "direct_share"});
     app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(view_names()))->capture_default_str();
     app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
     app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");

@@ -207,6 +207,19 @@ std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::Mesh
     return collector.sorted();
 }
 
+void find_punctual(std::vector<Emitter>& emitters, std::uint32_t most) {
+    std::vector<Emitter*> candidates;
+    for (Emitter& emitter : emitters) {
+        emitter.punctual = false;
+        if (emitter.is_delta())
+            candidates.push_back(&emitter);
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Emitter* a, const Emitter* b) { return luminance(a->flux) > luminance(b->flux); });
+    for (std::size_t i = 0; i < std::min<std::size_t>(most, candidates.size()); ++i)
+        candidates[i]->punctual = true;
+}
+
 std::vector<Emitter> collect_backgrounds(ecs::Registry& registry) {
     std::vector<Emitter> result;
     registry.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {

@@ -25,6 +25,7 @@ struct Emitter {
     bool moves = false;   // it, or one of its parents, has a Mover
     bool is_lamp = false; // the surface of an AreaLight: views of irradiance leave it out
     float inner_cosine = 1.0f, outer_cosine = 0.0f;
+    bool punctual = false;     // is_delta, and among the brightest (find_punctual)
     float scene_radius = 0.0f; // of the scene's bounding sphere, for directional light and environment
     vec3 scene_centre{0.0f};
     // Kind mesh: world-space triangles and the running sum of their areas.
@@ -60,6 +61,9 @@ struct EmittedPoint {
 // not 1 m, "m" is that unit, and flux and intensity are such that irradiance stays W/m2.
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
                                       const std::set<ecs::Entity>& keep_dark = {}, const scene::SceneSpace& space = {});
+
+// Marks the `most` brightest emitters without extent as punctual, all others as not.
+void find_punctual(std::vector<Emitter>& emitters, std::uint32_t most);
 
 // Environments that light nothing and are only seen (scene::Environment::lights), of kind environment.
 std::vector<Emitter> collect_backgrounds(ecs::Registry& registry);

@@ -18,6 +18,7 @@ LightSample delta_sample(const Emitter& emitter) {
     sample.position = point.position;
     sample.normal = point.normal;
     sample.flux = emitter.flux;
+    sample.punctual = emitter.punctual;
     if (emitter.kind == EmitterKind::point) {
         sample.kind = SampleKind::point;
     } else if (emitter.kind == EmitterKind::spot) {
@@ -61,6 +62,7 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
 std::vector<LightSample> sample_some_emitters(const std::vector<Emitter>& emitters, std::uint32_t count,
                                               const SampleRequest& settings, const raytrace::RayScene& rays) {
     std::vector<double> cumulative;
+    cumulative.reserve(emitters.size());
     double total = 0;
     for (const Emitter& emitter : emitters)
         cumulative.push_back(total += double(luminance(emitter.flux)));

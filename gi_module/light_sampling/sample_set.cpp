@@ -23,6 +23,7 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
         add(&emitter.matrix, sizeof emitter.matrix);
         add(&emitter.flux, sizeof emitter.flux);
         add(&emitter.area, sizeof emitter.area);
+        add(&emitter.punctual, sizeof emitter.punctual);
         add(&emitter.inner_cosine, sizeof emitter.inner_cosine);
         add(&emitter.outer_cosine, sizeof emitter.outer_cosine);
         const auto image = reinterpret_cast<std::uintptr_t>(emitter.map.image.get());
@@ -95,12 +96,13 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
     const Bounds& fixed = scene.gpu_scene.static_bounds();
     const Bounds bounds = fixed.empty() ? scene.gpu_scene.bounds() : fixed;
     const bool same = emitter_cursor_.follows(scene.changes) && !scene.changes.emitters_changed() &&
-                      emitters_as_static_ == request.movers_are_static && emitter_bounds_.minimum == bounds.minimum &&
-                      emitter_bounds_.maximum == bounds.maximum;
+                      emitters_as_static_ == request.movers_are_static && punctual_lights_ == request.punctual_lights &&
+                      emitter_bounds_.minimum == bounds.minimum && emitter_bounds_.maximum == bounds.maximum;
     emitter_cursor_.saw(scene.changes);
     if (same)
         return;
     emitters_as_static_ = request.movers_are_static;
+    punctual_lights_ = request.punctual_lights;
     emitter_bounds_ = bounds;
     const scene::SceneSpace& space = scene.changes.space;
     if (space != emitter_space_) // flux is counted in other units
@@ -109,6 +111,7 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
     emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
     if (find_varying(scene.registry))
         emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
+    find_punctual(emitters_, request.punctual_lights);
     dynamic_emitters_.clear();
     if (request.movers_are_static)
         return;
@@ -141,7 +144,8 @@ bool SampleSet::find_varying(ecs::Registry& registry) {
 bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
     std::uint64_t hash = hash_emitters(emitters_);
     for (const Emitter& emitter : dynamic_emitters_) // only which ones there are
-        hash = hash * 0x100000001b3ull ^ (emitter.entity.bits() * 16 + std::uint64_t(emitter.kind));
+        hash = hash * 0x100000001b3ull ^
+               (emitter.entity.bits() * 32 + std::uint64_t(emitter.kind) * 2 + (emitter.punctual ? 1 : 0));
     // Where movers count as static geometry, each of their moves needs new walks.
     const std::uint64_t geometry = request.movers_are_static ? rays.generation() : rays.static_generation();
     const bool same =
@@ -168,7 +172,7 @@ void SampleSet::make_samples(const SampleRequest& request, const raytrace::RaySc
 void SampleSet::sort_samples() {
     // By all that decides which technique lights a sample, so that a technique's samples are few, long runs.
     const auto key = [](const LightSample& sample) {
-        return std::tuple(light_class(sample.kind), sample.dynamic, path_part(sample.bounce));
+        return std::tuple(light_class(sample.kind), sample.dynamic, path_part(sample.bounce, sample.punctual));
     };
     std::stable_sort(samples_.begin(), samples_.end(),
                      [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });

@@ -86,6 +86,7 @@ private:
     scene::ChangeCursor emitter_cursor_; // of emitters_ and dynamic_emitters_
     Bounds emitter_bounds_;              // of the scene that they were found in
     scene::SceneSpace emitter_space_;    // and where they lie
+    std::uint32_t punctual_lights_ = 0;  // and how many of them count as punctual
     bool emitters_as_static_ = false;    // and whether movers counted as static geometry
     SampleRequest sampled_;              // what the samples were generated for
     std::uint32_t slots_ = 1;

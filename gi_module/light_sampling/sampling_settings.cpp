@@ -20,6 +20,9 @@ std::vector<Field> sampling_fields() {
                        "Share of the samples that lie on emitters: direct light"),
         SUNFLECK_FIELD(SamplingSettings, dynamic_share, "", 0, 1,
                        "Share of the samples for emitters that move or vary, if there are any"),
+        SUNFLECK_FIELD(SamplingSettings, punctual_lights, "lights", 0, 256,
+                       "Suns, point lights and spots, the brightest first, that are punctual light in the light plan: "
+                       "sharp shadows, at a cost for each; others are light samples like all else"),
         SUNFLECK_FIELD(SamplingSettings, bounces, "", 0, 64, "Maximum number of reflections; 0 is direct light only"),
         SUNFLECK_FIELD(SamplingSettings, seed, "", 0, 4294967295.0, "Another seed gives another set of samples"),
         SUNFLECK_CHOICE(SamplingSettings, sequence, "Random numbers of the samples; sobol is smoother at equal count",

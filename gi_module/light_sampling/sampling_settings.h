@@ -21,7 +21,8 @@ struct SamplingSettings {
     float direct_share = 0.25f; // of the samples, for direct light
     // Of the samples, for dynamic emitters, if there are any; they divide it by flux.
     float dynamic_share = 0.15f;
-    std::uint32_t bounces = 5; // reflections before the visible surface
+    std::uint32_t punctual_lights = 8; // suns, point lights and spots that count as punctual light, brightest first
+    std::uint32_t bounces = 5;         // reflections before the visible surface
     std::uint32_t seed = 1;
     Sequence sequence = Sequence::sobol;
     Termination termination = Termination::russian_roulette;

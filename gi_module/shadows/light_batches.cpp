@@ -5,7 +5,7 @@
 namespace sunfleck::gi {
 
 bool owns_sample(CellSet cells, const LightSample& sample) {
-    LightCell cell{path_part(sample.bounce), sample.dynamic, false, false};
+    LightCell cell{path_part(sample.bounce, sample.punctual), sample.dynamic, false, false};
     const bool on_fixed = cells[cell.index()];
     cell.on_mover = true;
     return on_fixed || cells[cell.index()];

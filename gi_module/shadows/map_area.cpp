@@ -27,6 +27,42 @@ bool project_to_map(const shared::LightRow& light, std::uint32_t light_class, st
 
 } // namespace
 
+namespace {
+
+// Least and greatest |x| over [low, high].
+vec2 range_of_magnitude(float low, float high) {
+    const float greatest = std::max(std::abs(low), std::abs(high));
+    return {low <= 0.0f && high >= 0.0f ? 0.0f : std::min(std::abs(low), std::abs(high)), greatest};
+}
+
+bool reaches_sign(float low, float high, float sign) {
+    return sign > 0.0f ? high >= 0.0f : low <= 0.0f;
+}
+
+} // namespace
+
+// Faces are told apart by signs of light-space x and y, which are signs of map coordinates (sphere) or of their sum and
+// difference (hemisphere); upper and lower ones by |u| + |v|.
+std::uint32_t faces_in_tile(std::uint32_t light_class, const MapTile& tile) {
+    if (tile.is_whole_map() || light_class == shared::light_class_directional)
+        return ~0u;
+    const float half = 1.01f / tile.scale; // texels beyond an edge of faces are drawn, too
+    const vec2 low = tile.centre - half, high = tile.centre + half;
+    const bool hemisphere = light_class == shared::light_class_surface;
+    const vec2 u = range_of_magnitude(low.x, high.x), v = range_of_magnitude(low.y, high.y);
+    std::uint32_t faces = 1u << shared::cone_face;
+    for (std::uint32_t face = 0; face < 8; ++face) {
+        const vec3 s = shared::face_signs(face);
+        const bool sides = hemisphere ? reaches_sign(low.x + low.y, high.x + high.y, s.x) &&
+                                            reaches_sign(low.x - high.y, high.x - low.y, s.y)
+                                      : reaches_sign(low.x, high.x, s.x) && reaches_sign(low.y, high.y, s.y);
+        const bool half_space = hemisphere || (s.z > 0.0f ? u.x + v.x <= 1.0f : u.y + v.y >= 1.0f);
+        if (sides && half_space)
+            faces |= 1u << face;
+    }
+    return faces;
+}
+
 bool MapArea::overlaps(const MapArea& other) const {
     return glm::all(glm::lessThan(low, other.high)) && glm::all(glm::lessThan(other.low, high));
 }
@@ -53,8 +89,8 @@ void MapAreas::add(const MapAreas& other) {
 }
 
 MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t faces,
-                     const Bounds& bounds, std::uint32_t resolution) {
-    vec2 low(1.0f), high(-1.0f);
+                     const Bounds& bounds, std::uint32_t resolution, const MapTile& tile) {
+    vec2 low(1e30f), high(-1e30f);
     for (std::uint32_t face = 0; faces >> face; ++face) {
         if (((faces >> face) & 1u) == 0)
             continue;
@@ -65,6 +101,7 @@ MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, s
             vec2 uv;
             if (!project_to_map(light, light_class, face, point, uv))
                 return MapArea::all(resolution);
+            uv = (uv - tile.centre) * tile.scale;
             low = glm::min(low, uv);
             high = glm::max(high, uv);
         }

@@ -9,6 +9,17 @@
 
 namespace sunfleck::gi {
 
+// The square of a map that is drawn, if not all of it: so that a part can have more texels.
+struct MapTile {
+    vec2 centre{0.0f};  // in map coordinates, [-1, 1]^2
+    float scale = 1.0f; // 1 / half its side
+
+    bool is_whole_map() const { return scale == 1.0f; }
+};
+
+// A bit per face of octahedral_map.h: set if the face may have a part in the tile.
+std::uint32_t faces_in_tile(std::uint32_t light_class, const MapTile& tile);
+
 // Texels from `low` to `high`, exclusive; empty if there are none.
 struct MapArea {
     glm::uvec2 low{0xffffffffu}, high{0};
@@ -28,10 +39,10 @@ private:
     std::vector<MapArea> areas_;
 };
 
-// Area that a box (world space) may cover in the map of a light, on the faces whose bit is set (octahedral_map.h); one
-// texel larger on each side and aligned to even columns, which copies need. The whole map if the box reaches behind a
-// face's projection centre.
+// Area that a box (world space) may cover in the map of a light, or in a tile of it, on the faces whose bit is set
+// (octahedral_map.h); one texel larger on each side and aligned to even columns, which copies need. The whole map if
+// the box reaches behind a face's projection centre.
 MapArea covered_area(const shared::LightRow& light, std::uint32_t light_class, std::uint32_t faces,
-                     const Bounds& bounds, std::uint32_t resolution);
+                     const Bounds& bounds, std::uint32_t resolution, const MapTile& tile = {});
 
 } // namespace sunfleck::gi

@@ -41,4 +41,26 @@ std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bou
     return faces;
 }
 
+// Of a tile only those faces are drawn in which the box reaches the tile; of whole maps, where most boxes do, all that
+// see it.
+ShadowMaps::MapPart ShadowMaps::part_covered(const ShadowRequest& request, const Bounds& bounds,
+                                             bool wants_area) const {
+    MapPart part{faces_that_see(request, bounds) & faces_in_tile(request.light_class, request.tile), {}};
+    const auto area = [&](std::uint32_t faces) {
+        return covered_area(request.light, request.light_class, faces, bounds, resolution_, request.tile);
+    };
+    if (request.tile.is_whole_map()) {
+        if (wants_area)
+            part.area = area(part.faces);
+        return part;
+    }
+    std::uint32_t reached = 0;
+    for (std::uint32_t face = 0; part.faces >> face; ++face)
+        if (((part.faces >> face) & 1u) != 0 && !area(1u << face).empty())
+            reached |= 1u << face;
+    part.faces = reached;
+    part.area = reached != 0 ? area(reached) : MapArea();
+    return part;
+}
+
 } // namespace sunfleck::gi

@@ -5,8 +5,6 @@
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_map_shared.h"
 
-layout(push_constant) uniform Constants { ShadowConstants constants; };
-
 out gl_PerVertex {
     vec4 gl_Position;
     float gl_ClipDistance[3];

@@ -9,10 +9,9 @@
 
 layout(set = 0, binding = 0) readonly buffer Rows { InstanceRow rows[]; };
 layout(set = 0, binding = 1) readonly buffer Materials { MaterialRow materials[]; };
-layout(push_constant) uniform Constants { ShadowConstants constants; };
 
-layout(location = 6) in vec4 in_coordinates;
-layout(location = 7) in vec4 in_colour;
+layout(location = 7) in vec4 in_coordinates;
+layout(location = 8) in vec4 in_colour;
 
 layout(location = 0) out vec2 out_uv;
 layout(location = 1) out vec2 out_alpha_cutoff; // x: alpha of material and vertex; y: cutoff, below which is a hole

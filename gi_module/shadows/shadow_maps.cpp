@@ -35,13 +35,15 @@ struct ShadowMaps::Chunk {
     std::vector<MapAreas> areas;      // that occluders cover, by layer; then, that is copied
 };
 
-Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
-    std::unique_ptr<ShadowMaps> maps(new ShadowMaps(device));
+Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines,
+                                                       const MapNames& names) {
+    std::unique_ptr<ShadowMaps> maps(new ShadowMaps(device, names));
     gpu::GraphicsDescription description;
     description.vertex_shader = "gi_module/shadows/shadow_map.vert";
     description.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
-    for (const std::size_t offset : {offsetof(shared::ShadowJob, x), offsetof(shared::ShadowJob, y),
-                                     offsetof(shared::ShadowJob, w), offsetof(shared::ShadowJob, z)})
+    for (const std::size_t offset :
+         {offsetof(shared::ShadowJob, x), offsetof(shared::ShadowJob, y), offsetof(shared::ShadowJob, w),
+          offsetof(shared::ShadowJob, z), offsetof(shared::ShadowJob, tile)})
         description.attributes.push_back(
             {jobs_buffer, VK_FORMAT_R32G32B32A32_SFLOAT, sizeof(shared::ShadowJob), std::uint32_t(offset), true});
     description.attributes.push_back(
@@ -106,20 +108,20 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     bits_ = layout.bits;
     const std::uint64_t bytes_per_map = std::uint64_t(resolution) * resolution * bits_ / 8;
     gpu::BufferDescription buffer;
-    buffer.name = "shadow maps";
+    buffer.name = names_.maps;
     buffer.size = bytes_per_map * slots;
     buffer.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     buffer.texel_format = bits_ == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
     SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
     if (layout.keep_static) {
-        buffer.name = "static shadow maps";
+        buffer.name = names_.static_maps;
         SUNFLECK_ASSIGN(static_texels_, gpu::Buffer::create(device_, buffer));
     }
     layers_ = std::uint32_t(std::clamp<std::uint64_t>(
         staging_budget_bytes / bytes_per_map, 1, std::min({staging_layers, slots, device_.traits().max_image_layers})));
     gpu::ImageDescription image;
-    image.name = "shadow map staging";
+    image.name = names_.staging;
     image.format = depth_format(bits_);
     image.width = image.height = resolution;
     image.layers = layers_;
@@ -152,19 +154,20 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
         for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
             if (requests[layer].hides(item.entity))
                 continue;
-            const std::uint32_t faces = faces_that_see(requests[layer], item.bounds);
+            const MapPart part = part_covered(requests[layer], item.bounds, occluders == Occluders::movers);
+            const std::uint32_t faces = part.faces;
             seen[layer] |= faces;
             if (occluders == Occluders::movers)
-                chunk.areas[layer].add(
-                    covered_area(requests[layer].light, requests[layer].light_class, faces, item.bounds, resolution_));
+                chunk.areas[layer].add(part.area);
             const bool has_holes = item.kind == scene::surface_kind_holes;
             const std::size_t level = has_holes ? 0
                                                 : (detail ? detail_level(requests[layer], item) : 0) * 2 +
                                                       (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
             for (std::uint32_t face = 0; faces >> face; ++face)
                 if ((faces >> face) & 1u)
-                    by_level[level].push_back(make_shadow_job(requests[layer].light, requests[layer].light_class, layer,
-                                                              face, item.constants, item.row));
+                    by_level[level].push_back(make_shadow_job(requests[layer].light, requests[layer].light_class,
+                                                              {layer, face, resolution_, requests[layer].tile},
+                                                              item.constants, item.row));
         }
         for (std::size_t level = 0; level < by_level.size(); ++level) {
             const std::uint32_t count = std::uint32_t(by_level[level].size());
@@ -202,11 +205,11 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
 std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::DrawItem& item) const {
     float texel;
     if (request.light_class == shared::light_class_directional) {
-        texel = 2.0f / (request.light.tangent_scale.w * float(resolution_));
+        texel = 2.0f / (request.light.tangent_scale.w * float(resolution_) * request.tile.scale);
     } else {
         const float radius = 0.5f * glm::length(item.bounds.extent());
         const float distance = glm::length(item.bounds.centre() - vec3(request.light.position_bound)) - radius;
-        texel = 2.0f / float(resolution_) * std::max(distance, 0.0f);
+        texel = 2.0f / (float(resolution_) * request.tile.scale) * std::max(distance, 0.0f);
         if (request.has_cone_map())
             texel /= std::max(request.light.position_bound.w, 1.0f);
     }
@@ -271,17 +274,17 @@ Status ShadowMaps::add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& sc
     const gpu::ResourceId staging = graph.import_image(staging_);
     const gpu::ResourceId texels = graph.import_buffer(target);
     if (over_static)
-        graph.add_pass("shadow map copies")
+        graph.add_pass(names_.copies)
             .read(graph.import_buffer(static_texels_), gpu::Usage::transfer_source)
             .write(staging, gpu::Usage::transfer_destination)
             .execute(
                 [this, chunk](gpu::PassContext& context) { return copy_chunk(context, chunk, static_texels_, false); });
-    graph.add_pass("shadow maps")
+    graph.add_pass(names_.maps)
         .write(staging, gpu::Usage::depth_attachment)
         .execute([this, &scene, chunk, over_static](gpu::PassContext& context) {
             return draw_chunk(context, scene, chunk, over_static);
         });
-    graph.add_pass("shadow map copies")
+    graph.add_pass(names_.copies)
         .read(staging, gpu::Usage::transfer_source)
         .write(texels, gpu::Usage::transfer_destination)
         .execute(
@@ -312,9 +315,6 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
                 continue;
             const gpu::Pipeline& pipeline = bits_ == 16 ? *pipelines16_[culled] : *pipelines32_[culled];
             status = context.resources.bind(context.commands, pipeline, {});
-            if (status)
-                status = context.resources.push(context.commands, pipeline,
-                                                shared::ShadowConstants{0.5f / float(resolution_)});
             const VkDeviceSize first = culled ? plain * sizeof(VkDrawIndexedIndirectCommand) : 0;
             if (status)
                 vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer, chunk.commands.offset + first,
@@ -340,8 +340,6 @@ Status ShadowMaps::draw_holes(gpu::PassContext& context, const scene::GpuScene& 
         const gpu::Binding bindings[] = {gpu::Binding::storage(scene.rows()), gpu::Binding::storage(scene.materials()),
                                          scene.textures().binding(chunk.hole_textures[i])};
         SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings));
-        SUNFLECK_TRY(
-            context.resources.push(context.commands, pipeline, shared::ShadowConstants{0.5f / float(resolution_)}));
         vk.vkCmdDrawIndexedIndirect(context.commands, chunk.commands.buffer,
                                     chunk.commands.offset +
                                         (chunk.command_count + i) * sizeof(VkDrawIndexedIndirectCommand),

@@ -17,7 +17,7 @@
 
 namespace sunfleck::gi {
 
-// One map to draw.
+// One map to draw, or a tile of one.
 struct ShadowRequest {
     std::uint32_t slot = 0;
     std::uint32_t light_class = 0;
@@ -27,6 +27,7 @@ struct ShadowRequest {
     float detail_texels = 0.5f;
     std::vector<std::uint8_t> hidden; // by entity index: 1 for occluders that cast no shadow of their own because
                                       // static geometry hides them from the light; may be shorter
+    MapTile tile{};
     bool has_cone_map() const { return light_class == shared::light_class_point && light.position_bound.w > 0.0f; }
     bool hides(ecs::Entity entity) const { return entity.index < hidden.size() && hidden[entity.index] != 0; }
 };
@@ -53,9 +54,18 @@ struct ShadowCounters {
     std::uint64_t vertices = 0; // shaded, by the size of the meshes
 };
 
+// Of passes and memory, as profilers and reports show them.
+struct MapNames {
+    const char* maps = "shadow maps";
+    const char* copies = "shadow map copies";
+    const char* static_maps = "static shadow maps";
+    const char* staging = "shadow map staging";
+};
+
 class ShadowMaps {
 public:
-    static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+    static Result<std::unique_ptr<ShadowMaps>> create(gpu::Device& device, gpu::PipelineStore& pipelines,
+                                                      const MapNames& names = {});
 
     // Starts a frame. `previous_lost`: what was added since the last call never reached the GPU, or not all of it.
     void begin_frame(bool previous_lost);
@@ -81,17 +91,27 @@ public:
     void add_clearing(gpu::FrameGraph& graph, std::span<const std::uint32_t> slots);
 
     // A bit per face: set if the box may be visible in it. For directional lights only bit 0.
+    // Whether the box may have a part in the map, or in the tile of it.
+    bool covers(const ShadowRequest& request, const Bounds& bounds) const {
+        return part_covered(request, bounds, false).faces != 0;
+    }
     static std::uint32_t faces_that_see(const ShadowRequest& request, const Bounds& bounds);
 
 private:
-    ShadowMaps(gpu::Device& device) : device_(device) {}
+    ShadowMaps(gpu::Device& device, const MapNames& names) : device_(device), names_(names) {}
     struct Chunk;
+    // What a box may cover of a map: faces, and texels (none if no face).
+    struct MapPart {
+        std::uint32_t faces = 0;
+        MapArea area;
+    };
     enum class Occluders { all, static_only, movers };
     Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
                                 std::span<const ShadowRequest> requests, Occluders occluders, bool detail,
                                 ShadowCounters& counters) const;
     void find_copied_areas(std::span<const ShadowRequest> requests, bool over_static, Chunk& chunk);
     std::size_t detail_level(const ShadowRequest& request, const scene::DrawItem& item) const;
+    MapPart part_covered(const ShadowRequest& request, const Bounds& bounds, bool wants_area) const;
     static bool shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item);
     Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
                        const gpu::Buffer& target, bool over_static);
@@ -101,6 +121,7 @@ private:
     Status copy_chunk(gpu::PassContext& context, const Chunk& chunk, const gpu::Buffer& buffer, bool to_buffer) const;
 
     gpu::Device& device_;
+    const MapNames names_;
     const gpu::Pipeline* pipelines16_[2] = {}; // both sides of triangles; sides that face the light
     const gpu::Pipeline* pipelines32_[2] = {};
     const gpu::Pipeline* hole_pipelines_[2] = {}; // 16 bits, 32 bits

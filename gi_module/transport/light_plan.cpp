@@ -5,17 +5,19 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::array<std::string_view, 3> path_names = {"direct", "first_bounce", "later_bounces"};
+constexpr std::array<std::string_view, path_part_count> path_names = {"punctual", "direct", "first_bounce",
+                                                                      "later_bounces"};
 
 struct Selector {
     std::string_view name;
     bool (*holds)(LightCell);
 };
 constexpr Selector selectors[] = {
+    {"punctual", [](LightCell cell) { return cell.path == PathPart::punctual; }},
     {"direct", [](LightCell cell) { return cell.path == PathPart::direct; }},
     {"first_bounce", [](LightCell cell) { return cell.path == PathPart::first_bounce; }},
     {"later_bounces", [](LightCell cell) { return cell.path == PathPart::later_bounces; }},
-    {"indirect", [](LightCell cell) { return cell.path != PathPart::direct; }},
+    {"indirect", [](LightCell cell) { return is_reflected(cell.path); }},
     {"fixed", [](LightCell cell) { return !cell.dynamic; }},
     {"dynamic", [](LightCell cell) { return cell.dynamic; }},
     {"on_fixed", [](LightCell cell) { return !cell.on_mover; }},
@@ -43,9 +45,10 @@ Result<CellSet> selected_cells(std::string_view text) {
             if (selector.name == word)
                 found = &selector;
         if (found == nullptr)
-            return Error{"light plan '" + whole + "': '" + std::string(word) +
-                         "' is not a part of the light (direct, first_bounce, later_bounces, indirect, fixed, dynamic, "
-                         "on_fixed, on_mover, diffuse, specular)"};
+            return Error{
+                "light plan '" + whole + "': '" + std::string(word) +
+                "' is not a part of the light (punctual, direct, first_bounce, later_bounces, indirect, fixed, "
+                "dynamic, on_fixed, on_mover, diffuse, specular)"};
         names_specular = names_specular || word == "specular";
         cells &= cells_where(found->holds);
     }
@@ -76,15 +79,17 @@ Result<std::int32_t> find_technique(std::string_view name, std::span<const Plann
 std::int32_t owner_by_term(const TermOwners& terms, LightCell cell) {
     if (cell.specular)
         return terms.specular;
+    if (cell.path == PathPart::punctual)
+        return terms.punctual;
     return cell.path == PathPart::direct ? terms.direct : terms.indirect;
 }
 
 // By path and whether it is dynamic: the diffuse light of a technique on receivers of one kind.
-std::bitset<6> paths_on(CellSet cells, bool on_mover) {
-    std::bitset<6> paths;
+std::bitset<2 * path_part_count> paths_on(CellSet cells, bool on_mover) {
+    std::bitset<2 * path_part_count> paths;
     for (std::size_t i = 0; i < light_cell_count; ++i)
         if (const LightCell cell = LightCell::at(i); cells[i] && cell.on_mover == on_mover && !cell.specular)
-            paths[i % 6] = true;
+            paths[i % paths.size()] = true;
     return paths;
 }
 
@@ -129,7 +134,7 @@ Status LightPlan::check(std::int32_t index, const PlannedTechnique& technique) c
     const std::string name = "light plan: " + std::string(technique.name);
     if ((lit & ~technique.can_light).any())
         return Error{name + " cannot light " + names_of(lit & ~technique.can_light)};
-    const std::bitset<6> fixed = paths_on(lit, false), movers = paths_on(lit, true);
+    const auto fixed = paths_on(lit, false), movers = paths_on(lit, true);
     if (fixed.any() && movers.any() && fixed != movers)
         return Error{name + " must light the same paths on movers as on fixed surfaces, or only one of the two"};
     if (technique.some_receivers && movers.any() && shares_movers(index))

@@ -1,6 +1,8 @@
 // The light plan: which technique computes which part of the light. The light in a picture is divided into cells:
 //
-//     {direct, first bounce, later bounces}                         reflections before the visible surface
+//     {punctual, direct, first bounce, later bounces}               reflections before the visible surface; direct
+//     light
+//                                                                   of lights without extent is apart
 //   x {fixed, dynamic: the emitter or a reflector moves or varies}  the light's path
 //   x {fixed, mover}                                                the surface that receives it
 //   x {diffuse, specular}                                           how that surface reflects it to the camera
@@ -23,11 +25,20 @@
 
 namespace sunfleck::gi {
 
-enum class PathPart : std::uint8_t { direct, first_bounce, later_bounces };
+// punctual: straight from a sun, a point light or a spot, whose shadows have sharp edges (glTF's KHR_lights_punctual).
+// direct: straight from surfaces and the sky.
+enum class PathPart : std::uint8_t { punctual, direct, first_bounce, later_bounces };
+inline constexpr std::size_t path_part_count = 4;
 
-// `bounce`: reflections before the visible surface.
-constexpr PathPart path_part(std::uint32_t bounce) {
-    return bounce == 0 ? PathPart::direct : bounce == 1 ? PathPart::first_bounce : PathPart::later_bounces;
+// `bounce`: reflections before the visible surface. `punctual`: the light has no extent.
+constexpr PathPart path_part(std::uint32_t bounce, bool punctual) {
+    if (bounce == 0)
+        return punctual ? PathPart::punctual : PathPart::direct;
+    return bounce == 1 ? PathPart::first_bounce : PathPart::later_bounces;
+}
+
+constexpr bool is_reflected(PathPart path) {
+    return path == PathPart::first_bounce || path == PathPart::later_bounces;
 }
 
 struct LightCell {
@@ -37,16 +48,18 @@ struct LightCell {
     bool specular = false;
 
     constexpr std::size_t index() const {
-        return std::size_t(path) + 3u * (dynamic ? 1u : 0u) + 6u * (on_mover ? 1u : 0u) + 12u * (specular ? 1u : 0u);
+        return std::size_t(path) +
+               path_part_count * ((dynamic ? 1u : 0u) + 2u * (on_mover ? 1u : 0u) + 4u * (specular ? 1u : 0u));
     }
     static constexpr LightCell at(std::size_t index) {
-        return {PathPart(index % 3), (index / 3) % 2 != 0, (index / 6) % 2 != 0, index / 12 != 0};
+        const std::size_t rest = index / path_part_count;
+        return {PathPart(index % path_part_count), rest % 2 != 0, (rest / 2) % 2 != 0, rest / 4 != 0};
     }
     // "first_bounce.dynamic.on_mover.diffuse", in the syntax of TermOwners::exceptions.
     std::string name() const;
 };
 
-inline constexpr std::size_t light_cell_count = 24;
+inline constexpr std::size_t light_cell_count = path_part_count * 8;
 using CellSet = std::bitset<light_cell_count>;
 
 // Cells for which `holds(LightCell)`.
@@ -70,13 +83,14 @@ inline constexpr std::int32_t nobody = -1;
 
 // Owners by term, as indices into the list of techniques, or nobody.
 struct TermOwners {
+    std::int32_t punctual = nobody;
     std::int32_t direct = nobody;
     std::int32_t indirect = nobody;
     std::int32_t specular = nobody;
-    std::int32_t movers = nobody; // lights movers in place of the owners of direct and indirect light
+    std::int32_t movers = nobody; // lights movers in place of the owners of the terms above, but specular
     // Exceptions for single cells: "cells=technique", separated by commas, where `cells` is a list of restrictions
-    // joined by dots: direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover; diffuse,
-    // specular. Example: "first_bounce.dynamic=brute_force,specular=none". Naming a cell twice is an error.
+    // joined by dots: punctual, direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover;
+    // diffuse, specular. Example: "first_bounce.dynamic=brute_force,specular=none". Naming a cell twice is an error.
     std::string_view exceptions{};
 };
 

@@ -19,6 +19,7 @@ const TypeDescription& LightSample::description() {
          SUNFLECK_FIELD(LightSample, index, "", 0, 4294967295.0, "Stable number"),
          SUNFLECK_FIELD(LightSample, emitter, "", 0, 0, "Entity that emits its light"),
          SUNFLECK_FIELD(LightSample, path_vertex_count, "", 0, 6, "Stored vertices of the light's path"),
+         SUNFLECK_FIELD(LightSample, punctual, "", 0, 1, "All light of a sun, point light or spot"),
          SUNFLECK_FIELD(LightSample, dynamic, "", 0, 1, "Its emitter moves or varies")}};
     return type;
 }

@@ -32,6 +32,8 @@ struct LightSample {
     static constexpr std::uint32_t max_path_vertices = 6;
     std::array<vec3, max_path_vertices> path{};
     std::uint32_t path_vertex_count = 0;
+    // All light of a sun, point light or spot that the light plan counts as punctual.
+    bool punctual = false;
     // Its emitter moves or varies: it is never in light maps, and its visibility is computed for whole charts only.
     bool dynamic = false;
 

@@ -145,7 +145,7 @@ TEST(OctahedralMap, JobsPlaceVerticesAsTheFacesDo) {
         cones += cone;
         const std::uint32_t face = cone ? cone_face : std::uint32_t(i) / 4 % (kind == light_class_surface ? 4 : 8);
         const ShadowJob job =
-            gi::make_shadow_job(light, kind, 5, kind == light_class_directional ? 0 : face, occluder, 9);
+            gi::make_shadow_job(light, kind, {5, kind == light_class_directional ? 0 : face}, occluder, 9);
         EXPECT_EQ(job.layer_face & 0xffffu, 5u);
         EXPECT_EQ(job.row, 9u);
         const vec4 p(number(), number(), number(), 1.0f);

@@ -9,7 +9,7 @@
 namespace sunfleck::tests {
 namespace {
 
-// A lamp that stays, one that moves, and a door: all that samples depend on.
+// A lamp that stays, one that moves, a point light and a door: all that samples depend on.
 void make_room(assets::SceneBuilder& scene) {
     const vec3 white(0.7f), red(0.7f, 0.3f, 0.3f);
     scene.room(vec3(-2, 0, -2), vec3(2, 2.5f, 2), white, white, {red, white, white, white},
@@ -19,6 +19,7 @@ void make_room(assets::SceneBuilder& scene) {
     const ecs::Entity torch = scene.box("torch", vec3(-0.1f), vec3(0.1f), glowing);
     scene.registry().patch<scene::Transform>(torch,
                                              [](scene::Transform& place) { place.position = vec3(1.2f, 1.1f, 0.0f); });
+    scene.point_light("bulb", vec3(-1.0f, 2.0f, 1.0f), vec3(1.0f));
     scene::Mover circle;
     circle.path = scene::MoverPath::circle;
     circle.centre = vec3(0.0f, 1.1f, 0.0f);
@@ -74,7 +75,8 @@ std::vector<std::string> values_of(const Field& field) {
 bool same_samples(std::span<const gi::LightSample> a, std::span<const gi::LightSample> b) {
     const auto same = [](const gi::LightSample& s, const gi::LightSample& t) {
         return s.kind == t.kind && s.position == t.position && s.normal == t.normal && s.flux == t.flux &&
-               s.bounce == t.bounce && s.radius == t.radius && s.emitter == t.emitter && s.dynamic == t.dynamic;
+               s.bounce == t.bounce && s.radius == t.radius && s.emitter == t.emitter && s.dynamic == t.dynamic &&
+               s.punctual == t.punctual;
     };
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
@@ -130,6 +132,8 @@ protected:
 TEST_F(SettingFields, ThoseFlaggedChangeTheSamplesAndNoOthersDo) {
     gi::Settings direct_only = base;
     direct_only.with("indirect", "none"); // where it matters which light is sampled
+    gi::Settings indirect_only = base;
+    indirect_only.with("direct", "none");
     update(base);
     gi::Report report;
     samples().report(report);
@@ -139,7 +143,8 @@ TEST_F(SettingFields, ThoseFlaggedChangeTheSamplesAndNoOthersDo) {
         const Field& field = *gi::Settings::find(name);
         const bool needs = (field.flags & gi::needs_new_samples) != 0;
         ++(needs ? flagged : unflagged);
-        const bool changed = changes_samples(base, field) || (needs && changes_samples(direct_only, field));
+        const bool changed = changes_samples(base, field) ||
+                             (needs && (changes_samples(direct_only, field) || changes_samples(indirect_only, field)));
         const bool has_one_value = field.kind == FieldKind::choice && field.choices.size() == 1;
         EXPECT_EQ(changed, needs && !has_one_value) << name;
     }

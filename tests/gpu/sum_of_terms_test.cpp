@@ -12,11 +12,17 @@ namespace {
 
 struct Assignment {
     std::string name;
-    std::string direct, indirect, movers = "per_pixel", plan = "";
+    std::string direct, indirect, movers = "per_pixel", plan = "", punctual = "";
 };
 
 bool lights_all_receivers(const gi::TechniqueEntry& technique) {
     return technique.supports == nullptr && (gi::all_diffuse_cells() & ~technique.can_light).none();
+}
+
+bool lights_punctual_only(const gi::TechniqueEntry& technique) {
+    const gi::CellSet punctual =
+        gi::cells_where([](gi::LightCell cell) { return cell.path == gi::PathPart::punctual; });
+    return (technique.can_light & ~punctual).none();
 }
 
 // Two techniques in all the ways that they can share the light by path, by what moves and by receiver.
@@ -38,6 +44,10 @@ std::vector<Assignment> all_assignments() {
         for (const gi::TechniqueEntry& b : gi::techniques())
             if (lights_all_receivers(b) && a.name != b.name)
                 add_pair(list, std::string(a.name), std::string(b.name));
+        for (const gi::TechniqueEntry& b : gi::techniques())
+            if (lights_punctual_only(b))
+                list.push_back({"punctual by " + std::string(b.name) + ", " + std::string(a.name), std::string(a.name),
+                                std::string(a.name), "per_pixel", "", std::string(b.name)});
     }
     const std::size_t without_movers = list.size();
     for (const gi::TechniqueEntry& technique : gi::techniques())
@@ -61,6 +71,7 @@ gi::Settings settings_of(const Assignment& assignment) {
     settings.map_detail = false; // the maps of all assignments are the same
     settings.with("sampled_light", "all");
     settings.with("direct", assignment.direct).with("indirect", assignment.indirect);
+    settings.with("punctual", assignment.punctual.empty() ? assignment.direct : assignment.punctual);
     settings.with("movers", assignment.movers).with("plan", assignment.plan);
     return settings;
 }
@@ -79,7 +90,9 @@ gi::Settings alone(gi::Settings settings, gi::LightCell cell) {
     const std::int32_t owner = plan.owner(cell), fallback = plan.fallback(cell);
     const bool shares = owner != gi::nobody && gi::techniques()[std::size_t(owner)].supports != nullptr;
     const std::string term = name_of(shares ? fallback : owner);
-    settings.with("direct", term).with("indirect", term);
+    settings.with("punctual", cell.path == gi::PathPart::punctual ? term : "none");
+    if (cell.path != gi::PathPart::punctual)
+        settings.with("direct", term).with("indirect", term);
     if (!shares && settings.movers != gi::movers_static)
         settings.with("movers", "per_pixel");
     settings.plan.clear();
@@ -183,7 +196,8 @@ protected:
         const double sum = error(sum_of_cells(exact, step), picture(exact, step));
         EXPECT_LT(sum, allowed_sum_error(settings)) << what;
         std::printf("%-70s sum %.1e", what.c_str(), sum);
-        if (!has_technique("brute_force")) {
+        if (!has_technique("brute_force") ||
+            !assignment.punctual.empty()) { // whose maps are others than the baseline's
             std::printf("\n");
             return;
         }

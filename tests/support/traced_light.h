@@ -15,6 +15,7 @@ struct TracedPixel {
     bool surface = false;
     vec3 position{0.0f}, normal{0.0f}; // in the scene's space
     double exact = 0.0, least = 0.0, most = 0.0;
+    double unshadowed = 0.0; // if nothing cast shadows
 };
 
 class TracedLight {
@@ -96,6 +97,7 @@ private:
                     all = all && arrived(u, v).lit;
                     any = any || arrived(u, v).lit;
                 }
+        pixel.unshadowed += here.light;
         pixel.exact += here.lit ? here.light : 0.0;
         pixel.least += all ? here.light : 0.0;
         pixel.most += any ? here.light : 0.0;

@@ -10,17 +10,20 @@ namespace {
 
 const CellSet diffuse = all_diffuse_cells();
 const CellSet on_movers = cells_where([](LightCell cell) { return cell.on_mover && !cell.specular; });
-const std::vector<PlannedTechnique> three = {{"many", diffuse}, {"brute", diffuse}, {"prt", on_movers, true}};
-constexpr std::int32_t many_light = 0, brute = 1, prt = 2;
+const CellSet punctual_cells =
+    cells_where([](LightCell cell) { return cell.path == PathPart::punctual && !cell.specular; });
+const std::vector<PlannedTechnique> four = {
+    {"many", diffuse}, {"brute", diffuse}, {"prt", on_movers, true}, {"sharp", punctual_cells}};
+constexpr std::int32_t many_light = 0, brute = 1, prt = 2, sharp = 3;
 
 LightPlan plan_of(const TermOwners& terms) {
-    const Result<LightPlan> plan = LightPlan::make(terms, three);
+    const Result<LightPlan> plan = LightPlan::make(terms, four);
     EXPECT_TRUE(plan) << (plan ? "" : plan.error().message);
     return plan ? *plan : LightPlan();
 }
 
 std::string refusal_of(const TermOwners& terms) {
-    const Result<LightPlan> plan = LightPlan::make(terms, three);
+    const Result<LightPlan> plan = LightPlan::make(terms, four);
     EXPECT_FALSE(plan);
     return plan ? "" : plan.error().message;
 }
@@ -38,18 +41,20 @@ TEST(LightPlan, CellsAreDistinctAndNamed) {
 TEST(LightPlan, TermsOwnTheirCells) {
     for (const std::int32_t direct : {nobody, many_light, brute})
         for (const std::int32_t indirect : {nobody, many_light, brute})
-            for (const std::int32_t movers : {nobody, prt}) {
-                const LightPlan plan = plan_of({direct, indirect, nobody, movers});
-                for (std::size_t i = 0; i < light_cell_count; ++i) {
-                    const LightCell cell = LightCell::at(i);
-                    const std::int32_t base = cell.specular                   ? nobody
-                                              : cell.path == PathPart::direct ? direct
-                                                                              : indirect;
-                    const bool taken = cell.on_mover && movers == prt && base != nobody;
-                    EXPECT_EQ(plan.owner(cell), taken ? prt : base) << cell.name();
-                    EXPECT_EQ(plan.fallback(cell), taken ? base : nobody) << cell.name();
+            for (const std::int32_t punctual : {nobody, brute, sharp})
+                for (const std::int32_t movers : {nobody, prt}) {
+                    const LightPlan plan = plan_of({punctual, direct, indirect, nobody, movers});
+                    for (std::size_t i = 0; i < light_cell_count; ++i) {
+                        const LightCell cell = LightCell::at(i);
+                        const std::int32_t base = cell.specular                     ? nobody
+                                                  : cell.path == PathPart::punctual ? punctual
+                                                  : cell.path == PathPart::direct   ? direct
+                                                                                    : indirect;
+                        const bool taken = cell.on_mover && movers == prt && base != nobody;
+                        EXPECT_EQ(plan.owner(cell), taken ? prt : base) << cell.name();
+                        EXPECT_EQ(plan.fallback(cell), taken ? base : nobody) << cell.name();
+                    }
                 }
-            }
 }
 
 // Every single cell can be somebody's, everything else nobody's.
@@ -57,7 +62,7 @@ TEST(LightPlan, SingleCells) {
     for (std::size_t i = 0; i < light_cell_count; ++i) {
         const LightCell cell = LightCell::at(i);
         const std::string exception = cell.name() + "=brute";
-        const TermOwners terms{nobody, nobody, nobody, nobody, exception};
+        const TermOwners terms{nobody, nobody, nobody, nobody, nobody, exception};
         if (cell.specular) {
             EXPECT_NE(refusal_of(terms).find("brute cannot light " + cell.name()), std::string::npos);
             continue;
@@ -70,24 +75,27 @@ TEST(LightPlan, SingleCells) {
 }
 
 TEST(LightPlan, ExceptionsAndRefusals) {
-    const LightPlan plan =
-        plan_of({many_light, many_light, nobody, nobody, "indirect.dynamic=brute,later_bounces.fixed=none"});
+    const LightPlan plan = plan_of(
+        {many_light, many_light, many_light, nobody, nobody, "indirect.dynamic=brute,later_bounces.fixed=none"});
     EXPECT_EQ(plan.owner({PathPart::first_bounce, true, false, false}), brute);
     EXPECT_EQ(plan.owner({PathPart::first_bounce, false, true, false}), many_light);
     EXPECT_EQ(plan.owner({PathPart::later_bounces, false, true, false}), nobody);
+    EXPECT_NE(refusal_of({many_light, many_light, many_light, nobody, nobody, "direct=brute,direct.dynamic=none"})
+                  .find("two owners"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many_light, many_light, many_light, nobody, nobody, "direct=torch"})
+                  .find("no technique is called 'torch'"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many_light, many_light, many_light, nobody, nobody, "sideways=brute"})
+                  .find("'sideways' is not a part"),
+              std::string::npos);
+    EXPECT_NE(refusal_of({many_light, many_light, many_light, nobody, nobody, "direct.on_fixed=prt"})
+                  .find("prt cannot light"),
+              std::string::npos);
     EXPECT_NE(
-        refusal_of({many_light, many_light, nobody, nobody, "direct=brute,direct.dynamic=none"}).find("two owners"),
+        refusal_of({many_light, many_light, many_light, nobody, nobody, "direct.on_mover=none"}).find("same paths"),
         std::string::npos);
-    EXPECT_NE(
-        refusal_of({many_light, many_light, nobody, nobody, "direct=torch"}).find("no technique is called 'torch'"),
-        std::string::npos);
-    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "sideways=brute"}).find("'sideways' is not a part"),
-              std::string::npos);
-    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_fixed=prt"}).find("prt cannot light"),
-              std::string::npos);
-    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_mover=none"}).find("same paths"),
-              std::string::npos);
-    EXPECT_NE(refusal_of({many_light, many_light, nobody, nobody, "direct.on_mover=prt"})
+    EXPECT_NE(refusal_of({many_light, many_light, many_light, nobody, nobody, "direct.on_mover=prt"})
                   .find("must own all light on movers"),
               std::string::npos);
 }
@@ -103,14 +111,14 @@ TEST(LightPlan, EveryAssignmentHasOneOwnerACell) {
         std::string text;
         for (int g = 0, rest = code; g < 6; ++g, rest /= 3)
             text += std::string(g > 0 ? "," : "") + groups[g] + "=" + owners[rest % 3];
-        const Result<LightPlan> plan = LightPlan::make({brute, brute, nobody, nobody, text}, three);
+        const Result<LightPlan> plan = LightPlan::make({brute, brute, brute, nobody, nobody, text}, four);
         if (!plan) {
             EXPECT_FALSE(plan.error().message.empty());
             continue;
         }
         ++accepted;
         for (std::int32_t t = 0; t < 3; ++t)
-            EXPECT_TRUE((plan->lit_by(t) & ~three[std::size_t(t)].can_light).none()) << text;
+            EXPECT_TRUE((plan->lit_by(t) & ~four[std::size_t(t)].can_light).none()) << text;
         for (std::size_t i = 0; i < light_cell_count; ++i)
             if (plan->owner(LightCell::at(i)) == prt) {
                 EXPECT_NE(plan->fallback(LightCell::at(i)), prt);
@@ -143,7 +151,8 @@ TEST(LightPlan, TheFirstTechniqueThatCanLightATermIsItsDefault) {
     const Settings settings;
     for (const bool direct : {true, false}) {
         const CellSet cells = cells_where([&](LightCell cell) {
-            return !cell.specular && !cell.on_mover && (cell.path == PathPart::direct) == direct;
+            return !cell.specular && !cell.on_mover && cell.path != PathPart::punctual &&
+                   (cell.path == PathPart::direct) == direct;
         });
         std::string_view expected = "none";
         for (const TechniqueEntry& technique : techniques())
@@ -152,6 +161,22 @@ TEST(LightPlan, TheFirstTechniqueThatCanLightATermIsItsDefault) {
         EXPECT_EQ(settings.get(direct ? "direct" : "indirect"), expected);
     }
     EXPECT_TRUE(settings.validate());
+}
+
+// Automatic: a technique that lights nothing else, if the build has one; whoever lights direct light if it has none;
+// and nobody where direct light is switched off.
+TEST(LightPlan, PunctualLightFollowsDirectLight) {
+    const CellSet punctual = cells_where([](LightCell cell) { return cell.path == PathPart::punctual; });
+    Settings settings;
+    const LightPlan plan = settings.light_plan().value();
+    const LightCell cell{PathPart::punctual, false, false, false};
+    std::int32_t expected = plan.owner({PathPart::direct, false, false, false});
+    for (std::size_t i = 0; i < techniques().size(); ++i)
+        if ((techniques()[i].can_light & ~punctual).none())
+            expected = std::int32_t(i);
+    EXPECT_EQ(plan.owner(cell), expected);
+    settings.with("direct", "none");
+    EXPECT_EQ(settings.light_plan().value().owner(cell), nobody);
 }
 
 } // namespace
