@@ -27,8 +27,13 @@ void apply_preset(DemoSettings& settings) {
 }
 
 gi::Settings lighting_of(const DemoSettings& settings) {
-    return viewer::quality_settings(equivalent_quality(settings), {"", settings.render_scale, settings.light_samples,
-                                                                   settings.map_budget, settings.transfer});
+    const viewer::Quality quality = equivalent_quality(settings);
+    viewer::QualityPreset preset = viewer::quality_presets()[std::size_t(quality)];
+    preset.render_scale = settings.render_scale;
+    preset.light_samples = settings.light_samples;
+    preset.map_budget = settings.map_budget;
+    preset.transfer = settings.transfer;
+    return viewer::quality_settings(quality, preset);
 }
 
 bool has_transfer() {

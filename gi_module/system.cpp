@@ -59,6 +59,14 @@ bool System::any_in_use(bool TechniqueEntry::*request) const {
     return false;
 }
 
+CellSet System::cells_with_maps() const {
+    CellSet cells;
+    for (std::size_t i = 0; i < techniques_.size(); ++i)
+        if (techniques()[i].reads_maps)
+            cells |= plan_.lit_by(std::int32_t(i));
+    return cells;
+}
+
 bool System::wants_visibility() const {
     return any_in_use(&TechniqueEntry::wants_visibility);
 }
@@ -89,8 +97,8 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
     {
         const StageTimer timer(cpu_times_, "shadow scheduling");
         shadows_->measured(input.measured_serial, input.measured_map_milliseconds);
-        shadows_->schedule(samples_,
-                           {gpu_scene, services().visibility, input.serial, input.map_budget, input.view_projection});
+        shadows_->schedule(samples_, {gpu_scene, services().visibility, input.serial, input.map_budget,
+                                      input.view_projection, cells_with_maps()});
     }
     SUNFLECK_TRY(update_techniques(scene));
     input_.progress = {}; // what it refers to may end with this call

@@ -71,6 +71,7 @@ private:
     explicit System(gpu::Device& device) : resources_(device) {}
     Services services();
     bool wants_visibility() const;
+    CellSet cells_with_maps() const;
     bool any_in_use(bool TechniqueEntry::*request) const;
     Status update_samples(const SceneView& scene, bool static_changed);
     Status update_visibility(const SceneView& scene, bool static_changed);

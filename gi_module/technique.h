@@ -111,6 +111,8 @@ struct TechniqueEntry {
     // Its shadow test does not allow for movers that maps show simplified: while it is in use, none are
     // (ShadowSettings::map_detail).
     bool needs_full_maps = false;
+    // It reads the shadow maps of its light samples (ShadowService). Maps that nobody reads are not drawn.
+    bool reads_maps = true;
     // It evaluates light pixel by pixel, at low resolution (low_resolution/): light_pixels is called.
     bool lights_pixels = false;
     // It can add its light to a picture that holds other light, which saves a layer and a pass.

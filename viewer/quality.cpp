@@ -1,6 +1,7 @@
 #include "viewer/quality.h"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -8,9 +9,9 @@ namespace sunfleck::viewer {
 namespace {
 
 constexpr QualityPreset presets[] = {
-    {"software", 0.5f, 200, 24, false}, // without a GPU
-    {"low", 0.67f, 250, 40, false},     {"medium", 0.75f, 400, 60, false},
-    {"high", 1.0f, 600, 120, true},     {"ultra", 1.0f, 1500, 300, true},
+    {"software", 0.5f, 200, 24, false, 1}, // without a GPU
+    {"low", 0.67f, 250, 40, false, 2},     {"medium", 0.75f, 400, 60, false, 4},
+    {"high", 1.0f, 600, 120, true, 8},     {"ultra", 1.0f, 1500, 300, true, 16},
 };
 
 } // namespace
@@ -34,6 +35,8 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     result.patch_levels = 2; // houses have many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
+    if (gi::Settings::find("moving_light_tiles") != nullptr)
+        result.with("moving_light_tiles", std::to_string(preset.moving_light_tiles));
     if (preset.transfer && has_transfer())
         result.with("movers", "prt");
     return result;

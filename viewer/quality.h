@@ -16,7 +16,8 @@ struct QualityPreset {
     const char* name;
     float render_scale; // of the window's size
     std::uint32_t light_samples, map_budget;
-    bool transfer; // complex movers by precomputed radiance transfer
+    bool transfer;                        // complex movers by precomputed radiance transfer
+    std::uint32_t moving_light_tiles = 4; // of the shadows of a lamp that is carried
 };
 // In the order of Quality.
 std::span<const QualityPreset> quality_presets();

@@ -8,7 +8,7 @@ namespace sunfleck::gi {
 struct AdaptiveShadowsSettings {
     float shadow_detail = 1.0f;        // texels a pixel
     float shadow_tile_memory = 128.0f; // MiB
-    std::uint32_t moving_light_tiles = 16;
+    std::uint32_t moving_light_tiles = 4;
 
     static const TypeDescription& description();
 };

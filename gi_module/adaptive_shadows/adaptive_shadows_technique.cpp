@@ -23,6 +23,8 @@ constexpr Counter tiles_stale{"shadow_tiles_stale", "tiles", "punctual light",
 constexpr Counter tile_memory{"shadow_tile_maps", "B", memory_group, "Tiles of shadow maps, including static parts"};
 constexpr Counter technique_counters[] = {punctual_lights, tiles_needed, tiles_drawn, tiles_stale, tile_memory};
 
+constexpr float mover_detail = 0.35f; // texels: largest error of simplified surfaces
+
 std::uint32_t map_kind(const shared::LightRow& row, std::uint32_t light_class) {
     if (light_class == shared::light_class_directional)
         return shared::map_of_directions;
@@ -53,6 +55,7 @@ const TechniqueEntry& adaptive_shadows_technique() {
         .name = "adaptive_shadows",
         .tooltip = "Suns, point lights and spots at every pixel, with about a texel of shadow map a pixel",
         .can_light = cells_where([](LightCell cell) { return cell.path == PathPart::punctual && !cell.specular; }),
+        .reads_maps = false,
         .adds_in_place = true,
         .settings = settings_of<AdaptiveShadowsSettings>(),
         .counters = technique_counters,
@@ -126,7 +129,7 @@ void AdaptiveShadowsTechnique::follow_lights(const Services& services, CellSet c
     for (std::uint32_t i = 0; i < samples.size(); ++i) {
         const LightSample& sample = samples.samples()[i];
         if (sample.punctual && owns_sample(cells, sample))
-            now.push_back({sample.emitter, samples.light_class_of(i), samples.rows()[i], true, {}});
+            now.push_back({sample.emitter, i, samples.light_class_of(i), samples.rows()[i], false, {}});
     }
     const bool same_lights =
         std::equal(now.begin(), now.end(), lights_.begin(), lights_.end(), [](const Light& a, const Light& b) {
@@ -142,7 +145,7 @@ void AdaptiveShadowsTechnique::follow_lights(const Services& services, CellSet c
         before.intensity_slot = now[i].row.intensity_slot;
         now[i].moved = std::memcmp(&before, &now[i].row, sizeof before) != 0;
         if (now[i].moved)
-            store_.forget(i);
+            store_.outdate(i);
         else
             now[i].places = std::move(lights_[i].places);
         selected_ = selected_ && !now[i].moved && !lights_[i].moved && lit(now[i]) == lit(lights_[i]);
@@ -211,7 +214,8 @@ std::vector<TileKey> AdaptiveShadowsTechnique::tiles_of(std::uint32_t index,
     if (light.places.empty() || light.moved)
         light.places = place(0, receivers_, !light.moved);
     const std::vector<ReceiverPlace> moving = place(std::uint32_t(receivers_.size()), movers_, false);
-    const TileDemand demand{{light.places, moving}, pixels, selection.detail};
+    // What is seen of a moving light lies in finer tiles: the whole map is not worth drawing in each frame.
+    const TileDemand demand{{light.places, moving}, pixels, selection.detail, !light.moved};
     std::size_t most = selection.slots / lights_.size();
     if (light.moved)
         most = std::min<std::size_t>(most, selection.moving_light_tiles);
@@ -254,17 +258,24 @@ Status AdaptiveShadowsTechnique::draw_tiles(gpu::FrameGraph& graph, Services& se
     select_tiles(services, target.g_buffer.height);
     const std::size_t others = services.shadows.to_draw().size();
     const std::size_t budget = services.input.map_budget - std::min<std::size_t>(services.input.map_budget, others);
-    std::vector<ShadowRequest> requests;
+    const auto moves = [&](std::uint32_t light) { return lights_[light].moved; };
+    std::vector<ShadowRequest> lasting, moving;
     for (const TileStore::Drawing& drawing :
-         store_.draw(needed_, {std::uint32_t(budget), services.settings.map_budget})) {
-        requests.push_back(request_of(drawing.key));
-        requests.back().slot = drawing.slot;
-        requests.back().redraw_static = drawing.redraw_static;
+         store_.draw(needed_, {std::uint32_t(budget), services.settings.map_budget}, moves)) {
+        ShadowRequest request = request_of(drawing.key);
+        request.slot = drawing.slot;
+        request.redraw_static = drawing.redraw_static;
+        request.detail_texels = mover_detail;
+        if (services.visibility != nullptr)
+            request.hidden = services.visibility->hidden_entities(lights_[drawing.key.light].sample);
+        (drawing.whole ? moving : lasting).push_back(std::move(request));
     }
-    if (requests.empty())
-        return {};
-    return maps_->add_passes(graph, target.gpu_scene, services.resources, requests, {.keep_static = keep_static_},
-                             drawn_);
+    const MapOptions kept{.keep_static = keep_static_, .detail = services.settings.map_detail};
+    const MapOptions whole{.detail = services.settings.map_detail, .detail_of_all = true};
+    for (const auto& [requests, options] : {std::pair(&lasting, kept), std::pair(&moving, whole)})
+        if (!requests->empty())
+            SUNFLECK_TRY(maps_->add_passes(graph, target.gpu_scene, services.resources, *requests, options, drawn_));
+    return {};
 }
 
 // The finest tile of each cell that there is.

@@ -19,6 +19,7 @@ public:
 private:
     struct Light {
         ecs::Entity emitter;
+        std::uint32_t sample = 0; // of this frame's light samples
         std::uint32_t light_class = 0;
         shared::LightRow row;
         bool moved = false;                // in this frame

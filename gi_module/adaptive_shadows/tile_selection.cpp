@@ -174,7 +174,8 @@ std::optional<float> TileView::pixel_side(const Bounds& bounds) const {
 
 std::vector<TileKey> needed_tiles(std::uint32_t light, const TileDemand& demand, float coarser) {
     Marks marks;
-    marks.add(0, vec2(-1.0f), vec2(1.0f));
+    if (demand.whole_map)
+        marks.add(0, vec2(-1.0f), vec2(1.0f));
     for (const std::span<const ReceiverPlace> places : demand.places)
         for (const ReceiverPlace& place : places) {
             const std::optional<float>& pixel = demand.pixels[place.receiver];

@@ -47,13 +47,13 @@ private:
     float pixel_ = 0.0f; // side of a pixel where that is 1
 };
 
-// Tiles of one light, coarse ones first; always the whole map. `places`: of receivers, in two parts. `pixels`: by
-// receiver, TileView::pixel_side. `detail`: texels a pixel. `coarser`: levels by which all are coarser than that.
 struct TileDemand {
-    std::span<const ReceiverPlace> places[2];
-    std::span<const std::optional<float>> pixels;
-    float detail = 1.0f;
+    std::span<const ReceiverPlace> places[2];     // of receivers, in two parts
+    std::span<const std::optional<float>> pixels; // by receiver, TileView::pixel_side
+    float detail = 1.0f;                          // texels a pixel
+    bool whole_map = true;                        // in any case: for what a budget leaves undrawn
 };
+// Tiles of one light, coarse ones first. `coarser`: levels by which all are coarser than demanded.
 std::vector<TileKey> needed_tiles(std::uint32_t light, const TileDemand& demand, float coarser);
 
 } // namespace sunfleck::gi

@@ -13,7 +13,7 @@ void TileStore::reset(std::uint32_t slots) {
         free_[i] = slots - 1 - i;
 }
 
-void TileStore::forget(std::uint32_t light) {
+void TileStore::outdate(std::uint32_t light) {
     for (auto& [key, tile] : tiles_)
         if (key.light == light)
             tile.has_static = tile.fresh = false;
@@ -22,7 +22,7 @@ void TileStore::forget(std::uint32_t light) {
 void TileStore::lose_last() {
     for (const TileKey& key : last_drawn_)
         if (const auto tile = tiles_.find(key); tile != tiles_.end())
-            tile->second.has_static = tile->second.fresh = false;
+            tile->second.has_content = tile->second.has_static = tile->second.fresh = false;
     last_drawn_.clear();
 }
 
@@ -54,7 +54,8 @@ TileStore::Tile& TileStore::find_or_make(const TileKey& key) {
     return tiles_.emplace(key, tile).first->second;
 }
 
-std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed, const Budget& budget) {
+std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed, const Budget& budget,
+                                                const std::function<bool(std::uint32_t)>& moves) {
     ++time_;
     for (const TileKey& key : needed)
         if (const auto tile = tiles_.find(key); tile != tiles_.end())
@@ -64,7 +65,8 @@ std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed,
     std::uint32_t movers = 0;
     for (const TileKey& key : needed) {
         const auto known = tiles_.find(key);
-        if (known != tiles_.end() && known->second.fresh)
+        const bool whole = moves(key.light);
+        if (known != tiles_.end() && known->second.fresh && (known->second.has_static || whole))
             continue;
         const bool movers_only = known != tiles_.end() && known->second.has_static;
         if (drawings.size() == budget.tiles || (movers_only && movers == budget.movers)) {
@@ -74,8 +76,9 @@ std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed,
         Tile& tile = find_or_make(key);
         tile.needed = time_;
         movers += movers_only ? 1 : 0;
-        drawings.push_back({key, tile.slot, !tile.has_static});
-        tile.has_static = tile.fresh = true;
+        drawings.push_back({key, tile.slot, !tile.has_static, whole});
+        tile.has_content = tile.fresh = true;
+        tile.has_static = !whole;
     }
     last_drawn_.clear();
     for (const Drawing& drawing : drawings)
@@ -85,7 +88,7 @@ std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed,
 
 std::optional<std::uint32_t> TileStore::slot_of(const TileKey& key) const {
     const auto tile = tiles_.find(key);
-    if (tile == tiles_.end() || !tile->second.has_static)
+    if (tile == tiles_.end() || !tile->second.has_content)
         return std::nullopt;
     return tile->second.slot;
 }

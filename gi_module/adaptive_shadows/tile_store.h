@@ -14,8 +14,8 @@ public:
     // Slots without content.
     void reset(std::uint32_t slots);
     std::uint32_t slots() const { return std::uint32_t(free_.size() + tiles_.size()); }
-    // A light's tiles are wrong altogether: it moved, say.
-    void forget(std::uint32_t light);
+    // A light moved: its tiles show the shadows of its old place until they are drawn.
+    void outdate(std::uint32_t light);
     // What was drawn last never reached the GPU.
     void lose_last();
     // Movers in tiles for which `affects` holds are not where they were.
@@ -25,14 +25,17 @@ public:
         TileKey key;
         std::uint32_t slot = 0;
         bool redraw_static = true;
+        bool whole = false; // static geometry and movers at once; no static part is kept
     };
     struct Budget {
         std::uint32_t tiles = 0xffffffffu;  // drawn at most
         std::uint32_t movers = 0xffffffffu; // of them, at most so many only because of movers
     };
     // Of the needed tiles, at most as many as there are slots, those that must be drawn and may be, the first ones
-    // first. They count as drawn.
-    std::vector<Drawing> draw(std::span<const TileKey> needed, const Budget& budget);
+    // first. They count as drawn. `moves`: whether a light moves, so that its tiles will not last; once it rests, they
+    // are drawn with a static part.
+    std::vector<Drawing> draw(std::span<const TileKey> needed, const Budget& budget,
+                              const std::function<bool(std::uint32_t)>& moves);
     // Tiles that the last call left out, stale or not there at all.
     std::size_t stale() const { return stale_; }
     // The tile's slot, if there is something in it; then maybe with movers where they were.
@@ -42,7 +45,9 @@ public:
 private:
     struct Tile {
         std::uint32_t slot = 0;
-        bool has_static = false, fresh = false;
+        bool has_content = false; // from whatever time
+        bool has_static = false;  // the kept part is right
+        bool fresh = false;
         std::uint64_t needed = 0; // the last time
     };
     Tile& find_or_make(const TileKey& key);

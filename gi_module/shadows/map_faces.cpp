@@ -2,6 +2,8 @@
 #include "gi_module/shadows/octahedral_map.h"
 #include "gi_module/shadows/shadow_maps.h"
 
+#include <algorithm>
+
 namespace sunfleck::gi {
 namespace {
 
@@ -41,6 +43,47 @@ std::uint32_t ShadowMaps::faces_that_see(const ShadowRequest& request, const Bou
     return faces;
 }
 
+namespace {
+
+// Clip coordinates of a point light's face, each as a functional of the light-space direction: they are linear.
+mat3 clip_functionals(std::uint32_t face, float cone_scale) {
+    mat3 columns; // of clip coordinates, by axis of light space
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 d(0.0f);
+        d[axis] = 1.0f;
+        columns[axis] =
+            face == shared::cone_face ? shared::cone_clip(d, cone_scale) : shared::sphere_face_clip(d, face);
+    }
+    return glm::transpose(columns);
+}
+
+// Whether a box may have a part in the tile through a face: not if it lies outside of one of the planes that bound the
+// tile there, seen from the light, or outside of the face's octant.
+bool reaches_tile(const ShadowRequest& request, std::uint32_t face, const Bounds& bounds) {
+    const shared::LightRow& light = request.light;
+    const mat3 to_world(vec3(light.tangent_scale), vec3(light.bitangent), vec3(light.normal_offset));
+    const vec3 origin(light.position_bound);
+    const mat3 clip = clip_functionals(face, light.position_bound.w);
+    vec2 low = request.tile.centre - 1.0f / request.tile.scale, high = request.tile.centre + 1.0f / request.tile.scale;
+    const float border = 0.01f / request.tile.scale; // faces are drawn a quarter of a texel wider
+    if (face != shared::cone_face) {
+        const vec3 s = shared::face_signs(face);
+        for (int i = 0; i < 2; ++i) {
+            low[i] = std::max(low[i], s[i] > 0.0f ? -border : -1.0f - border);
+            high[i] = std::min(high[i], s[i] > 0.0f ? 1.0f + border : border);
+        }
+        if (support(bounds, origin, to_world * vec3(0.0f, 0.0f, s.z) + border * (to_world * clip[2])) <= 0.0f)
+            return false;
+    }
+    for (int i = 0; i < 2; ++i)
+        if (support(bounds, origin, to_world * (clip[i] - low[i] * clip[2])) <= 0.0f ||
+            support(bounds, origin, to_world * (high[i] * clip[2] - clip[i])) <= 0.0f)
+            return false;
+    return support(bounds, origin, to_world * clip[2]) > 0.0f;
+}
+
+} // namespace
+
 // Of a tile only those faces are drawn in which the box reaches the tile; of whole maps, where most boxes do, all that
 // see it.
 ShadowMaps::MapPart ShadowMaps::part_covered(const ShadowRequest& request, const Bounds& bounds,
@@ -56,7 +99,9 @@ ShadowMaps::MapPart ShadowMaps::part_covered(const ShadowRequest& request, const
     }
     std::uint32_t reached = 0;
     for (std::uint32_t face = 0; part.faces >> face; ++face)
-        if (((part.faces >> face) & 1u) != 0 && !area(1u << face).empty())
+        if (((part.faces >> face) & 1u) != 0 &&
+            (request.light_class != shared::light_class_point || reaches_tile(request, face, bounds)) &&
+            !area(1u << face).empty())
             reached |= 1u << face;
     part.faces = reached;
     part.area = reached != 0 ? area(reached) : MapArea();

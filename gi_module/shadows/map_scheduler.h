@@ -32,6 +32,12 @@ public:
         mark_static(sample);
         undefined_[sample] = 1;
     }
+    // Nobody reads the map: it is not drawn, whatever it holds, until it is marked again.
+    void set_aside(std::uint32_t sample) {
+        age_[sample] = 0;
+        static_stale_[sample] = undefined_[sample] = 0;
+        lags_[sample] = 0.0f;
+    }
     // Stale maps age by a frame. Once a frame, before marking.
     void advance();
 

@@ -237,7 +237,8 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
         for (std::size_t first = 0; first < all.size(); first += layers_) {
             const auto part = all.subspan(first, std::min<std::size_t>(layers_, all.size() - first));
             SUNFLECK_ASSIGN(Chunk chunk,
-                            prepare_chunk(scene, resources, part, occluders, options.detail && over_static, counters));
+                            prepare_chunk(scene, resources, part, occluders,
+                                          options.detail && (over_static || options.detail_of_all), counters));
             find_copied_areas(part, over_static, chunk);
             SUNFLECK_TRY(add_drawing(graph, scene, chunk, target, over_static));
         }

@@ -43,8 +43,9 @@ struct MapLayout {
 };
 
 struct MapOptions {
-    bool keep_static = false; // draw movers over the static layer
-    bool detail = false;      // draw movers with only as much detail as texels resolve
+    bool keep_static = false;   // draw movers over the static layer
+    bool detail = false;        // draw movers with only as much detail as texels resolve
+    bool detail_of_all = false; // and, where nothing is kept, static geometry, too
 };
 
 struct ShadowCounters {

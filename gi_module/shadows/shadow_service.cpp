@@ -90,6 +90,7 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
         mark_by_visibility(samples, input);
     else
         mark_by_bounds(samples, input.gpu_scene);
+    set_unread_aside(samples, input.read);
     to_draw_.clear();
     if (settings_.shadows) {
         const std::uint32_t budget = budget_of(input);
@@ -97,6 +98,19 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
             scheduler_.choose(samples.samples(), settings_.map_priority, budget, contributions(samples, input, budget));
     }
     budget_.add_frame(input.serial, to_draw_.size());
+}
+
+// Maps that are read again hold what they held when they were set aside.
+void ShadowService::set_unread_aside(const SampleSet& samples, CellSet read) {
+    unread_.resize(samples.size());
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        const bool unread = !owns_sample(read, samples.samples()[i]);
+        if (unread)
+            scheduler_.set_aside(i);
+        else if (unread_[i])
+            scheduler_.mark_undefined(i);
+        unread_[i] = unread ? 1 : 0;
+    }
 }
 
 // The host's budget is a hard limit; that of the settings is exceeded for maps that are unusable otherwise.

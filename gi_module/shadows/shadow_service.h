@@ -10,6 +10,7 @@
 #include "gi_module/shadows/map_scheduler.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/shadows/shadow_settings.h"
+#include "gi_module/transport/light_plan.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
@@ -28,6 +29,7 @@ struct ScheduleInput {
     std::uint64_t serial = 0;
     std::uint32_t host_budget = 0xffffffffu; // maps; also limits the budget of the settings
     std::optional<mat4> view_projection;
+    CellSet read = CellSet().set(); // light whose maps somebody reads
 };
 
 // State of one sample's map, for inspection.
@@ -83,6 +85,7 @@ public:
     void report(Report& report) const;
 
 private:
+    void set_unread_aside(const SampleSet& samples, CellSet read);
     void mark_by_visibility(const SampleSet& samples, const ScheduleInput& input);
     void mark_by_bounds(const SampleSet& samples, const scene::GpuScene& gpu_scene);
     std::uint32_t budget_of(const ScheduleInput& input) const;
@@ -99,6 +102,7 @@ private:
     MapPolicy policy_;
     const VisibilityDatabase* database_ = nullptr; // of this frame
     std::vector<std::uint32_t> to_draw_;
+    std::vector<std::uint8_t> unread_; // by sample: 1 if nobody reads its map
     std::uint64_t sample_generation_ = 0;
     bool cleared_ = false;    // all maps lost their content in configure
     bool simplified_ = false; // movers, in the maps of the last frame

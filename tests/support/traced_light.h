@@ -20,7 +20,7 @@ struct TracedPixel {
 
 class TracedLight {
 public:
-    explicit TracedLight(GpuWorld& world, int reach)
+    explicit TracedLight(GpuWorld& world, int reach, bool punctual_only = false)
         : world_(world), width_(int(world.request.width)), height_(int(world.request.height)), reach_(reach),
           pixels_(std::size_t(width_) * std::size_t(height_)) {
         const scene::CameraView camera = world.renderer->space().view(world.request.camera);
@@ -31,7 +31,8 @@ public:
         const auto samples = world.renderer->lighting().samples();
         arrived_.resize(pixels_.size());
         for (std::size_t i = 0; i < samples.size(); ++i)
-            add(samples[i]);
+            if (samples[i].punctual || !punctual_only)
+                add(samples[i]);
     }
     const std::vector<TracedPixel>& pixels() const { return pixels_; }
 

@@ -64,7 +64,7 @@ TEST(ShadowTiles, EveryVisiblePointHasATexelAPixel) {
                 add_places(row, light_class(kind), i, boxes.back(), places);
                 pixels.push_back(view.pixel_side(boxes.back()));
             }
-            const std::vector<TileKey> tiles = needed_tiles(0, {{places, {}}, pixels, 1.0f}, 0.0f);
+            const std::vector<TileKey> tiles = needed_tiles(0, {{places, {}}, pixels}, 0.0f);
             EXPECT_EQ(tiles.front().level, 0u);
             for (std::uint32_t i = 0; i < boxes.size(); ++i)
                 for (std::uint32_t k = 0; k < 20; ++k) {
@@ -118,24 +118,31 @@ std::vector<TileKey> keys(std::initializer_list<std::uint32_t> numbers) {
     return result;
 }
 
+bool rests(std::uint32_t) {
+    return false;
+}
+bool moves(std::uint32_t) {
+    return true;
+}
+
 TEST(ShadowTiles, AreDrawnOnceAndStay) {
     TileStore store;
     store.reset(3);
-    const auto first = store.draw(keys({0, 1}), {});
+    const auto first = store.draw(keys({0, 1}), {}, rests);
     ASSERT_EQ(first.size(), 2u);
     EXPECT_TRUE(first[0].redraw_static);
     EXPECT_NE(first[0].slot, first[1].slot);
-    EXPECT_TRUE(store.draw(keys({0, 1}), {}).empty());
+    EXPECT_TRUE(store.draw(keys({0, 1}), {}, rests).empty());
     // A mover: its tile is drawn again, over the static part.
     store.mark([](const TileKey& key) { return key.x == 1; });
-    const auto again = store.draw(keys({0, 1}), {});
+    const auto again = store.draw(keys({0, 1}), {}, rests);
     ASSERT_EQ(again.size(), 1u);
     EXPECT_EQ(again[0].key.x, 1u);
     EXPECT_FALSE(again[0].redraw_static);
     // What is not needed stays while there is room, and the slot that was not needed for longest goes first.
-    EXPECT_EQ(store.draw(keys({2}), {}).size(), 1u);
-    EXPECT_TRUE(store.draw(keys({0}), {}).empty());
-    EXPECT_EQ(store.draw(keys({3}), {}).size(), 1u);
+    EXPECT_EQ(store.draw(keys({2}), {}, rests).size(), 1u);
+    EXPECT_TRUE(store.draw(keys({0}), {}, rests).empty());
+    EXPECT_EQ(store.draw(keys({3}), {}, rests).size(), 1u);
     EXPECT_FALSE(store.slot_of({0, 3, 1, 0}));
     EXPECT_TRUE(store.slot_of({0, 3, 0, 0}));
 }
@@ -143,14 +150,14 @@ TEST(ShadowTiles, AreDrawnOnceAndStay) {
 TEST(ShadowTiles, WhatTheBudgetLeavesComesLater) {
     TileStore store;
     store.reset(8);
-    EXPECT_EQ(store.draw(keys({0, 1, 2}), {2}).size(), 2u);
+    EXPECT_EQ(store.draw(keys({0, 1, 2}), {2}, rests).size(), 2u);
     EXPECT_EQ(store.stale(), 1u);
     EXPECT_FALSE(store.slot_of({0, 3, 2, 0})) << "nothing is in it";
-    EXPECT_EQ(store.draw(keys({0, 1, 2}), {2}).size(), 1u);
+    EXPECT_EQ(store.draw(keys({0, 1, 2}), {2}, rests).size(), 1u);
     EXPECT_EQ(store.stale(), 0u);
     // Movers have a budget of their own; what is missing comes before.
     store.mark([](const TileKey&) { return true; });
-    const auto drawn = store.draw(keys({0, 1, 2, 3}), {10, 1});
+    const auto drawn = store.draw(keys({0, 1, 2, 3}), {10, 1}, rests);
     ASSERT_EQ(drawn.size(), 2u);
     EXPECT_EQ(drawn[1].key.x, 3u);
     EXPECT_EQ(store.stale(), 2u);
@@ -159,15 +166,25 @@ TEST(ShadowTiles, WhatTheBudgetLeavesComesLater) {
 TEST(ShadowTiles, LostFramesAndMovedLightsAreDrawnAgain) {
     TileStore store;
     store.reset(8);
-    store.draw(keys({0, 1}), {1});
-    store.draw(keys({0, 1}), {1});
+    store.draw(keys({0, 1}), {1}, rests);
+    store.draw(keys({0, 1}), {1}, rests);
     store.lose_last();
-    const auto lost = store.draw(keys({0, 1}), {});
+    const auto lost = store.draw(keys({0, 1}), {}, rests);
     ASSERT_EQ(lost.size(), 1u);
     EXPECT_EQ(lost[0].key.x, 1u);
     EXPECT_TRUE(lost[0].redraw_static);
-    store.forget(0);
-    EXPECT_EQ(store.draw(keys({0, 1}), {}).size(), 2u);
+    store.outdate(0);
+    EXPECT_TRUE(store.slot_of({0, 3, 0, 0})) << "an old shadow is better than none";
+    const auto moved = store.draw(keys({0, 1}), {}, moves);
+    ASSERT_EQ(moved.size(), 2u);
+    EXPECT_TRUE(moved[0].whole);
+    EXPECT_TRUE(store.draw(keys({0, 1}), {}, moves).empty()) << "nothing changed since";
+    // At rest, each is drawn once more, now with a static part for movers to come.
+    const auto rested = store.draw(keys({0, 1}), {}, rests);
+    ASSERT_EQ(rested.size(), 2u);
+    EXPECT_TRUE(rested[0].redraw_static);
+    EXPECT_FALSE(rested[0].whole);
+    EXPECT_TRUE(store.draw(keys({0, 1}), {}, rests).empty());
 }
 
 } // namespace
