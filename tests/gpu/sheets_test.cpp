@@ -23,7 +23,7 @@ void make_sheet_box(assets::SceneBuilder& builder) {
     builder.registry().emplace<scene::Environment>(sky, {vec3(1.0f)});
     const ecs::Entity sun = builder.registry().create();
     scene::Transform transform;
-    transform.rotation = assets::facing(glm::normalize(vec3(-0.3f, -1.0f, -0.8f)));
+    transform.rotation = assets::facing(glm::normalize(vec3(0.3f, 1.0f, 0.8f))); // shines along its -Z
     builder.registry().emplace<scene::Transform>(sun, transform);
     builder.registry().emplace<scene::DirectionalLight>(sun, {vec3(8.0f)});
     builder.camera("view", vec3(0.0f, 1.5f, 6.0f), vec3(0.0f, 1.5f, 0.0f), 30.0f);
@@ -58,12 +58,14 @@ Errors compare(GpuWorld& world, float scale) {
         const TracedPixel& pixel = traced.pixels()[i];
         if (!pixel.surface)
             continue;
+        const vec3 place = (pixel.position * world.renderer->space().unit + world.renderer->space().origin) / scale;
+        if (edge_distance(place) < 1e-4) // on the edge, to rounding: rays may start behind the other wall
+            continue;
         const vec3 drawn(picture.pixels[i]);
         const double light = double(drawn.x + drawn.y + drawn.z) / 3.0;
         errors.too_bright += light > 1.3 * pixel.most + 0.02 * mean;
         errors.too_dark += light < pixel.least / 1.3 - 0.02 * mean;
         errors.worst = std::max(errors.worst, light / (pixel.most + 0.02 * mean));
-        const vec3 place = (pixel.position * world.renderer->space().unit + world.renderer->space().origin) / scale;
         if (edge_distance(place) < 0.3) {
             errors.edges += light;
             errors.traced_at_edges += pixel.exact;
@@ -79,6 +81,7 @@ TEST_F(AnywhereSheets, KeepTheLightOut) {
             world.request.width = 160;
             world.request.height = 120;
             gi::Settings settings = gi::Settings().all_light_by(technique);
+            settings.with("punctual", "automatic");
             settings.clamp_scale = 100.0f;
             settings.map_budget = 65536;
             settings.low_resolution = 1;
@@ -88,7 +91,7 @@ TEST_F(AnywhereSheets, KeepTheLightOut) {
                         technique.data(), double(scale), errors.too_bright, errors.pixels, errors.too_dark,
                         errors.worst, errors.edges / errors.traced_at_edges);
             EXPECT_GT(errors.pixels, 10000);
-            EXPECT_LE(errors.too_bright, errors.pixels / 10000); // baked light is interpolated over shadow edges
+            EXPECT_EQ(errors.too_bright, 0);
             EXPECT_NEAR(errors.edges / errors.traced_at_edges, 1.0, 0.1);
         }
 }

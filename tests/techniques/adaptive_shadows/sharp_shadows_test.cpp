@@ -14,7 +14,7 @@ class AnywhereSharpShadows : public GpuTest {};
 void add_sun(assets::SceneBuilder& builder, vec3 direction) {
     const ecs::Entity sun = builder.registry().create();
     scene::Transform transform;
-    transform.rotation = assets::facing(glm::normalize(direction));
+    transform.rotation = assets::facing(-glm::normalize(direction)); // shines along its -Z
     builder.registry().emplace<scene::Transform>(sun, transform);
     builder.registry().emplace<scene::DirectionalLight>(sun, {vec3(8.0f)});
 }
