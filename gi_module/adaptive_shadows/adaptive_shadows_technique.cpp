@@ -88,9 +88,12 @@ Status AdaptiveShadowsTechnique::update(const SceneView& scene, Services& servic
     if (services.restart)
         store_.lose_last();
     drawn_ = {};
-    SUNFLECK_TRY(configure_maps(services, scene.gpu_scene));
+    stale_ = 0;
     follow_receivers(scene);
     follow_lights(services, cells);
+    if (lights_.empty())
+        return {};
+    SUNFLECK_TRY(configure_maps(services, scene.gpu_scene));
     follow_movers(scene.gpu_scene);
     return {};
 }
@@ -270,6 +273,7 @@ Status AdaptiveShadowsTechnique::draw_tiles(gpu::FrameGraph& graph, Services& se
             request.hidden = services.visibility->hidden_entities(lights_[drawing.key.light].sample);
         (drawing.whole ? moving : lasting).push_back(std::move(request));
     }
+    stale_ = store_.stale();
     const MapOptions kept{.keep_static = keep_static_, .detail = services.settings.map_detail};
     const MapOptions whole{.detail = services.settings.map_detail, .detail_of_all = true};
     for (const auto& [requests, options] : {std::pair(&lasting, kept), std::pair(&moving, whole)})
@@ -310,25 +314,30 @@ std::vector<PunctualBatch> AdaptiveShadowsTechnique::make_batches(std::vector<st
 }
 
 Status AdaptiveShadowsTechnique::add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) {
-    if (services.settings.shadows)
+    const bool dark = std::none_of(lights_.begin(), lights_.end(), lit);
+    if (dark && target.holds_light)
+        return {};
+    const bool shadows = services.settings.shadows && !dark;
+    if (shadows)
         SUNFLECK_TRY(draw_tiles(graph, services, target));
     std::vector<std::uint32_t> table;
-    std::vector<PunctualBatch> batches = make_batches(table);
+    std::vector<PunctualBatch> batches;
+    if (!dark)
+        batches = make_batches(table);
     if (batches.empty())
         batches.push_back({shared::map_of_sphere, {}});
     if (table.empty())
         table.push_back(0);
-    return kernel_->add_passes({graph, target.g_buffer, target.camera,
-                                services.settings.shadows ? &maps_->texels() : nullptr, target.irradiance,
-                                target.holds_light},
+    return kernel_->add_passes({graph, target.g_buffer, target.camera, shadows ? &maps_->texels() : nullptr,
+                                target.irradiance, target.holds_light},
                                batches, table, services.resources);
 }
 
 void AdaptiveShadowsTechnique::report(Report& report) const {
     report.set(punctual_lights, double(lights_.size()));
-    report.set(tiles_needed, double(needed_.size()));
+    report.set(tiles_needed, lights_.empty() ? 0.0 : double(needed_.size()));
     report.set(tiles_drawn, double(drawn_.maps));
-    report.set(tiles_stale, double(store_.stale()));
+    report.set(tiles_stale, double(stale_));
     report.set(tile_memory, double(maps_->texels().size() + maps_->static_texels().size()));
 }
 

@@ -59,6 +59,7 @@ private:
     std::uint64_t geometry_generation_ = 0;
     bool keep_static_ = false;
     ShadowCounters drawn_;
+    std::size_t stale_ = 0; // tiles, after this frame
 };
 
 } // namespace sunfleck::gi

@@ -13,6 +13,12 @@ namespace {
 
 class RandomCalls : public GpuTest {};
 
+// With a lamp whose shadows are sharp: of the pillar, and of the box, which moves.
+void make_room_with_bulb(assets::SceneBuilder& scene) {
+    make_moving_box_room(scene);
+    scene.point_light("bulb", vec3(-0.2f, 2.2f, 1.1f), vec3(2.0f, 1.7f, 1.2f));
+}
+
 struct Choice {
     const char* name;
     std::vector<std::string> values;
@@ -23,12 +29,17 @@ std::vector<Choice> choices() {
     const std::vector<std::string_view> owners = techniques_for_all_light();
     const std::vector<std::string> names(owners.begin(), owners.end());
     const std::vector<std::string> either = {"on", "off"};
+    const std::vector<std::string_view>& lamps = gi::Settings::find("punctual")->choices;
+    const std::vector<std::string> punctual(lamps.begin(), lamps.end());
     const std::vector<Choice> all = {{"lights", {"16", "24", "40"}},
                                      {"seed", {"1", "2", "3"}},
                                      {"candidates", {"1", "16"}},
                                      {"bounces", {"1", "5"}},
                                      {"clamp_scale", {"0.5", "1"}},
                                      {"mover_paths", either},
+                                     {"punctual", punctual},
+                                     {"punctual_lights", {"0", "8"}},
+                                     {"shadow_detail", {"0.3", "1"}},
                                      {"direct", names},
                                      {"indirect", names},
                                      {"shadows", either},
@@ -68,7 +79,7 @@ void move_pillar(SystemFrames& frames, vec3 to) {
 
 class Sequence {
 public:
-    explicit Sequence(std::uint32_t seed) : random_(seed), frames_(make_moving_box_room) {
+    explicit Sequence(std::uint32_t seed) : random_(seed), frames_(make_room_with_bulb) {
         situation_.settings.lights = 24;
         situation_.settings.shadow_map_resolution = 32;
         frames_.add(situation_.settings);
@@ -96,9 +107,9 @@ public:
         frames_.settle(situation_.step);
         const std::vector<vec4> picture = frames_.picture();
         // The same registry, too: entities that are numbered otherwise are summed in another order.
-        SystemFrames fresh(make_moving_box_room);
+        SystemFrames fresh(make_room_with_bulb);
         for (int i = 0; i < situation_.loads; ++i)
-            fresh.load(i % 2 == 0 ? assets::make_four_pillars : make_moving_box_room);
+            fresh.load(i % 2 == 0 ? assets::make_four_pillars : make_room_with_bulb);
         if (situation_.pillar)
             move_pillar(fresh, *situation_.pillar);
         fresh.add(situation_.settings);
@@ -124,7 +135,7 @@ private:
         ++situation_.loads;
         situation_.pillar.reset();
         log_ += situation_.other_room() ? " other room" : " first room";
-        frames_.load(situation_.other_room() ? assets::make_four_pillars : make_moving_box_room);
+        frames_.load(situation_.other_room() ? assets::make_four_pillars : make_room_with_bulb);
     }
 
     std::uint32_t pick(std::size_t count) { return std::uint32_t(random_() % count); }

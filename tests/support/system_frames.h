@@ -91,7 +91,8 @@ public:
             frame(step);
             double waiting = 0;
             for (Lit& lit : systems_)
-                waiting += lit.system->counters()["baked_light_waiting"] + lit.system->counters()["shadow_maps_stale"];
+                for (const char* counter : {"baked_light_waiting", "shadow_maps_stale", "shadow_tiles_stale"})
+                    waiting += lit.system->counters()[counter];
             if (waiting == 0)
                 return;
         }

@@ -156,6 +156,16 @@ TEST_F(AnywhereSharpShadows, StandStillWithCameraAndWorld) {
     EXPECT_TRUE(same(world.picture()));
 }
 
+// A room with none of these lights has no pass, no tile and no memory of theirs.
+TEST_F(AnywhereSharpShadows, CostNothingWithoutSuchLights) {
+    GpuWorld world(assets::make_cornell, "view");
+    world.set({});
+    world.render();
+    EXPECT_EQ(world.renderer->lighting().counters()["punctual_lights"], 0.0);
+    EXPECT_EQ(world.renderer->lighting().counters()["shadow_tile_maps"], 0.0);
+    EXPECT_EQ(world.renderer->statistics().gpu_ms.count("punctual light"), 0u);
+}
+
 // A lamp that is carried lights with the shadows of where it is, in every frame; once it rests, with all detail.
 TEST_F(AnywhereSharpShadows, FollowALampThatIsCarried) {
     GpuWorld world(make_pole, "view");
