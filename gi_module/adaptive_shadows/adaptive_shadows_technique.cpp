@@ -23,8 +23,6 @@ constexpr Counter tiles_stale{"shadow_tiles_stale", "tiles", "punctual light",
 constexpr Counter tile_memory{"shadow_tile_maps", "B", memory_group, "Tiles of shadow maps, including static parts"};
 constexpr Counter technique_counters[] = {punctual_lights, tiles_needed, tiles_drawn, tiles_stale, tile_memory};
 
-constexpr float mover_detail = 0.35f; // texels: largest error of simplified surfaces
-
 std::uint32_t map_kind(const shared::LightRow& row, std::uint32_t light_class) {
     if (light_class == shared::light_class_directional)
         return shared::map_of_directions;
@@ -125,7 +123,7 @@ void AdaptiveShadowsTechnique::follow_receivers(const SceneView& scene) {
     lights_.clear();
 }
 
-// A light's tiles last while it stays where it is; another list of lights makes all of them anew.
+// A light's tiles last while it stays where it is. If lights come or go, all tiles are drawn again.
 void AdaptiveShadowsTechnique::follow_lights(const Services& services, CellSet cells) {
     std::vector<Light> now;
     const SampleSet& samples = services.samples;
@@ -268,7 +266,7 @@ Status AdaptiveShadowsTechnique::draw_tiles(gpu::FrameGraph& graph, Services& se
         ShadowRequest request = request_of(drawing.key);
         request.slot = drawing.slot;
         request.redraw_static = drawing.redraw_static;
-        request.detail_texels = mover_detail;
+        request.detail_texels = direct_detail_texels;
         if (services.visibility != nullptr)
             request.hidden = services.visibility->hidden_entities(lights_[drawing.key.light].sample);
         (drawing.whole ? moving : lasting).push_back(std::move(request));

@@ -41,22 +41,18 @@ bool reaches_sign(float low, float high, float sign) {
 
 } // namespace
 
-// Faces are told apart by signs of light-space x and y, which are signs of map coordinates (sphere) or of their sum and
-// difference (hemisphere); upper and lower ones by |u| + |v|.
+// Faces of a sphere's map are told apart by the signs of map coordinates, upper and lower ones by |u| + |v|.
 std::uint32_t faces_in_tile(std::uint32_t light_class, const MapTile& tile) {
-    if (tile.is_whole_map() || light_class == shared::light_class_directional)
+    if (tile.is_whole_map() || light_class != shared::light_class_point)
         return ~0u;
     const float half = 1.01f / tile.scale; // texels beyond an edge of faces are drawn, too
     const vec2 low = tile.centre - half, high = tile.centre + half;
-    const bool hemisphere = light_class == shared::light_class_surface;
     const vec2 u = range_of_magnitude(low.x, high.x), v = range_of_magnitude(low.y, high.y);
     std::uint32_t faces = 1u << shared::cone_face;
     for (std::uint32_t face = 0; face < 8; ++face) {
         const vec3 s = shared::face_signs(face);
-        const bool sides = hemisphere ? reaches_sign(low.x + low.y, high.x + high.y, s.x) &&
-                                            reaches_sign(low.x - high.y, high.x - low.y, s.y)
-                                      : reaches_sign(low.x, high.x, s.x) && reaches_sign(low.y, high.y, s.y);
-        const bool half_space = hemisphere || (s.z > 0.0f ? u.x + v.x <= 1.0f : u.y + v.y >= 1.0f);
+        const bool sides = reaches_sign(low.x, high.x, s.x) && reaches_sign(low.y, high.y, s.y);
+        const bool half_space = s.z > 0.0f ? u.x + v.x <= 1.0f : u.y + v.y >= 1.0f;
         if (sides && half_space)
             faces |= 1u << face;
     }

@@ -17,7 +17,8 @@ struct MapTile {
     bool is_whole_map() const { return scale == 1.0f; }
 };
 
-// A bit per face of octahedral_map.h: set if the face may have a part in the tile.
+// A bit per face of octahedral_map.h: set if the face may have a part in the tile. Only maps of point lights are told
+// apart.
 std::uint32_t faces_in_tile(std::uint32_t light_class, const MapTile& tile);
 
 // Texels from `low` to `high`, exclusive; empty if there are none.

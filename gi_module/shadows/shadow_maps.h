@@ -17,6 +17,9 @@
 
 namespace sunfleck::gi {
 
+// Largest error of simplified surfaces in maps of direct light, in texels: such shadows show their outline.
+inline constexpr float direct_detail_texels = 0.35f;
+
 // One map to draw, or a tile of one.
 struct ShadowRequest {
     std::uint32_t slot = 0;

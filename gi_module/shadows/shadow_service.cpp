@@ -9,9 +9,8 @@
 namespace sunfleck::gi {
 namespace {
 
-// Largest error of movers' simplified surfaces, in texels. Shadows of direct samples coincide and show their outline;
-// those of reflected samples are scattered.
-constexpr float direct_detail = 0.35f, indirect_detail = 2.0f;
+// As direct_detail_texels, of reflected samples, whose shadows are scattered.
+constexpr float indirect_detail_texels = 2.0f;
 
 constexpr Counter map_updates{"shadow_map_updates", "maps", "shadow maps", "Shadow maps drawn in this frame"};
 constexpr Counter map_faces{"shadow_map_faces", "faces", "shadow maps",
@@ -177,7 +176,7 @@ std::vector<ShadowRequest> ShadowService::requests(const SampleSet& samples,
                             samples.light_class_of(sample),
                             samples.rows()[sample],
                             scheduler_.is_static_stale(sample),
-                            samples.samples()[sample].bounce == 0 ? direct_detail : indirect_detail,
+                            samples.samples()[sample].bounce == 0 ? direct_detail_texels : indirect_detail_texels,
                             {}});
         if (database_ != nullptr)
             requests.back().hidden = database_->hidden_entities(sample);

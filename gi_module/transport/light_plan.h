@@ -1,8 +1,7 @@
 // The light plan: which technique computes which part of the light. The light in a picture is divided into cells:
 //
-//     {punctual, direct, first bounce, later bounces}               reflections before the visible surface; direct
-//     light
-//                                                                   of lights without extent is apart
+//     {punctual, direct, first bounce, later bounces}               reflections before the visible surface; punctual
+//                                                                   is direct light of lights without extent
 //   x {fixed, dynamic: the emitter or a reflector moves or varies}  the light's path
 //   x {fixed, mover}                                                the surface that receives it
 //   x {diffuse, specular}                                           how that surface reflects it to the camera
