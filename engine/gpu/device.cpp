@@ -1,6 +1,8 @@
 #define VOLK_IMPLEMENTATION
 #include "engine/gpu/device.h"
 
+#include "engine/gpu/pipeline_cache.h"
+
 #include "engine/core/log.h"
 
 #include <algorithm>
@@ -315,9 +317,12 @@ Result<std::unique_ptr<Device>> Device::adopt(const HostDevice& host) {
     return device;
 }
 
+Device::Device() : pipelines_(std::make_unique<PipelineCache>()) {}
+
 Device::~Device() {
     if (device_ != VK_NULL_HANDLE && owned_ && vk.vkDeviceWaitIdle != nullptr)
         vk.vkDeviceWaitIdle(device_);
+    pipelines_.reset();
     memory_.reset();
     if (!owned_)
         return;

@@ -51,6 +51,8 @@ struct DeviceTraits {
     std::uint32_t subgroup_size = 0;
 };
 
+class PipelineCache;
+
 class Device {
 public:
     static Result<std::unique_ptr<Device>> create(const DeviceOptions& options);
@@ -66,6 +68,8 @@ public:
     std::uint32_t queue_family() const { return queue_family_; }
     const DeviceTraits& traits() const { return traits_; }
     Memory& memory() { return *memory_; }
+    // Pipelines that were made on this device, whichever store asked for them (pipeline_cache.h).
+    PipelineCache& pipelines() { return *pipelines_; }
 
     // Functions of this device. Tests replace entries to make calls fail on purpose.
     VolkDeviceTable vk{};
@@ -85,7 +89,7 @@ public:
     Status wait_idle();
 
 private:
-    Device() = default;
+    Device();
     friend struct DeviceBuilder;
     static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                      VkDebugUtilsMessageTypeFlagsEXT type,
@@ -102,6 +106,7 @@ private:
     std::uint32_t queue_family_ = 0;
     DeviceTraits traits_;
     std::unique_ptr<Memory> memory_;
+    std::unique_ptr<PipelineCache> pipelines_;
     std::atomic<int> validation_messages_{0};
 };
 

@@ -111,7 +111,7 @@ VkResult create_pipeline(Device& device, const GraphicsDescription& description,
 
 } // namespace
 
-Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry) {
+Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry, VkPipelineLayout layout) {
     const GraphicsDescription& description = entry.graphics;
     const SpecializationValues specialization(description.specialization);
     std::vector<VkPipelineShaderStageCreateInfo> stages;
@@ -126,7 +126,7 @@ Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry) {
     VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
     info.stageCount = std::uint32_t(stages.size());
     info.pStages = stages.data();
-    info.layout = entry.pipeline.layout_;
+    info.layout = layout;
     VkPipeline handle = VK_NULL_HANDLE;
     const VkResult result = status ? create_pipeline(device_, description, info, handle) : VK_SUCCESS;
     for (const auto& stage : stages)

@@ -10,17 +10,6 @@ SpecializationValues::SpecializationValues(const std::vector<std::uint32_t>& val
     info = {std::uint32_t(entries.size()), entries.data(), values.size() * 4, values.data()};
 }
 
-PipelineStore::~PipelineStore() {
-    for (const auto& entry : entries_)
-        destroy(*entry);
-}
-
-void PipelineStore::destroy(Entry& entry) {
-    device_.vk.vkDestroyPipeline(device_.handle(), entry.pipeline.handle_, nullptr);
-    device_.vk.vkDestroyPipelineLayout(device_.handle(), entry.pipeline.layout_, nullptr);
-    device_.vk.vkDestroyDescriptorSetLayout(device_.handle(), entry.pipeline.set_layout_, nullptr);
-}
-
 Result<VkShaderModule> PipelineStore::make_module(const std::string& path) {
     SUNFLECK_ASSIGN(const auto words, shaders_.find(path));
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
@@ -57,27 +46,27 @@ Result<ShaderInterface> PipelineStore::read_interface(const Entry& entry) const 
     return interface;
 }
 
-Status PipelineStore::make_layout(Pipeline& pipeline) {
+Status PipelineStore::make_layout(BuiltPipeline& built) {
     std::vector<VkDescriptorSetLayoutBinding> set;
-    for (const ShaderBinding& binding : pipeline.bindings())
+    for (const ShaderBinding& binding : built.interface.bindings)
         set.push_back({binding.number, descriptor_type(binding.kind), 1, binding.stages, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = std::uint32_t(set.size());
     set_info.pBindings = set.data();
-    SUNFLECK_VK(device_.vk.vkCreateDescriptorSetLayout(device_.handle(), &set_info, nullptr, &pipeline.set_layout_),
+    SUNFLECK_VK(device_.vk.vkCreateDescriptorSetLayout(device_.handle(), &set_info, nullptr, &built.set_layout),
                 "creating a descriptor set layout");
-    const VkPushConstantRange range{pipeline.push_stages(), 0, pipeline.push_constant_bytes()};
+    const VkPushConstantRange range{built.interface.push_stages, 0, built.interface.push_constant_bytes};
     VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
     info.setLayoutCount = 1;
-    info.pSetLayouts = &pipeline.set_layout_;
+    info.pSetLayouts = &built.set_layout;
     info.pushConstantRangeCount = range.size > 0 ? 1 : 0;
     info.pPushConstantRanges = &range;
-    SUNFLECK_VK(device_.vk.vkCreatePipelineLayout(device_.handle(), &info, nullptr, &pipeline.layout_),
+    SUNFLECK_VK(device_.vk.vkCreatePipelineLayout(device_.handle(), &info, nullptr, &built.layout),
                 "creating a pipeline layout");
     return {};
 }
 
-Result<VkPipeline> PipelineStore::build_compute(const Entry& entry) {
+Result<VkPipeline> PipelineStore::build_compute(const Entry& entry, VkPipelineLayout layout) {
     SUNFLECK_ASSIGN(const VkShaderModule module, make_module(entry.compute.shader));
     const SpecializationValues specialization(entry.compute.specialization);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
@@ -86,7 +75,7 @@ Result<VkPipeline> PipelineStore::build_compute(const Entry& entry) {
     info.stage.module = module;
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization.info;
-    info.layout = entry.pipeline.layout_;
+    info.layout = layout;
     VkPipeline handle = VK_NULL_HANDLE;
     const VkResult result =
         device_.vk.vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle);
@@ -95,22 +84,40 @@ Result<VkPipeline> PipelineStore::build_compute(const Entry& entry) {
     return handle;
 }
 
-Result<VkPipeline> PipelineStore::build(const Entry& entry) {
-    return entry.pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE ? build_compute(entry) : build_graphics(entry);
+Result<PipelineKey> PipelineStore::key_of(const Entry& entry) const {
+    PipelineKey key{entry.compute, entry.graphics, {}};
+    for (const std::string* path :
+         {&entry.compute.shader, &entry.graphics.vertex_shader, &entry.graphics.fragment_shader}) {
+        if (path->empty())
+            continue;
+        SUNFLECK_ASSIGN(const auto words, shaders_.find(*path));
+        key.add_code(words);
+    }
+    return key;
+}
+
+Result<PipelineStore::Built> PipelineStore::build(const Entry& entry) {
+    const auto built = std::make_shared<BuiltPipeline>(device_);
+    SUNFLECK_ASSIGN(built->interface, read_interface(entry));
+    SUNFLECK_TRY(make_layout(*built));
+    const bool compute = entry.pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE;
+    SUNFLECK_ASSIGN(built->handle,
+                    compute ? build_compute(entry, built->layout) : build_graphics(entry, built->layout));
+    device_.set_name(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(built->handle),
+                     compute && !entry.compute.name.empty() ? entry.compute.name : entry.pipeline.name_);
+    return Built(built);
+}
+
+Result<PipelineStore::Built> PipelineStore::obtain(const Entry& entry) {
+    SUNFLECK_ASSIGN(const PipelineKey key, key_of(entry));
+    if (Built known = device_.pipelines().find(key))
+        return known;
+    SUNFLECK_ASSIGN(Built built, build(entry));
+    return device_.pipelines().keep(key, std::move(built));
 }
 
 Result<const Pipeline*> PipelineStore::finish(std::unique_ptr<Entry> entry) {
-    SUNFLECK_ASSIGN(entry->pipeline.interface_, read_interface(*entry));
-    Status made = make_layout(entry->pipeline);
-    auto handle = made ? build(*entry) : Result<VkPipeline>(made.error());
-    if (!handle) {
-        destroy(*entry);
-        return handle.error();
-    }
-    entry->pipeline.handle_ = *handle;
-    const bool named = entry->pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_COMPUTE && !entry->compute.name.empty();
-    device_.set_name(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(*handle),
-                     named ? entry->compute.name : entry->pipeline.name_);
+    SUNFLECK_ASSIGN(entry->pipeline.built_, obtain(*entry));
     entries_.push_back(std::move(entry));
     return &entries_.back()->pipeline;
 }
@@ -135,27 +142,23 @@ Result<const Pipeline*> PipelineStore::graphics(const GraphicsDescription& descr
     return finish(std::move(entry));
 }
 
-Result<VkPipeline> PipelineStore::rebuild(const Entry& entry) {
+Result<PipelineStore::Built> PipelineStore::obtain_again(const Entry& entry) {
     SUNFLECK_ASSIGN(const ShaderInterface interface, read_interface(entry));
-    if (interface != entry.pipeline.interface_)
+    if (interface != entry.pipeline.built_->interface)
         return Error{"shader '" + entry.pipeline.name_ +
                      "' has other bindings or push constants than before; restart the program to use it"};
-    return build(entry);
+    return obtain(entry);
 }
 
 Status PipelineStore::refresh() {
-    std::vector<VkPipeline> fresh;
+    std::vector<Built> fresh;
     for (const auto& entry : entries_) {
-        auto handle = rebuild(*entry);
-        if (!handle) {
-            for (VkPipeline made : fresh)
-                device_.vk.vkDestroyPipeline(device_.handle(), made, nullptr);
-            return handle.error();
-        }
-        fresh.push_back(*handle);
+        SUNFLECK_ASSIGN(Built built, obtain_again(*entry));
+        fresh.push_back(std::move(built));
     }
     for (std::size_t i = 0; i < entries_.size(); ++i)
-        device_.vk.vkDestroyPipeline(device_.handle(), std::exchange(entries_[i]->pipeline.handle_, fresh[i]), nullptr);
+        entries_[i]->pipeline.built_ = std::move(fresh[i]);
+    device_.pipelines().drop_unused();
     return {};
 }
 

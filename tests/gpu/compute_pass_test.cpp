@@ -235,5 +235,38 @@ TEST_F(ComputePassTest, AnUploadedBufferGrowsByHalf) {
     EXPECT_TRUE(graph.compiled().empty());
 }
 
+// Stores share what is the same down to the code, and only that; new code in one leaves the other's as it is.
+TEST_F(ComputePassTest, StoresShareEqualPipelines) {
+    const auto code = [](const std::string& factor) {
+        return compile("scaling.comp", "layout(local_size_x = 1) in;\n"
+                                       "layout(constant_id = 0) const uint first = 0u;\n"
+                                       "layout(set = 0, binding = 0) buffer Values { float values[]; };\n"
+                                       "void main() { values[first] *= " +
+                                           factor + "; }\n");
+    };
+    const std::vector<std::uint32_t> twice = code("2.0"), thrice = code("3.0");
+    const gpu::EmbeddedShader embedded{"scaling.comp", twice};
+    gpu::ShaderLibrary library, other_library;
+    library.add({&embedded, 1});
+    other_library.add({&embedded, 1});
+    gpu::PipelineStore store(device(), library), other(device(), other_library);
+
+    const gpu::Pipeline* const first = *store.compute({"scaling.comp", {0}, "scaling"});
+    const std::size_t made = device().pipelines().size();
+    const gpu::Pipeline* const second = *other.compute({"scaling.comp", {0}, "scaling"});
+    EXPECT_EQ(first->handle(), second->handle());
+    EXPECT_EQ(device().pipelines().size(), made);
+    EXPECT_NE((*other.compute({"scaling.comp", {1}, "scaling"}))->handle(), first->handle());
+
+    const VkPipeline before = first->handle();
+    ASSERT_TRUE(library.replace("scaling.comp", thrice));
+    ASSERT_TRUE(store.refresh());
+    EXPECT_NE(first->handle(), before);
+    EXPECT_EQ(second->handle(), before);
+    ASSERT_TRUE(other_library.replace("scaling.comp", thrice));
+    ASSERT_TRUE(other.refresh());
+    EXPECT_EQ(first->handle(), second->handle());
+}
+
 } // namespace
 } // namespace sunfleck::tests
