@@ -19,7 +19,7 @@ install(FILES "${PROJECT_BINARY_DIR}/generated/sunfleck_vulkan_names.h"
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck")
 if(SUNFLECK_BUILD_APPLICATIONS)
   install(TARGETS sunfleck sunfleck_demo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(TARGETS sunfleck_draco LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS sunfleck_draco sunfleck_image_codec LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
   set_target_properties(sunfleck sunfleck_demo PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/scenes" DESTINATION "${CMAKE_INSTALL_DATADIR}/sunfleck"
           FILES_MATCHING PATTERN "*.glb" PATTERN "*.json" PATTERN "*.walk")

@@ -1,120 +1,42 @@
 #include "engine/io/image.h"
 
 #include "engine/core/file.h"
+#include "engine/io/draco_mesh.h"
+#include "engine/io/image_codec.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-#include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <dlfcn.h>
 
 namespace sunfleck::io {
 namespace {
 
-std::vector<unsigned char> to_bytes(const Picture& picture) {
-    std::vector<unsigned char> bytes;
-    bytes.reserve(picture.pixels.size() * 3);
-    for (const vec4& pixel : picture.pixels)
-        for (int c = 0; c < 3; ++c)
-            bytes.push_back((unsigned char)std::lround(std::clamp(pixel[c], 0.0f, 1.0f) * 255.0f));
-    return bytes;
-}
-
-// Images are read and written in parallel, one thread each. OpenImageIO's and OpenEXR's own thread pools would be
-// destroyed after main, in the undefined order of static objects.
-void use_no_pools() {
-    [[maybe_unused]] static const bool done = OIIO::attribute("threads", 1) && OIIO::attribute("exr_threads", -1);
-}
-
-// Encoded in memory: the encoders do not report every failed write, but write_file does.
-Result<std::string> encode(const std::filesystem::path& path, const Picture& picture, PictureKind kind) {
-    const auto failure = [&](const std::string& why) { return Error{"cannot write '" + path.string() + "': " + why}; };
-    use_no_pools();
-    const std::unique_ptr<OIIO::ImageOutput> output =
-        OIIO::ImageOutput::create(kind == PictureKind::png ? "png" : "openexr");
-    if (!output)
-        return failure(OIIO::geterror());
-    OIIO::ImageSpec spec(int(picture.width), int(picture.height), kind == PictureKind::png ? 3 : 4,
-                         kind == PictureKind::png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-    spec.attribute("DateTime", "1970:01:01 00:00:00"); // equal images give equal files
-    if (kind == PictureKind::exr)
-        spec.attribute("compression", "zip");
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    if (!output->set_ioproxy(&memory) || !output->open(path.filename().string(), spec))
-        return failure(output->geterror());
-    const bool written = kind == PictureKind::png ? output->write_image(OIIO::TypeDesc::UINT8, to_bytes(picture).data())
-                                                  : output->write_image(OIIO::TypeDesc::FLOAT, picture.pixels.data());
-    if (!written || !output->close())
-        return failure(output->geterror());
-    return std::string(bytes.begin(), bytes.end());
-}
-
-const char* format_name(PictureKind kind) {
-    switch (kind) {
-    case PictureKind::png:
-        return "png";
-    case PictureKind::jpeg:
-        return "jpeg";
-    case PictureKind::hdr:
-        return "hdr";
-    default:
-        return "openexr";
+// Beside the library for Draco, which the program links: where the program looks for libraries is not what a sanitizer,
+// through which it calls dlopen, looks through. Stays loaded.
+Result<const ImageCodec*> load_codec() {
+    Dl_info draco{};
+    const bool known = dladdr(reinterpret_cast<const void*>(&decode_draco), &draco) != 0 && draco.dli_fname != nullptr;
+    const auto folder = known ? std::filesystem::path(draco.dli_fname).parent_path() : std::filesystem::path();
+    void* const library = dlopen((folder / "libsunfleck_image_codec.so").c_str(), RTLD_NOW | RTLD_LOCAL);
+    void* const entry = library != nullptr ? dlsym(library, "sunfleck_image_codec") : nullptr;
+    if (entry == nullptr) {
+        const char* const why = dlerror();
+        return Error{std::string("the library for pictures does not load: ") +
+                     (why != nullptr ? why : "no reason given") + "; install the program with its libraries"};
     }
+    return reinterpret_cast<decltype(&sunfleck_image_codec)>(entry)();
 }
 
-// A decoder that has read the header and checked the size.
-struct OpenPicture {
-    OIIO::Filesystem::IOMemReader memory;
-    std::unique_ptr<OIIO::ImageInput> input;
-    PictureKind kind;
-    OpenPicture(std::string_view bytes, PictureKind which)
-        : memory(const_cast<char*>(bytes.data()), bytes.size()), kind(which) {}
-};
+Result<const ImageCodec*> codec() {
+    static const Result<const ImageCodec*> loaded = load_codec();
+    return loaded;
+}
 
-Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes) {
+Result<PictureKind> kind_of(std::string_view bytes) {
     if (bytes.empty())
         return Error{"the image is empty"};
-    use_no_pools();
     const std::optional<PictureKind> kind = sniff_picture(bytes);
     if (!kind)
         return Error{"it is not a PNG, JPEG, EXR or HDR image"};
-    auto open = std::make_unique<OpenPicture>(bytes, *kind);
-    open->input = OIIO::ImageInput::create(format_name(*kind));
-    if (!open->input || !open->input->supports("ioproxy") || !open->input->set_ioproxy(&open->memory))
-        return Error{std::string("this build of OpenImageIO cannot read ") + format_name(*kind) + " from memory"};
-    OIIO::ImageSpec spec, wanted;
-    wanted.attribute("oiio:UnassociatedAlpha", 1);
-    if (!open->input->open(std::string("picture.") + format_name(*kind), spec, wanted))
-        return Error{"its header is damaged: " + open->input->geterror()};
-    const int limit = int(picture_side_limit);
-    if (spec.width < 1 || spec.height < 1 || spec.width > limit || spec.height > limit ||
-        std::int64_t(spec.width) * spec.height > (std::int64_t(1) << 26) || spec.nchannels < 1 || spec.nchannels > 16 ||
-        spec.depth > 1)
-        return Error{"it claims " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " pixels with " +
-                     std::to_string(spec.nchannels) + " channels; at most " + std::to_string(limit) +
-                     " per side and 2^26 in total are supported"};
-    return open;
-}
-
-// Reads all pixels as the type of `values` and expands the channels to RGBA.
-template <typename T>
-Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, std::vector<T>& rgba) {
-    const OIIO::ImageSpec& spec = open.input->spec();
-    const std::size_t channels = std::size_t(spec.nchannels),
-                      pixels = std::size_t(spec.width) * std::size_t(spec.height);
-    std::vector<T> values(pixels * channels);
-    if (!open.input->read_image(0, 0, 0, spec.nchannels, type, values.data()))
-        return Error{"it is damaged: " + open.input->geterror()};
-    rgba.assign(pixels * 4, opaque);
-    const bool grey = channels < 3, alpha = channels == 2 || channels == 4;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-            rgba[i * 4 + c] = values[i * channels + (grey ? 0 : c)];
-        if (alpha)
-            rgba[i * 4 + 3] = values[i * channels + channels - 1];
-    }
-    return {};
+    return *kind;
 }
 
 } // namespace
@@ -129,8 +51,11 @@ Result<PictureKind> picture_kind(const std::filesystem::path& path) {
 
 Status write_picture(const std::filesystem::path& path, const Picture& picture) {
     SUNFLECK_ASSIGN(const PictureKind kind, picture_kind(path));
-    SUNFLECK_ASSIGN(const std::string bytes, encode(path, picture, kind));
-    return write_file(path, bytes);
+    SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
+    const auto bytes = images->encode(picture, kind);
+    if (!bytes)
+        return Error{"cannot write '" + path.string() + "': " + bytes.error().message};
+    return write_file(path, *bytes);
 }
 
 std::optional<PictureKind> sniff_picture(std::string_view bytes) {
@@ -147,25 +72,15 @@ std::optional<PictureKind> sniff_picture(std::string_view bytes) {
 }
 
 Result<Picture> decode_picture(std::string_view bytes) {
-    SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes));
-    std::vector<float> values;
-    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::FLOAT, 1.0f, values));
-    Picture picture;
-    picture.width = std::uint32_t(open->input->spec().width);
-    picture.height = std::uint32_t(open->input->spec().height);
-    picture.pixels.resize(values.size() / 4);
-    std::memcpy(picture.pixels.data(), values.data(), values.size() * sizeof(float));
-    return picture;
+    SUNFLECK_ASSIGN(const PictureKind kind, kind_of(bytes));
+    SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
+    return images->decode(bytes, kind);
 }
 
 Result<BytePicture> decode_bytes(std::string_view bytes) {
-    SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes));
-    BytePicture picture;
-    picture.width = std::uint32_t(open->input->spec().width);
-    picture.height = std::uint32_t(open->input->spec().height);
-    picture.linear = open->kind == PictureKind::exr || open->kind == PictureKind::hdr;
-    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::UINT8, std::uint8_t(255), picture.pixels));
-    return picture;
+    SUNFLECK_ASSIGN(const PictureKind kind, kind_of(bytes));
+    SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
+    return images->decode_bytes(bytes, kind);
 }
 
 Result<Picture> read_picture(const std::filesystem::path& path) {
@@ -177,17 +92,8 @@ Result<Picture> read_picture(const std::filesystem::path& path) {
 }
 
 Result<std::string> encode_png(std::uint32_t width, std::uint32_t height, const std::vector<std::uint8_t>& pixels) {
-    use_no_pools();
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
-    OIIO::ImageSpec spec(int(width), int(height), 4, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    if (!output || !output->set_ioproxy(&memory) || !output->open("texture.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
-        return Error{"cannot encode a texture as PNG"};
-    return std::string(bytes.begin(), bytes.end());
+    SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
+    return images->encode_png(width, height, pixels);
 }
 
 } // namespace sunfleck::io
