@@ -16,6 +16,22 @@ if(SUNFLECK_SANITIZE)
   target_link_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
 endif()
 
+# In builds with the address sanitizer, targets whose code runs briefly in their tests: optimising it (or precompiling
+# headers for it with the flags of the others) takes longer than it saves. Left to be optimised are sampling, visibility and
+# rays, and all in builds with the thread sanitizer: functions of std::string that are not inlined there are those that
+# Embree calls, too, and it is not instrumented.
+set(SUNFLECK_BRIEF_TARGETS sunfleck_core sunfleck_gpu sunfleck_io sunfleck_statistics
+    sunfleck_render sunfleck_assets sunfleck_viewer file_tests sanitizer_tests)
+
+# sunfleck_use_precompiled(target owner): the target takes the headers that the owner precompiles.
+function(sunfleck_use_precompiled target owner)
+  if(SUNFLECK_SANITIZE MATCHES "address" AND target IN_LIST SUNFLECK_BRIEF_TARGETS)
+    target_compile_options(${target} PRIVATE -O0)
+  elseif(SUNFLECK_PRECOMPILE AND NOT SUNFLECK_BUILD_SHARED)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()
+
 # sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries] [INSTALL])
 # A static library (shared with SUNFLECK_BUILD_SHARED) with the project's flags; headers are included by their path from
 # the project's root. INSTALL: it is part of the installed package.
@@ -33,9 +49,7 @@ function(sunfleck_library name)
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:sunfleck_flags> ${ARG_PRIVATE_LINK})
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN")
-  if(SUNFLECK_PRECOMPILE AND NOT SUNFLECK_BUILD_SHARED)
-    target_precompile_headers(${name} REUSE_FROM ${SUNFLECK_PRECOMPILED})
-  endif()
+  sunfleck_use_precompiled(${name} "${SUNFLECK_PRECOMPILED}")
   if(ARG_INSTALL)
     target_include_directories(${name} PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sunfleck>")
     string(REPLACE sunfleck_ "" short "${name}")

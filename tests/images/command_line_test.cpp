@@ -199,7 +199,7 @@ TEST_F(CommandLine, AFullDiskLeavesTheOldPicture) {
 }
 
 TEST_F(CommandLine, AnInterruptedReferenceGoesOn) {
-    const std::string options = "reference cornell --size 160x120 --spp 256 -o ";
+    const std::string options = "reference cornell --size 96x72 --spp 256 -o ";
     ASSERT_EQ(tool(options + "whole.exr").status, 0);
     // Interrupted as soon as the first samples are reported.
     const Outcome stopped = shell("cd " + folder.string() + " && (" SUNFLECK_TOOL " " + options +
@@ -246,7 +246,7 @@ std::vector<fs::path> sample_models() {
     return files;
 }
 
-// The short size renders every twelfth of the valid ones.
+// The short size renders every eighteenth of the valid ones.
 TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
     const std::vector<fs::path> files = sample_models();
     if (files.size() < 20)
@@ -261,7 +261,7 @@ TEST_F(CommandLine, EverySampleModelRendersOrSaysWhatIsWrong) {
                 invalid = true;
                 problem = what;
             }
-        if (!invalid && thin_out && valid++ % 12 != 0)
+        if (!invalid && thin_out && valid++ % 18 != 0)
             continue;
         const Outcome outcome =
             tool("render '" + file.string() + "' -o model.png --validation --set patch_levels=1" + small);
@@ -309,7 +309,7 @@ TEST_F(CommandLine, EveryCommandHasHelpWithAnExample) {
 // The same recorded input gives the same world and the same pictures, whatever the number of threads.
 TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
     const std::string in_folder = "cd " + folder.string() + " && ";
-    const int frames = tests::by_size(12, 30);
+    const int frames = tests::by_size(8, 30);
     const std::string common =
         " --headless --frames " + std::to_string(frames) + " --steps-per-frame 6 --size 96x54 --pictures 2 ";
     const Outcome first = shell(in_folder + SUNFLECK_DEMO + common + "-o first --record walk.txt --validation");

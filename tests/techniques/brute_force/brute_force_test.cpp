@@ -116,7 +116,7 @@ TEST_F(BruteForceTest, FewerSlotsThanSamplesGiveTheSamePicture) {
 }
 
 TEST_F(BruteForceTest, AnyNumberOfSamples) {
-    for (const std::uint32_t lights : {0u, 1u, 7u, 300u, 2049u, 65536u}) {
+    for (const std::uint32_t lights : {0u, 1u, 7u, 300u, 2049u, by_size(8193u, 65536u)}) {
         GpuWorld world(assets::make_cornell, "view");
         gi::Settings settings = gi::Settings().all_light_by("brute_force");
         settings.lights = lights;
