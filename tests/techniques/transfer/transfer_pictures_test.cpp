@@ -2,6 +2,7 @@
 #include "gi_module/reference/path_tracer.h"
 #include "gi_module/transfer/transfer_settings.h"
 #include "tests/support/gpu_world.h"
+#include "tests/support/test_size.h"
 
 namespace sunfleck::tests {
 namespace {
@@ -126,7 +127,7 @@ TEST_F(TransferTest, AKnotInARoomIsAsThePathTracerSees) {
     reference.view = gi::reference::ReferenceView::irradiance;
     reference.antialiasing = false;
     gi::reference::Accumulation accumulation;
-    tracer.accumulate(accumulation, world.request.camera, reference, 128, {});
+    tracer.accumulate(accumulation, world.request.camera, reference, by_size(32, 128), {});
     std::vector<vec4> truth(picture.pixels.size(), vec4(0.0f));
     for (std::size_t i = 0; i < truth.size(); ++i)
         for (int c = 0; c < 3; ++c)
