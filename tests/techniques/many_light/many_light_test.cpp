@@ -64,7 +64,7 @@ TEST_F(ManyLightTest, FollowsLightsThatMoveAndVary) {
     settings.map_budget = 65536;
     pair.set(settings);
     std::uint64_t moved = 0;
-    const std::uint64_t phase = by_size(3u, 8u); // steps: the lamp is bright, dimmed, then out
+    const std::uint64_t phase = by_size(2u, 8u); // steps: the lamp is bright, dimmed, then out
     for (std::uint64_t step = 0; step < 3 * phase; ++step) {
         w = 0;
         for (GpuWorld* world : {&pair.brute, &pair.many}) {
