@@ -68,7 +68,7 @@ CellSet System::cells_with_maps() const {
 }
 
 bool System::wants_visibility() const {
-    return any_in_use(&TechniqueEntry::wants_visibility);
+    return settings_.kept_maps || any_in_use(&TechniqueEntry::wants_visibility);
 }
 
 Services System::services() {

@@ -80,12 +80,14 @@ struct Part {
 
 const Part parts[] = {
     {"ratios", 0.3, [](Experiment& e, std::vector<PlotSeries>&) { return time_ratios(e); }},
-    {"samples", 0.15, [](Experiment& e, std::vector<PlotSeries>& plot) { return frame_time_by_samples(e, plot); }},
-    {"ablation", 0.15, [](Experiment& e, std::vector<PlotSeries>&) { return ablation(e); }},
+    {"samples", 0.1, [](Experiment& e, std::vector<PlotSeries>& plot) { return frame_time_by_samples(e, plot); }},
+    {"ablation", 0.1, [](Experiment& e, std::vector<PlotSeries>&) { return ablation(e); }},
     {"map_updates", 0.2, [](Experiment& e, std::vector<PlotSeries>&) { return map_updates(e); }},
     {"scaling", 0.05, [](Experiment& e, std::vector<PlotSeries>& plot) { return scaling(e, plot); }},
     {"passes", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return render_passes(e); }},
     {"movers", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return many_movers(e); }},
+    {"lag", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return lagging_shadows(e); }},
+    {"low_resolution", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return resolution_errors(e); }},
     {"quality", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return map_quality(e); }},
 };
 

@@ -34,17 +34,20 @@ std::uint32_t warm_up(const gi::Settings& settings);
 double lighting_ms(const Measurement& measurement);
 double cpu_median(const Measurement& measurement, const std::string& stage);
 
-// Frame times: ratios of brute force to the full system, by number of samples (fig. 5-2), with the techniques
-// enabled one by one (fig. 5-3), and with constant map memory.
+// Frame times: ratios of brute force to the full system and the first frames, by number of samples (fig. 5-2), with the
+// techniques enabled one by one (fig. 5-3), and with constant map memory.
 Status time_ratios(Experiment& experiment);
 Status frame_time_by_samples(Experiment& experiment, std::vector<PlotSeries>& plot);
 Status ablation(Experiment& experiment);
 Status scaling(Experiment& experiment, std::vector<PlotSeries>& plot);
-// Shadow maps: redrawn per frame (fig. 5-4 to 5-6), render passes (fig. 4-11, 4-12), visibility tests of 100 movers,
-// and resolution (fig. 5-8).
+// Shadow maps: redrawn per frame (fig. 5-4 to 5-6), render passes (fig. 4-11, 4-12), and visibility tests of 100
+// movers.
 Status map_updates(Experiment& experiment);
 Status render_passes(Experiment& experiment);
 Status many_movers(Experiment& experiment);
+// Pictures: shadows that lag (fig. 4-16), the low-resolution pass, and the resolution of shadow maps (fig. 5-8).
+Status lagging_shadows(Experiment& experiment);
+Status resolution_errors(Experiment& experiment);
 Status map_quality(Experiment& experiment);
 
 } // namespace sunfleck::command_line

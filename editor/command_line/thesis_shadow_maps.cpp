@@ -1,7 +1,6 @@
 // The thesis's experiments with shadow maps and visibility.
 #include "editor/command_line/thesis_experiments.h"
 
-#include "editor/command_line/metrics.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
@@ -25,11 +24,12 @@ void keep_mover(ecs::Registry& registry, const std::string& mover) {
         registry.destroy(entity);
 }
 
-// Frames: eight times --repeat (200 in the thesis).
+constexpr std::uint32_t run_frames = 200; // as in the thesis
+
 Status measure_budget(Experiment& experiment, Bench& bench, const MoverCase& c, std::uint32_t budget) {
     gi::Settings settings = many_light(300);
     settings.map_budget = budget;
-    SUNFLECK_ASSIGN(const Measurement m, bench.measure(settings, 6, experiment.options.repeat * 8, budget > 0));
+    SUNFLECK_ASSIGN(const Measurement m, bench.measure(settings, 6, run_frames, budget > 0));
     const std::string mover = c.mover;
     experiment.row("5-4", c.scene, mover + ", maps per frame", budget, m, c.note);
     const double map_ms = Bench::gpu_median(m, "shadow maps") + Bench::gpu_median(m, "shadow map copies");
@@ -153,34 +153,6 @@ Status many_movers(Experiment& experiment) {
     report("tests / (movers x nodes x samples)", tests[2] / pairs, "pairs");
     report("time relative to pairs", times[0] / times[2], "clusters; target: at most 0.2");
     report("time relative to trees", times[0] / times[1], "clusters");
-    return {};
-}
-
-// Fig. 5-8: direct light from few samples at several map resolutions, against 2,000 samples at the highest one.
-Status map_quality(Experiment& experiment) {
-    SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, "area_room", "bench_1", {320, 240}));
-    bench->request.view = shared::view_irradiance;
-    bench->request.tone_map = false;
-    const auto picture = [&](gi::Settings settings) -> Result<io::Picture> {
-        settings.with("indirect", "none");
-        SUNFLECK_TRY(bench->measure(settings, settings.get("direct") == "light_samples" ? 5 : 0, 1, false));
-        return bench->renderer->read_back();
-    };
-    gi::Settings truth = brute_force(2000);
-    truth.shadow_map_resolution = 512;
-    truth.shadow_memory = 2048.0f;
-    SUNFLECK_ASSIGN(const io::Picture reference, picture(truth));
-    for (const std::uint32_t lights : {25u, 50u, 100u})
-        for (const std::uint32_t resolution : {64u, 128u, 256u, 512u}) {
-            gi::Settings settings = many_light(lights);
-            settings.shadow_map_resolution = resolution;
-            settings.clamp_scale = 2000.0f / float(lights); // the same clamping bound for all
-            settings.low_resolution = 1;                    // interpolation would dominate at this size
-            SUNFLECK_ASSIGN(const io::Picture image, picture(settings));
-            experiment.value("5-8", "area_room", "relative MSE, map resolution " + std::to_string(resolution), lights,
-                             compare_pictures(image, reference, true).relative_mean_square_error,
-                             "direct light against 2,000 samples");
-        }
     return {};
 }
 

@@ -17,7 +17,8 @@ namespace sunfleck::gi {
 
 // How maps are maintained. `database`: the visibility database follows the scene, so it is known which maps a mover
 // affects and which occluders are hidden; maps are then kept for all samples and redrawn within a budget, and movers
-// are drawn over the static part. Without it (the baseline), every map that a mover may affect is redrawn completely.
+// are drawn over the static part. Without it (the baseline, unless ShadowSettings::kept_maps), every map that a mover
+// may affect is redrawn completely.
 struct MapPolicy {
     bool database = true;
     bool full_detail = false; // whoever reads the maps needs movers as they are, whatever the settings

@@ -17,6 +17,9 @@ const TypeDescription& ShadowSettings::description() {
          SUNFLECK_FIELD(S, shadow_filter, "", 0, 1,
                         "Percentage-closer filtering over the four nearest texels: smooth edges; off is faster"),
          SUNFLECK_FIELD(S, static_maps, "", 0, 1, "Keeps the static geometry in shadow maps; only movers are redrawn"),
+         SUNFLECK_FIELD(S, kept_maps, "", 0, 1,
+                        "Redraws maps within map_budget and keeps their static part also where only brute_force reads "
+                        "them; off: it has every affected map redrawn whole in each frame"),
          SUNFLECK_FIELD(S, map_detail, "", 0, 1,
                         "Draws movers into shadow maps with only as much detail as texels resolve"),
          SUNFLECK_FIELD(S, map_budget, "maps", 0, 65536,

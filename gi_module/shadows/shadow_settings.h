@@ -17,6 +17,7 @@ struct ShadowSettings {
     float shadow_memory = 512.0f; // MiB
     bool shadow_filter = false;
     bool static_maps = true;
+    bool kept_maps = false;
     bool map_detail = true;
     std::uint32_t map_budget = 80; // shadow maps a frame
     float map_milliseconds = 0.0f; // GPU time for them; 0: map_budget applies
