@@ -48,21 +48,30 @@ Status lagging_shadows(Experiment& experiment) {
     return {};
 }
 
+namespace {
+
+Status resolution_error(Experiment& experiment, const std::string& scene, const std::string& camera) {
+    SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, scene, camera, thesis_size));
+    const gi::Settings settings = many_light(300);
+    gi::Settings full = settings;
+    full.low_resolution = 1;
+    const std::uint64_t step = bench->step;
+    SUNFLECK_ASSIGN(const io::Picture picture, last_picture(*bench, settings, warm_up(settings), 1));
+    bench->step = step;
+    SUNFLECK_ASSIGN(const io::Picture truth, last_picture(*bench, full, warm_up(full), 1));
+    const std::string where = scene + " " + camera;
+    experiment.value("low resolution", where, "share of pixels off by more than 8/255", 300, share_off(picture, truth),
+                     "against light at every pixel");
+    return {};
+}
+
+} // namespace
+
 // What is lost between the pixels of the low-resolution pass: shadows thinner than they are apart, above all.
 Status resolution_errors(Experiment& experiment) {
     for (const std::string& scene : thesis_scenes)
-        for (const std::string& camera : thesis_cameras.at(scene)) {
-            SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, scene, camera, thesis_size));
-            const gi::Settings settings = many_light(300);
-            gi::Settings full = settings;
-            full.low_resolution = 1;
-            const std::uint64_t step = bench->step;
-            SUNFLECK_ASSIGN(const io::Picture picture, last_picture(*bench, settings, warm_up(settings), 1));
-            bench->step = step;
-            SUNFLECK_ASSIGN(const io::Picture truth, last_picture(*bench, full, warm_up(full), 1));
-            experiment.value("low resolution", scene + " " + camera, "share of pixels off by more than 8/255", 300,
-                             share_off(picture, truth), "against light at every pixel");
-        }
+        for (const std::string& camera : thesis_cameras.at(scene))
+            SUNFLECK_TRY(resolution_error(experiment, scene, camera));
     return {};
 }
 

@@ -14,6 +14,16 @@ constexpr std::uint32_t invocations = 64;    // of a work group: light_maps.comp
 constexpr std::uint32_t max_texels = 256;    // along a patch's side
 constexpr std::uint64_t max_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
+constexpr double rounding_share = 0.002;     // of the mean light: more is not lost to the steps
+
+// Of what maps may cover, m2.
+double covered_area(const VisibilityDatabase& database) {
+    double area = 0.0;
+    for (const SurfacePatch& patch : database.patches().nodes())
+        if (patch.planar && patch.is_leaf())
+            area += glm::length(patch.corners[1] - patch.corners[0]) * glm::length(patch.corners[3] - patch.corners[0]);
+    return area;
+}
 
 } // namespace
 
@@ -58,7 +68,7 @@ std::uint64_t LightMaps::place_maps(const VisibilityDatabase& database, float te
         const SurfacePatch& patch = database.patches().nodes()[i];
         shared::NodeRow& row = node_rows_[i];
         row.first_texel = shared::no_light_map;
-        if (!patch.planar || !patch.is_leaf() || database.sample_count() > max_samples)
+        if (!patch.planar || !patch.is_leaf() || database.sample_count() > max_samples || steps_are_coarse_)
             continue;
         const auto texels = [&](const dvec3& a, const dvec3& b) {
             return std::clamp(std::uint32_t(std::ceil(float(glm::length(b - a)) / texel_side)) + 1u, 2u, max_texels);
@@ -112,16 +122,22 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     generation_ = database.generation();
     summed_rows_.assign(rows.begin(), rows.end());
     job_rows_ = summed_rows_;
-    double most = 0.0;
+    double most = 0.0, flux = 0.0;
     float bound = 0.0f;
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (held_by_light_maps(samples[i])) {
             // Of all samples at full strength, so that the steps are the same whatever is blocked.
             const vec3 intensity = samples[i].flux / pi;
-            most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(rows[i].position_bound.w);
+            const double brightest = double(std::max({intensity.x, intensity.y, intensity.z}));
+            most += brightest * double(rows[i].position_bound.w);
+            flux += brightest * double(pi);
             bound = std::max(bound, rows[i].position_bound.w);
         }
     fixed_point_ = most > 0.0 ? float(double(highest_sum) / most) : 1.0f;
+    // Each sample's light is rounded: off by a step over the root of 12, at random. With a bound that hardly bounds
+    // (clamp_scale), steps are too coarse for that, and samples are evaluated at every pixel instead.
+    steps_are_coarse_ = std::sqrt(double(samples.size()) / 12.0) / double(fixed_point_) * covered_area(database) >
+                        rounding_share * flux;
     SUNFLECK_TRY(lay_out(database, light_map_texel(bound), resources));
     for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
         if (node_rows_[node].first_texel == shared::no_light_map)

@@ -55,6 +55,7 @@ private:
     std::vector<shared::NodeRow> node_rows_;
     gpu::Buffer texels_;
     float fixed_point_ = 1.0f;
+    bool steps_are_coarse_ = false; // then no patch has a map
     std::uint64_t generation_ = 0;
     std::vector<shared::LightRow> summed_rows_; // what the maps were made with
     std::vector<shared::LightRow> job_rows_;    // those, then the new ones of samples whose strength changed

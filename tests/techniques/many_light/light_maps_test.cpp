@@ -108,5 +108,28 @@ TEST_F(ManyLightTest, LargeLightMapsAreFilledToTheEnd) {
     EXPECT_LT(difference, 0.03 * brightness);
 }
 
+// A bound that hardly bounds leaves steps that many samples' light is lost to: no texel is filled then.
+TEST_F(ManyLightTest, NoLightIsLostToCoarseSteps) {
+    GpuWorld world(assets::make_area_room, "bench_1");
+    gi::Settings settings;
+    settings.low_resolution = 1;
+    settings.with("baked_light", "off");
+    for (const float scale : {1.0f, 1e3f, 1e5f, 1e6f}) {
+        settings.clamp_scale = scale;
+        double mean[2] = {};
+        for (const bool maps : {false, true}) {
+            settings.of<gi::ManyLightSettings>().light_maps = maps;
+            world.set(settings);
+            for (const vec4& pixel : world.picture().pixels)
+                mean[maps] += double(luminance(vec3(pixel)));
+        }
+        const double texels = world.renderer->lighting().counters()["light_map_texels"];
+        std::printf("clamp_scale %g: %.0f texels, mean %+.3f %%\n", double(scale), texels,
+                    100.0 * (mean[1] / mean[0] - 1.0));
+        EXPECT_EQ(texels > 0.0, scale < 1e4f);
+        EXPECT_NEAR(mean[1] / mean[0], 1.0, 0.01) << scale;
+    }
+}
+
 } // namespace
 } // namespace sunfleck::tests
