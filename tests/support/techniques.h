@@ -24,9 +24,9 @@ inline std::vector<std::string_view> techniques_for_all_light() {
 // Every light sample with its shadow map at every pixel, nothing interpolated: by the baseline, or, where that is left
 // out, by the default technique without its shortcuts.
 inline gi::Settings plain_light() {
-    gi::Settings settings;
     if (has_technique("brute_force"))
-        return settings.all_light_by("brute_force");
+        return gi::Settings().all_light_by("brute_force");
+    gi::Settings settings = gi::Settings().all_light_by(techniques_for_all_light().front()); // punctual light, too
     settings.low_resolution = 1;
     settings.map_budget = 65536;
     settings.static_maps = settings.map_detail = false;
