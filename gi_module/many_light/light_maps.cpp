@@ -16,7 +16,7 @@ constexpr std::uint64_t max_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
 constexpr double rounding_share = 0.002;     // of the mean light: more is not lost to the steps
 
-// Of what maps may cover, m2.
+// Of what maps may cover, in units of the scene.
 double covered_area(const VisibilityDatabase& database) {
     double area = 0.0;
     for (const SurfacePatch& patch : database.patches().nodes())
@@ -136,8 +136,8 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     fixed_point_ = most > 0.0 ? float(double(highest_sum) / most) : 1.0f;
     // Each sample's light is rounded: off by a step over the root of 12, at random. With a bound that hardly bounds
     // (clamp_scale), steps are too coarse for that, and samples are evaluated at every pixel instead.
-    steps_are_coarse_ = std::sqrt(double(samples.size()) / 12.0) / double(fixed_point_) * covered_area(database) >
-                        rounding_share * flux;
+    const double rounding = std::sqrt(double(samples.size()) / 12.0) / double(fixed_point_);
+    steps_are_coarse_ = flux > 0.0 && rounding * covered_area(database) > rounding_share * flux;
     SUNFLECK_TRY(lay_out(database, light_map_texel(bound), resources));
     for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
         if (node_rows_[node].first_texel == shared::no_light_map)

@@ -38,5 +38,5 @@ status=0
     >"$work/gate.log" 2>&1 || status=$?
 ((status == 3)) && grep -q 'own geometry (CPU)' "$work/gate.log" && grep -q 'low-resolution light' "$work/gate.log" ||
     { echo "bench compare ended with $status:"; cat "$work/gate.log"; exit 1; }
-"$work/prefix/bin/sunfleck" --help >/dev/null # installed programs find their libraries
-"$work/prefix/bin/sunfleck" info cornell >/dev/null # and their scenes
+# Installed programs find their libraries, the one that is loaded with the first picture, too, and their scenes.
+"$work/prefix/bin/sunfleck" render cornell -o "$work/picture.png" --size 32x24 --lights 8 >/dev/null

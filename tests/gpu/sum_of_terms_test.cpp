@@ -192,8 +192,7 @@ protected:
         const gi::Settings settings = settings_of(assignment);
         ASSERT_TRUE(settings.validate()) << what;
         gi::Settings exact = settings;
-        if (has_technique("light_samples"))
-            exact.with("baked_light", "off");
+        set_if_known(exact, "baked_light", "off");
         const double sum = error(sum_of_cells(exact, step), picture(exact, step));
         EXPECT_LT(sum, allowed_sum_error(settings)) << what;
         std::printf("%-70s sum %.1e", what.c_str(), sum);
