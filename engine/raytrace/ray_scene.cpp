@@ -86,29 +86,28 @@ std::uint32_t RayScene::occluded(const ShadowPacket& packet, Scope scope) const 
     return result;
 }
 
-SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
-    const Instance& instance = implementation_->instances[hit.instance];
-    const scene::Mesh& mesh = (*implementation_->meshes)[instance.mesh];
-    const std::uint32_t* t = &mesh.indices[std::size_t(hit.primitive) * 3];
+// `position`: where on the triangle, if that is known better than by the weights.
+SurfacePoint RayScene::Implementation::describe(const Instance& instance, const TrianglePlace& place,
+                                                const vec3* position) const {
+    const std::uint32_t* t = &place.mesh.indices[std::size_t(place.primitive) * 3];
     vec3 p[3];
     for (int k = 0; k < 3; ++k)
-        p[k] = vec3(instance.matrix * vec4(mesh.positions[t[k]], 1.0f));
+        p[k] = vec3(instance.matrix * vec4(place.mesh.positions[t[k]], 1.0f));
     SurfacePoint point;
-    point.position = ray.origin + hit.distance * ray.direction;
-    point.on_triangle = (1.0f - hit.u - hit.v) * p[0] + hit.u * p[1] + hit.v * p[2];
+    point.on_triangle = (1.0f - place.u - place.v) * p[0] + place.u * p[1] + place.v * p[2];
+    point.position = position != nullptr ? *position : point.on_triangle;
     point.offset = ray_offset(glm::max(glm::max(glm::abs(p[0]), glm::abs(p[1])), glm::abs(p[2])));
     vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
     if (glm::determinant(mat3(instance.matrix)) < 0.0f)
         face = -face; // a mirroring transform turns the winding round
     const float face_length = glm::length(face);
-    point.geometric_normal = face_length > 0.0f ? face / face_length : -glm::normalize(ray.direction);
-    const TrianglePlace place{mesh, hit.primitive, hit.u, hit.v};
-    const vec3 normal = instance.normals * place.interpolate(mesh.normals);
+    point.geometric_normal = face_length > 0.0f ? face / face_length : vec3(0.0f);
+    const vec3 normal = instance.normals * place.interpolate(place.mesh.normals);
     const float length = glm::length(normal);
     point.shading_normal = length > 0.0f ? normal / length : point.geometric_normal;
     if (instance.surface.textures.normal)
-        point.shading_normal = bumped_normal(instance.surface, implementation_->textures, place, mat3(instance.matrix),
-                                             point.shading_normal);
+        point.shading_normal =
+            bumped_normal(instance.surface, textures, place, mat3(instance.matrix), point.shading_normal);
     if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f)
         point.shading_normal = -point.shading_normal;
     vec3 local_position(0.0f), local_normal(0.0f);
@@ -117,10 +116,36 @@ SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
         local_position = vec3(to_local * vec4(point.position, 1.0f));
         local_normal = mat3(to_local) * point.geometric_normal;
     }
-    point.material = material_at(instance.surface, implementation_->textures, place, local_position, local_normal);
+    point.material = material_at(instance.surface, textures, place, local_position, local_normal);
     point.entity = instance.entity;
     point.casts_shadow = instance.casts_shadow;
     return point;
+}
+
+SurfacePoint RayScene::surface(const Ray& ray, const Hit& hit) const {
+    const Instance& instance = implementation_->instances[hit.instance];
+    const scene::Mesh& mesh = (*implementation_->meshes)[instance.mesh];
+    const vec3 position = ray.origin + hit.distance * ray.direction;
+    SurfacePoint point = implementation_->describe(instance, {mesh, hit.primitive, hit.u, hit.v}, &position);
+    if (point.geometric_normal == vec3(0.0f)) { // a triangle without area faces whoever met it
+        point.geometric_normal = -glm::normalize(ray.direction);
+        if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f)
+            point.shading_normal = -point.shading_normal;
+        if (point.shading_normal == vec3(0.0f))
+            point.shading_normal = point.geometric_normal;
+    }
+    return point;
+}
+
+std::optional<SurfacePoint> RayScene::surface_on(ecs::Entity entity, std::uint32_t primitive, float u, float v) const {
+    const auto found = implementation_->place_of.find(entity);
+    if (found == implementation_->place_of.end())
+        return std::nullopt;
+    const Instance& instance = implementation_->instances[found->second];
+    const scene::Mesh& mesh = (*implementation_->meshes)[instance.mesh];
+    if (std::size_t(primitive) * 3 + 2 >= mesh.indices.size())
+        return std::nullopt;
+    return implementation_->describe(instance, {mesh, primitive, u, v}, nullptr);
 }
 
 vec3 RayScene::emission_at(ecs::Entity entity, std::uint32_t primitive, float u, float v) const {

@@ -85,6 +85,9 @@ public:
     std::uint32_t occluded(const ShadowPacket& packet, Scope scope = Scope::everything) const;
 
     SurfacePoint surface(const Ray& ray, const Hit& hit) const;
+    // The place of an entity's triangle (weights of the second and third corner), where it is now; none if there is no
+    // such entity.
+    std::optional<SurfacePoint> surface_on(ecs::Entity entity, std::uint32_t primitive, float u, float v) const;
     // Radiance that an entity's triangle emits on its front at a place (weights of the second and third corner).
     vec3 emission_at(ecs::Entity entity, std::uint32_t primitive, float u, float v) const;
 

@@ -92,6 +92,7 @@ struct RayScene::Implementation {
     Differences take_over(std::span<const scene::DrawableChange> changes);
     void list_instances(const scene::SceneChanges& changes, bool static_ones);
     void rebuild(const Differences& differences);
+    SurfacePoint describe(const Instance& instance, const TrianglePlace& place, const vec3* position) const;
 
     RTCScene scope_scene(Scope scope) const {
         return scope == Scope::static_only ? static_scene.get() : top_scene.get();

@@ -14,18 +14,25 @@ std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices) {
     return std::uint32_t(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
 }
 
+// The mesh's indices, with coincident vertices counted as one.
+std::vector<std::uint32_t> join_vertices(const Mesh& mesh) {
+    std::vector<std::uint32_t> result(mesh.indices.size());
+    if (!result.empty())
+        meshopt_generateShadowIndexBuffer(result.data(), mesh.indices.data(), mesh.indices.size(), &mesh.positions[0].x,
+                                          mesh.positions.size(), sizeof(vec3), sizeof(vec3));
+    return result;
+}
+
 } // namespace
 
 std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
     std::vector<MeshDetail> details(1);
     details.reserve(32); // keeps `whole` in place
     MeshDetail& whole = details.front();
-    whole.indices.resize(mesh.indices.size());
+    whole.indices = join_vertices(mesh);
     if (mesh.indices.empty())
         return details;
     const float* positions = &mesh.positions[0].x;
-    meshopt_generateShadowIndexBuffer(whole.indices.data(), mesh.indices.data(), mesh.indices.size(), positions,
-                                      mesh.positions.size(), sizeof(vec3), sizeof(vec3));
     whole.vertex_count = count_vertices(whole.indices);
     const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
     std::size_t target = whole.indices.size() / 6 * 3;
@@ -60,6 +67,10 @@ bool is_closed(const std::vector<std::uint32_t>& joined_indices) {
     std::sort(edges.begin(), edges.end());
     std::sort(reversed.begin(), reversed.end());
     return !edges.empty() && edges == reversed && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
+
+bool is_closed(const Mesh& mesh) {
+    return is_closed(join_vertices(mesh));
 }
 
 } // namespace sunfleck::scene

@@ -18,5 +18,6 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh);
 // Watertight: every edge has two triangles, once in each direction (coincident vertices count as one). From outside,
 // only front faces are visible.
 bool is_closed(const std::vector<std::uint32_t>& joined_indices);
+bool is_closed(const Mesh& mesh);
 
 } // namespace sunfleck::scene

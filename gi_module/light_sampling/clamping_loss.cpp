@@ -17,7 +17,9 @@ namespace {
 constexpr std::size_t ray_budget = 1u << 13;
 constexpr std::size_t min_rays = 4, max_rays = 128;
 
-float loss_of(const LightSample& sample, float bound, std::size_t ray_count, const raytrace::RayScene& rays) {
+} // namespace
+
+float clamping_loss_of(const LightSample& sample, float bound, std::size_t ray_count, const raytrace::RayScene& rays) {
     const RandomSequence random(SequenceKind::sobol, 0xc1a3, sample.index);
     double sum = 0.0;
     for (std::size_t k = 0; k < ray_count; ++k) {
@@ -37,8 +39,6 @@ float loss_of(const LightSample& sample, float bound, std::size_t ray_count, con
     return float(sum / double(ray_count));
 }
 
-} // namespace
-
 double clamping_loss(std::span<const LightSample> samples, std::span<const float> bounds,
                      const raytrace::RayScene& rays) {
     const std::size_t ray_count = std::clamp(ray_budget / std::max<std::size_t>(samples.size(), 1), min_rays, max_rays);
@@ -48,7 +48,7 @@ double clamping_loss(std::span<const LightSample> samples, std::span<const float
             if (samples[i].kind != SampleKind::surface || samples[i].dynamic)
                 continue;
             light[i] = double(luminance(samples[i].flux));
-            lost[i] = light[i] * double(loss_of(samples[i], bounds[i], ray_count, rays));
+            lost[i] = light[i] * double(clamping_loss_of(samples[i], bounds[i], ray_count, rays));
         }
     });
     const double all = std::accumulate(light.begin(), light.end(), 0.0);

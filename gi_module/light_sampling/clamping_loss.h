@@ -17,4 +17,7 @@ namespace sunfleck::gi {
 double clamping_loss(std::span<const LightSample> samples, std::span<const float> bounds,
                      const raytrace::RayScene& rays);
 
+// The same share of one surface sample, by `ray_count` rays.
+float clamping_loss_of(const LightSample& sample, float bound, std::size_t ray_count, const raytrace::RayScene& rays);
+
 } // namespace sunfleck::gi

@@ -1,17 +1,8 @@
-// Light samples (VPLs) of dynamic emitters: those that move or change their strength. Samples on the emitter follow it.
-// Reflected ones keep their places as long as the first segment of their path is unoccluded; the others are sampled
-// again, a few a frame, where the emitted light has the largest gap. After S. Laine et al., "Incremental Instant
-// Radiosity for Real-Time Indirect Illumination", 2007, with paths of several bounces: a path is valid as a whole while
-// its first segment is.
-//
-// Each reflected sample carries the share of the emitted flux that leaves nearer to its path's direction than to any
-// other's: the Voronoi cell of the direction, measured with a fixed set of directions that are distributed like the
-// emitted light.
+// Light samples (VPLs) of dynamic emitters: those that move or change their strength. Samples on the emitter follow it;
+// reflected ones keep their places as long as their light reaches them (followed_paths.h).
 #pragma once
 
-#include "engine/raytrace/ray_scene.h"
-#include "gi_module/light_sampling/emitters.h"
-#include "gi_module/light_sampling/sampling_settings.h"
+#include "gi_module/light_sampling/followed_paths.h"
 
 namespace sunfleck::gi {
 
@@ -33,30 +24,17 @@ public:
     static bool can_follow(EmitterKind kind) { return kind <= EmitterKind::spot; }
 
 private:
-    struct Path {
-        float numbers[4] = {}; // of the emitted ray
-        vec3 direction{0.0f};  // of the first segment, in the emitter's frame
-        vec3 first_hit{0.0f};  // world space; far along the ray if the path hit nothing
-        vec3 throughput{0.0f}; // of the whole path; the emitter's flux is not in it
-        bool escaped = false, valid = false;
-    };
     struct Light {
         Emitter emitter;
         std::uint32_t first = 0, direct = 0; // samples on the emitter; those of paths follow
-        std::vector<Path> paths;
-        std::vector<vec3> directions; // of emitted light, in the emitter's frame
-        std::vector<float> weights;
-        std::vector<std::array<float, 4>> numbers;
+        FollowedPaths paths;
     };
-    struct Cells;
     void add_light(const Emitter& emitter, std::uint32_t number, std::uint32_t count, const raytrace::RayScene& rays);
-    void make_directions(Light& light, std::uint32_t seed) const;
     void place_direct(Light& light, const raytrace::RayScene& rays);
-    void validate(Light& light, const raytrace::RayScene& rays) const;
-    void sample_path(Light& light, std::uint32_t path, const raytrace::RayScene& rays);
-    void trace_path(Path& path, LightSample& sample, raytrace::Ray ray, const raytrace::RayScene& rays);
-    void fill_gaps(Light& light, std::uint32_t count, const raytrace::RayScene& rays);
-    void share_flux(Light& light);
+    void fill_gaps(Light& light, std::uint32_t most, const raytrace::RayScene& rays);
+    std::span<LightSample> reflected(const Light& light) {
+        return std::span(samples_).subspan(light.first + light.direct, light.paths.size());
+    }
 
     SampleRequest settings_;
     std::vector<Light> lights_;

@@ -120,6 +120,7 @@ private:
         }
         sample.position = samples_[medoid].position;
         sample.normal = samples_[medoid].normal;
+        sample.index = samples_[medoid].index;
         sample.radius = std::sqrt(2.0f * float(variance)); // of a disc with that variance
     }
 

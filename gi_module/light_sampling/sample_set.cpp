@@ -38,6 +38,13 @@ std::uint64_t next_generation() {
     return ++last;
 }
 
+// Whether samples are made for light that movers reflect.
+bool wants_movers(const SampleRequest& request, const scene::SceneChanges& changes) {
+    if (!request.indirect || request.bounces == 0 || request.movers_are_static || !(request.mover_share > 0.0f))
+        return false;
+    return !MoverReflections::reflecting(changes).empty();
+}
+
 // Samples for dynamic emitters: their share, but at least two each. `others`: there are static ones, too.
 std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_emitters, bool others) {
     if (dynamic_emitters == 0 || request.lights == 0)
@@ -47,6 +54,9 @@ std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_em
     const std::uint32_t share = std::uint32_t(float(request.lights) * request.dynamic_share);
     return std::min(request.lights, std::max(share, 2 * std::uint32_t(dynamic_emitters)));
 }
+
+constexpr std::size_t loss_rays = 64;     // by which the loss of a single sample is estimated
+constexpr float least_let_through = 0.5f; // less is not given back in full: the sample stands in a corner
 
 constexpr Counter light_samples{"light_samples", "samples", "light samples", "Light samples (VPLs) in all"};
 constexpr Counter direct_samples{"light_samples_direct", "samples", "light samples",
@@ -81,13 +91,19 @@ void SampleSet::report(Report& report) const {
     report.set(clamped_share, 100.0 * loss_);
 }
 
-void SampleSet::update(const SceneView& scene, const SampleRequest& request) {
+void SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings) {
     moved_.clear();
     find_emitters(scene, request);
-    if (needs_new_samples(request, scene.rays))
-        make_samples(request, scene.rays);
+    if (needs_new_samples(request, scene))
+        make_samples(request, scene);
     else
         follow_dynamic_lights(scene.rays);
+    if (settings.mover_paths && !request.movers_are_static)
+        blocked_paths_.update(scene.changes, scene.meshes, samples_, generation_);
+    else
+        blocked_paths_ = {};
+    update_bounds(scene, settings);
+    follow_movers(scene, settings);
 }
 
 // Emitters that move have samples of their own, and so have those that once changed their flux: the first change
@@ -141,15 +157,17 @@ bool SampleSet::find_varying(ecs::Registry& registry) {
     return varying_.size() != had;
 }
 
-bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
+bool SampleSet::needs_new_samples(const SampleRequest& request, const SceneView& scene) {
     std::uint64_t hash = hash_emitters(emitters_);
     for (const Emitter& emitter : dynamic_emitters_) // only which ones there are
         hash = hash * 0x100000001b3ull ^
                (emitter.entity.bits() * 32 + std::uint64_t(emitter.kind) * 2 + (emitter.punctual ? 1 : 0));
     // Where movers count as static geometry, each of their moves needs new walks.
-    const std::uint64_t geometry = request.movers_are_static ? rays.generation() : rays.static_generation();
-    const bool same =
-        valid_ && request.same_samples(sampled_) && hash == emitter_hash_ && geometry == geometry_generation_;
+    const std::uint64_t geometry = request.movers_are_static ? scene.rays.generation() : scene.rays.static_generation();
+    const bool movers_reflect = wants_movers(request, scene.changes);
+    const bool same = valid_ && request.same_samples(sampled_) && hash == emitter_hash_ &&
+                      geometry == geometry_generation_ && movers_reflect == movers_reflect_;
+    movers_reflect_ = movers_reflect;
     emitter_hash_ = hash;
     geometry_generation_ = geometry;
     sampled_ = request;
@@ -157,14 +175,19 @@ bool SampleSet::needs_new_samples(const SampleRequest& request, const raytrace::
     return !same;
 }
 
-void SampleSet::make_samples(const SampleRequest& request, const raytrace::RayScene& rays) {
-    const std::uint32_t share = dynamic_share(request, dynamic_emitters_.size(), !emitters_.empty());
+void SampleSet::make_samples(const SampleRequest& request, const SceneView& scene) {
+    const raytrace::RayScene& rays = scene.rays;
+    const std::uint32_t on_movers = movers_reflect_ ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
+    movers_.reset(scene.changes, scene.meshes, rays, on_movers, request);
+    let_through_.clear();
+    SampleRequest fixed = request; // for static emitters: what the others leave
+    fixed.lights -= std::min(request.lights, std::uint32_t(movers_.samples().size()));
+    const std::uint32_t share = dynamic_share(fixed, dynamic_emitters_.size(), !emitters_.empty());
     dynamic_lights_.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
-    SampleRequest fixed = request; // for static emitters: what the dynamic ones leave
-    fixed.lights = request.lights - std::min(request.lights, std::uint32_t(dynamic_lights_.samples().size()));
+    fixed.lights -= std::min(fixed.lights, std::uint32_t(dynamic_lights_.samples().size()));
     samples_ = sample_sources()[request.source].make(emitters_, fixed, rays);
-    const auto& dynamic = dynamic_lights_.samples();
-    samples_.insert(samples_.end(), dynamic.begin(), dynamic.end());
+    for (const auto* dynamic : {&dynamic_lights_.samples(), &movers_.samples()})
+        samples_.insert(samples_.end(), dynamic->begin(), dynamic->end());
     sort_samples();
     generation_ = next_generation();
 }
@@ -176,8 +199,9 @@ void SampleSet::sort_samples() {
     };
     std::stable_sort(samples_.begin(), samples_.end(),
                      [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
-    // Within a class, dynamic samples keep the order of DynamicLights.
-    const auto& dynamic = dynamic_lights_.samples();
+    // Within a class, dynamic samples keep their order.
+    std::vector<LightSample> dynamic = dynamic_lights_.samples();
+    dynamic.insert(dynamic.end(), movers_.samples().begin(), movers_.samples().end());
     std::vector<std::uint32_t> order(dynamic.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
@@ -191,30 +215,61 @@ void SampleSet::sort_samples() {
     }
 }
 
+// `follower`: the sample's place in dynamic_samples_.
+void SampleSet::take_over(std::uint32_t follower, const LightSample& now, bool moved) {
+    const std::uint32_t i = dynamic_samples_[follower];
+    if (!moved && now.flux == samples_[i].flux)
+        return;
+    samples_[i] = now;
+    samples_[i].index = i;
+    if (moved)
+        moved_.push_back(i);
+}
+
 void SampleSet::follow_dynamic_lights(const raytrace::RayScene& rays) {
-    if (dynamic_samples_.empty())
+    if (dynamic_lights_.samples().empty())
         return;
     dynamic_lights_.update(dynamic_emitters_, rays);
-    for (std::size_t k = 0; k < dynamic_samples_.size(); ++k) {
-        const std::uint32_t i = dynamic_samples_[k];
-        const LightSample& now = dynamic_lights_.samples()[k];
-        const bool moved = dynamic_lights_.moved()[k] != 0;
-        if (!moved && now.flux == samples_[i].flux)
-            continue;
-        samples_[i] = now;
-        samples_[i].index = i;
-        if (moved)
-            moved_.push_back(i);
+    for (std::uint32_t k = 0; k < dynamic_lights_.samples().size(); ++k)
+        take_over(k, dynamic_lights_.samples()[k], dynamic_lights_.moved()[k] != 0);
+}
+
+// What arrives at movers is all other light, of one reflection less than may be at most.
+void SampleSet::follow_movers(const SceneView& scene, const LightSettings& settings) {
+    if (movers_.samples().empty())
+        return;
+    const Bounds bounds = scene.gpu_scene.bounds();
+    std::vector<std::uint8_t> on_mover(samples_.size(), 0);
+    const std::size_t first = dynamic_lights_.samples().size();
+    for (std::size_t k = first; k < dynamic_samples_.size(); ++k)
+        on_mover[dynamic_samples_[k]] = 1;
+    std::vector<IncomingLight> incoming;
+    for (const LightSample& sample : samples_)
+        if (!on_mover[sample.index] && !is_blocked(sample.index) && sample.bounce < sampled_.bounces)
+            incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
+                                sample.bounce});
+    movers_.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
+    const bool same_bound = let_through_bound_ == dynamic_bound_ && !let_through_.empty();
+    let_through_bound_ = dynamic_bound_;
+    let_through_.resize(movers_.samples().size(), 1.0f);
+    for (std::uint32_t k = 0; k < movers_.samples().size(); ++k) {
+        LightSample now = movers_.samples()[k];
+        const bool moved = movers_.moved()[k] != 0;
+        if ((moved || !same_bound) && !now.on_mover)
+            let_through_[k] = 1.0f - clamping_loss_of(now, bound_of(now, settings), loss_rays, scene.rays);
+        now.flux /= std::max(let_through_[k], least_let_through);
+        take_over(std::uint32_t(first) + k, now, moved);
     }
 }
 
 // Dynamic emitters have few samples, each with more flux: their reflected samples are clamped as if there were no
-// others.
+// others. Those that lie on movers have discs of their own.
 void SampleSet::update_bounds(const SceneView& scene, const LightSettings& settings) {
     std::uint32_t surface_samples = 0, dynamic_reflected = 0;
     for (const LightSample& sample : samples_) {
         surface_samples += sample.kind == SampleKind::surface;
-        dynamic_reflected += sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0;
+        dynamic_reflected +=
+            sample.kind == SampleKind::surface && sample.dynamic && sample.bounce > 0 && !sample.on_mover;
     }
     const float area = scene.rays.static_area();
     bound_ = gi::geometry_bound(surface_samples, area, settings.clamp_scale);
@@ -223,6 +278,8 @@ void SampleSet::update_bounds(const SceneView& scene, const LightSettings& setti
 
 float SampleSet::bound_of(const LightSample& sample, const LightSettings& settings) const {
     const bool alone = sample.dynamic && sample.bounce > 0;
+    if (sample.on_mover)
+        return geometry_bound_of(sample.radius, 1e30f, settings.clamp_scale);
     return geometry_bound_of(sample.radius, alone ? dynamic_bound_ : bound_, settings.clamp_scale);
 }
 
@@ -240,13 +297,8 @@ void SampleSet::find_loss(const SceneView& scene, const LightSettings& settings)
 
 void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
                             float indirect_scale) {
-    if (settings.mover_paths && !sampled_.movers_are_static)
-        blocked_paths_.update(scene.changes, scene.meshes, samples_, generation_);
-    else
-        blocked_paths_ = {};
     remapped_.clear();
     slots_ = std::max(slots, 1u);
-    update_bounds(scene, settings);
     find_loss(scene, settings);
     // The maps of directional lights cover the scene's bounds and change with them.
     const Bounds bounds = scene.gpu_scene.bounds();

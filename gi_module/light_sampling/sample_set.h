@@ -13,6 +13,7 @@
 #include "engine/scene/gpu_scene.h"
 #include "gi_module/light_sampling/blocked_paths.h"
 #include "gi_module/light_sampling/dynamic_lights.h"
+#include "gi_module/light_sampling/mover_reflections.h"
 #include "gi_module/light_sampling/sampling_settings.h"
 #include "gi_module/transport/light_row.h"
 #include "gi_module/transport/report.h"
@@ -35,7 +36,7 @@ struct SceneView {
 class SampleSet {
 public:
     // Generates or moves samples. Call once a frame, then update_rows.
-    void update(const SceneView& scene, const SampleRequest& request);
+    void update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings);
     // Fills the rows that shaders read. `slots`: shadow maps that fit into memory; sample i uses slot i % slots.
     // Reflected light is multiplied by `indirect_scale`.
     void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots, float indirect_scale);
@@ -65,10 +66,12 @@ public:
 private:
     void find_emitters(const SceneView& scene, const SampleRequest& request);
     bool find_varying(ecs::Registry& registry);
-    bool needs_new_samples(const SampleRequest& request, const raytrace::RayScene& rays);
-    void make_samples(const SampleRequest& request, const raytrace::RayScene& rays);
+    bool needs_new_samples(const SampleRequest& request, const SceneView& scene);
+    void make_samples(const SampleRequest& request, const SceneView& scene);
     void sort_samples();
+    void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);
+    void follow_movers(const SceneView& scene, const LightSettings& settings);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
     void find_loss(const SceneView& scene, const LightSettings& settings);
@@ -78,10 +81,16 @@ private:
     std::vector<Emitter> emitters_;         // static
     std::vector<Emitter> dynamic_emitters_; // that move or vary
     std::set<ecs::Entity> varying_;         // do not move, but have changed their flux
+    // By sample of movers_: what the bound lets through of it. Few samples have low bounds, and what these take away
+    // is given back.
+    std::vector<float> let_through_;
+    float let_through_bound_ = 0.0f;
     std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
     DynamicLights dynamic_lights_;
+    MoverReflections movers_;
     BlockedPaths blocked_paths_;
-    std::vector<std::uint32_t> dynamic_samples_; // index of each dynamic sample among all
+    // Index of each dynamic sample among all: those of dynamic lights, then those of movers.
+    std::vector<std::uint32_t> dynamic_samples_;
     std::vector<std::uint32_t> moved_, remapped_;
     scene::ChangeCursor emitter_cursor_; // of emitters_ and dynamic_emitters_
     Bounds emitter_bounds_;              // of the scene that they were found in
@@ -90,7 +99,7 @@ private:
     bool emitters_as_static_ = false;    // and whether movers counted as static geometry
     SampleRequest sampled_;              // what the samples were generated for
     std::uint32_t slots_ = 1;
-    bool valid_ = false;
+    bool valid_ = false, movers_reflect_ = false;
     std::uint64_t generation_ = 0, geometry_generation_ = 0, emitter_hash_ = 0;
     Bounds bounds_;                             // of the scene, at the last update_rows
     float bound_ = 0.0f, dynamic_bound_ = 0.0f; // of the geometry term

@@ -20,6 +20,9 @@ std::vector<Field> sampling_fields() {
                        "Share of the samples that lie on emitters: direct light"),
         SUNFLECK_FIELD(SamplingSettings, dynamic_share, "", 0, 1,
                        "Share of the samples for emitters that move or vary, if there are any"),
+        SUNFLECK_FIELD(
+            SamplingSettings, mover_share, "", 0, 1,
+            "Share of the samples for the light that movers reflect, if there are any; 0: they reflect none"),
         SUNFLECK_FIELD(SamplingSettings, punctual_lights, "lights", 0, 256,
                        "Suns, point lights and spots, the brightest first, that are punctual light in the light plan: "
                        "sharp shadows, at a cost for each; others are light samples like all else"),

@@ -167,6 +167,11 @@ std::vector<float> ShadowService::contributions(const SampleSet& samples, const 
                              *input.view_projection, stale);
 }
 
+static void hide(ecs::Entity entity, std::vector<std::uint8_t>& hidden) {
+    hidden.resize(std::max<std::size_t>(hidden.size(), entity.index + 1));
+    hidden[entity.index] = 1;
+}
+
 std::vector<ShadowRequest> ShadowService::requests(const SampleSet& samples,
                                                    std::span<const std::uint32_t> drawn) const {
     std::vector<ShadowRequest> requests;
@@ -180,6 +185,8 @@ std::vector<ShadowRequest> ShadowService::requests(const SampleSet& samples,
                             {}});
         if (database_ != nullptr)
             requests.back().hidden = database_->hidden_entities(sample);
+        if (samples.samples()[sample].on_mover)
+            hide(samples.samples()[sample].emitter, requests.back().hidden);
     }
     return requests;
 }

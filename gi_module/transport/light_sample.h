@@ -36,6 +36,8 @@ struct LightSample {
     bool punctual = false;
     // Its emitter moves or varies: it is never in light maps, and its visibility is computed for whole charts only.
     bool dynamic = false;
+    // It lies on a mover, `emitter`, which casts no shadow in this light: the sample follows some frames behind.
+    bool on_mover = false;
 
     static const TypeDescription& description();
 };

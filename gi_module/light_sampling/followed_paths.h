@@ -1,0 +1,84 @@
+// Reflected light samples (VPLs) of one source of light that moves or varies. They keep their places as long as the
+// first segment of their path is unoccluded; the others are sampled again, a few a frame, where the source's light has
+// the largest gap. After S. Laine et al., "Incremental Instant Radiosity for Real-Time Indirect Illumination", 2007,
+// with paths of several bounces: a path is valid as a whole while its first segment is.
+//
+// Each sample carries the share of the source's flux that leaves nearer to its path's direction than to any other's:
+// the Voronoi cell of the direction, measured with a fixed set of directions that are distributed like the light.
+#pragma once
+
+#include "engine/core/random.h"
+#include "engine/raytrace/ray_scene.h"
+#include "gi_module/light_sampling/emitters.h"
+#include "gi_module/light_sampling/sampling_settings.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace sunfleck::gi {
+
+// What light leaves, now.
+class PathSource {
+public:
+    virtual ~PathSource() = default;
+    // Of light that leaves it; four numbers in [0, 1) decide where and whither.
+    virtual EmittedRay ray(const float numbers[4]) const = 0;
+    // Whether light leaves it in this direction from where a ray of `normal` starts.
+    virtual bool emits_towards(vec3 normal, vec3 direction) const = 0;
+    virtual ecs::Entity entity() const = 0;
+    // Directions are kept relative to it.
+    virtual const mat4& matrix() const = 0;
+    // W, of all rays together, without what may not be reflected so often any more; and what these numbers' ray
+    // carries, relative to the others.
+    virtual vec3 flux(std::uint32_t reflections) const = 0;
+    virtual vec3 weight(const float numbers[4]) const = 0;
+    // Whether weights change while it lasts.
+    virtual bool weights_vary() const = 0;
+};
+
+// What paths are traced in.
+struct PathSpace {
+    const SampleRequest& settings;
+    const raytrace::RayScene& rays;
+    std::uint32_t bounces = 0;      // of a path, at most
+    std::uint32_t first_bounce = 1; // where it first meets a surface
+    std::uint32_t& paths_made;      // so far; the random sequence of a path follows it
+    std::span<std::uint8_t> moved;  // by sample: set when it is placed; may be empty
+};
+
+class FollowedPaths {
+public:
+    // `count` paths, none valid yet: fill_gaps and share_flux come next. `seed`: of the directions.
+    void reset(const PathSource& source, std::uint32_t count, std::uint32_t seed);
+    bool complete() const; // all paths are valid
+    std::uint32_t size() const { return std::uint32_t(paths_.size()); }
+
+    // After the source moved: which first segments are still unoccluded, and their directions from the source.
+    void validate(const PathSource& source, const raytrace::RayScene& rays);
+    // Samples invalid paths again, at most `most` of them, in the middle of the largest gaps between the others. When
+    // all are valid, but a gap is much larger than the rest, the path with the smallest cell moves there. The number of
+    // paths sampled. `samples`: one for each path.
+    std::uint32_t fill_gaps(const PathSource& source, std::uint32_t most, const PathSpace& space,
+                            std::span<LightSample> samples);
+    void share_flux(const PathSource& source, std::span<LightSample> samples);
+
+private:
+    struct Path {
+        float numbers[4] = {}; // of the ray that leaves the source
+        vec3 direction{0.0f};  // of the first segment, in the source's frame
+        vec3 first_hit{0.0f};  // far along the ray if the path hit nothing
+        vec3 throughput{0.0f}; // of the whole path; the source's flux is not in it
+        std::uint32_t reflections = 0;
+        bool escaped = false, valid = false;
+    };
+    struct Cells;
+    void sample_path(const PathSource& source, std::uint32_t path, const PathSpace& space, LightSample& sample);
+
+    std::vector<Path> paths_;
+    std::vector<vec3> directions_; // of the source's light, in its frame
+    std::vector<vec3> weights_;
+    std::vector<std::array<float, 4>> numbers_;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,272 @@
+#include "gi_module/light_sampling/mover_reflections.h"
+
+#include "engine/core/hash.h"
+#include "engine/core/jobs.h"
+#include "gi_module/light_sampling/light_sampler.h"
+#include "gi_module/light_sampling/mover_places.h"
+#include "gi_module/transport/arrival.h"
+#include "gi_module/transport/reflectance.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr std::uint32_t follow_frames = 5;     // within which all samples are where their movers have taken them
+constexpr std::uint32_t max_resampled = 4;     // per mover and frame
+constexpr std::uint32_t least_samples = 6;     // of a mover that has any
+constexpr float path_share = 0.4f;             // of a mover's samples
+constexpr std::uint32_t places_per_sample = 2; // where arriving light is computed
+
+} // namespace
+
+// Light leaves a mover from its samples, by Lambert's law.
+class MoverReflections::Source final : public PathSource {
+public:
+    Source(const Mover& mover, std::span<const LightSample> samples, std::uint32_t bounces)
+        : mover_(mover), samples_(samples), bounces_(bounces) {}
+
+    EmittedRay ray(const float numbers[4]) const override {
+        const LightSample& sample = chosen(numbers);
+        EmittedRay ray;
+        ray.origin = sample.position;
+        ray.normal = sample.normal;
+        ray.direction = sample_cosine_direction(sample.normal, numbers[2], numbers[3]);
+        return ray;
+    }
+    bool emits_towards(vec3 normal, vec3 direction) const override { return glm::dot(normal, direction) > 0.0f; }
+    ecs::Entity entity() const override { return mover_.entity; }
+    const mat4& matrix() const override { return mover_.matrix; }
+    vec3 flux(std::uint32_t reflections) const override {
+        vec3 sum(0.0f);
+        for (std::size_t b = 0; b < bounce_count && b + 1 + reflections <= bounces_; ++b)
+            sum += mover_.flux[b];
+        return sum;
+    }
+    vec3 weight(const float numbers[4]) const override { return chosen(numbers).flux; }
+    bool weights_vary() const override { return true; }
+
+private:
+    const LightSample& chosen(const float numbers[4]) const {
+        return samples_[std::min(std::size_t(numbers[0] * float(samples_.size())), samples_.size() - 1)];
+    }
+
+    const Mover& mover_;
+    std::span<const LightSample> samples_;
+    std::uint32_t bounces_;
+};
+
+// Of all light that reaches the point.
+MoverReflections::LightByBounce MoverReflections::irradiance(vec3 point, vec3 normal,
+                                                             std::span<const IncomingLight> light, float far,
+                                                             const raytrace::RayScene& rays) {
+    LightByBounce sum{};
+    raytrace::ShadowPacket packet;
+    std::array<std::pair<vec3, std::size_t>, raytrace::packet_size> arriving;
+    std::uint32_t filled = 0;
+    const auto trace = [&] {
+        packet.active = (1u << filled) - 1u;
+        const std::uint32_t blocked = filled > 0 ? rays.occluded(packet) : 0;
+        for (std::uint32_t i = 0; i < filled; ++i)
+            if (!((blocked >> i) & 1u))
+                sum[arriving[i].second] += arriving[i].first;
+        filled = 0;
+    };
+    for (const IncomingLight& one : light) {
+        const Arrival arrived = arrival(one.row, one.light_class, point, far);
+        const float cosine = glm::dot(normal, arrived.to_light);
+        if (cosine <= 0.0f || arrived.irradiance == vec3(0.0f))
+            continue;
+        arriving[filled] = {arrived.irradiance * (cosine / glm::length(arrived.to_light)),
+                            std::min<std::size_t>(one.bounce, bounce_count - 1)};
+        packet.rays[filled] = {point, arrived.to_light, 0.0f, 0.9999f};
+        if (++filled == raytrace::packet_size)
+            trace();
+    }
+    trace();
+    return sum;
+}
+
+std::vector<const scene::Drawable*> MoverReflections::reflecting(const scene::SceneChanges& changes) {
+    std::vector<const scene::Drawable*> result;
+    for (const scene::Drawable* drawable : changes.all)
+        if (!drawable->is_static && !drawable->is_lamp && drawable->casts_shadow &&
+            luminance(mean_reflectance(drawable->material)) > 0.0f)
+            result.push_back(drawable);
+    return result;
+}
+
+void MoverReflections::reset(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
+                             const raytrace::RayScene& rays, std::uint32_t count, const SampleRequest& settings) {
+    settings_ = settings;
+    movers_.clear();
+    samples_.clear();
+    wanted_.clear();
+    paths_made_ = 0;
+    light_hash_ = 0;
+    cursor_ = {};
+    on_movers_ = behind_ = 0;
+    placed_ = false;
+    std::vector<std::pair<double, const scene::Drawable*>> largest;
+    for (const scene::Drawable* drawable : reflecting(changes))
+        largest.emplace_back(double(luminance(mean_reflectance(drawable->material))) *
+                                 surface_area(meshes[drawable->mesh], drawable->matrix),
+                             drawable);
+    std::erase_if(largest, [](const auto& one) { return !(one.first > 0.0); });
+    std::stable_sort(largest.begin(), largest.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    largest.resize(std::min<std::size_t>(largest.size(), count / least_samples));
+    if (largest.empty())
+        return;
+    std::vector<double> weights;
+    for (const auto& [weight, drawable] : largest)
+        weights.push_back(weight);
+    const std::uint32_t spare = count - least_samples * std::uint32_t(largest.size());
+    std::vector<std::uint32_t> counts(largest.size(), 0);
+    if (spare >= largest.size())
+        counts = apportion(weights, spare);
+    for (std::size_t i = 0; i < largest.size(); ++i) {
+        const scene::Drawable& drawable = *largest[i].second;
+        const std::uint32_t all = counts[i] + least_samples,
+                            direct = settings_.bounces > 1 ? all - std::uint32_t(float(all) * path_share) : all;
+        const PlaceRequest request{direct, places_per_sample, hash_combine(settings_.seed, 0x3070u + std::uint32_t(i))};
+        add_mover(drawable, choose_places(drawable, meshes[drawable.mesh], rays, request), all);
+    }
+    moved_.assign(samples_.size(), 1);
+}
+
+// `count`: samples on the mover, one for each part, and of its paths.
+void MoverReflections::add_mover(const scene::Drawable& drawable, std::vector<SurfacePart> parts, std::uint32_t count) {
+    Mover mover;
+    mover.entity = drawable.entity;
+    mover.matrix = drawable.matrix;
+    mover.first = std::uint32_t(samples_.size());
+    mover.direct = std::uint32_t(parts.size());
+    mover.reflected = settings_.bounces > 1 && !parts.empty() ? count - mover.direct : 0;
+    LightSample sample;
+    sample.dynamic = true;
+    sample.emitter = mover.entity;
+    sample.position = vec3(drawable.matrix[3]);
+    sample.bounce = 1;
+    sample.on_mover = true;
+    for (const SurfacePart& part : parts) {
+        sample.radius = std::sqrt(part.area / pi);
+        samples_.push_back(sample);
+        for (const SurfacePlace& place : part.places)
+            mover.places.push_back({place, part.area / float(part.places.size()), {}});
+    }
+    sample.on_mover = false;
+    sample.radius = 0.0f;
+    sample.bounce = 2;
+    samples_.resize(samples_.size() + mover.reflected, sample);
+    on_movers_ += mover.direct;
+    wanted_.resize(samples_.size());
+    movers_.push_back(std::move(mover));
+}
+
+void MoverReflections::update(std::span<const IncomingLight> light, float far, const scene::SceneChanges& changes,
+                              const raytrace::RayScene& rays) {
+    moved_.assign(samples_.size(), 0);
+    const std::uint64_t hash = hash_bytes(hash_start, light.data(), light.size_bytes());
+    const bool same_light = hash == light_hash_ && cursor_.follows(changes) && changes.drawables.empty();
+    light_hash_ = hash;
+    cursor_.saw(changes);
+    std::vector<std::uint8_t> went(movers_.size(), 0); // elsewhere
+    for (std::size_t m = 0; m < movers_.size() && !same_light; ++m) {
+        Mover& mover = movers_[m];
+        const mat4 before = mover.matrix;
+        for (const scene::Drawable* drawable : changes.all)
+            if (drawable->entity == mover.entity)
+                mover.matrix = drawable->matrix;
+        went[m] = before != mover.matrix;
+        find_places(mover, rays);
+        light_places(mover, light, far, rays);
+    }
+    const bool some_move = !same_light || behind_ > 0;
+    if (some_move)
+        move_samples();
+    for (std::size_t m = 0; m < movers_.size(); ++m)
+        if (some_move || !movers_[m].started || !movers_[m].paths.complete())
+            follow_paths(movers_[m], went[m] != 0 || behind_ > 0, rays);
+}
+
+void MoverReflections::find_places(const Mover& mover, const raytrace::RayScene& rays) {
+    for (std::uint32_t i = 0; i < mover.direct; ++i) {
+        const Place& place = mover.places[std::size_t(i) * places_per_sample]; // the first is the sample's own
+        const auto point = rays.surface_on(mover.entity, place.where.triangle, place.where.u, place.where.v);
+        if (!point) // it is gone; no light arrives there
+            continue;
+        const vec3 normal = place.where.side * point->geometric_normal;
+        wanted_[mover.first + i] = {offset_from_surface(point->on_triangle, normal, rays, raytrace::Scope::everything),
+                                    normal};
+    }
+}
+
+// The brightest of those that are farthest behind, counted in the discs that they represent, come first.
+void MoverReflections::move_samples() {
+    std::vector<std::pair<float, std::uint32_t>> late;
+    for (const Mover& mover : movers_)
+        for (std::uint32_t i = mover.first; i < mover.first + mover.direct; ++i) {
+            const LightSample& sample = samples_[i];
+            const float distance = glm::length(wanted_[i].position - sample.position) / std::max(sample.radius, 1e-6f) +
+                                   glm::length(wanted_[i].normal - sample.normal);
+            if (distance > 0.0f)
+                late.emplace_back(-distance * luminance(sample.flux), i);
+        }
+    std::sort(late.begin(), late.end());
+    const std::size_t most = placed_ ? (on_movers_ + follow_frames - 1) / follow_frames : late.size();
+    placed_ = true;
+    behind_ = std::uint32_t(late.size() - std::min(late.size(), most));
+    late.resize(std::min(late.size(), most));
+    for (const auto& [order, i] : late) {
+        samples_[i].position = wanted_[i].position;
+        samples_[i].normal = wanted_[i].normal;
+        moved_[i] = 1;
+    }
+}
+
+void MoverReflections::light_places(Mover& mover, std::span<const IncomingLight> light, float far,
+                                    const raytrace::RayScene& rays) {
+    parallel_for_chunks(mover.places.size(), 2, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Place& place = mover.places[i];
+            place.flux = {};
+            const auto point = rays.surface_on(mover.entity, place.where.triangle, place.where.u, place.where.v);
+            if (!point)
+                continue;
+            const vec3 normal = place.where.side * point->geometric_normal;
+            place.flux = irradiance(point->on_triangle + point->offset * normal, normal, light, far, rays);
+            for (vec3& flux : place.flux)
+                flux *= place.area * mean_reflectance(point->material);
+        }
+    });
+    mover.flux = {};
+    for (std::uint32_t i = 0; i < mover.direct; ++i) {
+        LightSample& sample = samples_[mover.first + i];
+        sample.flux = vec3(0.0f);
+        for (std::uint32_t k = 0; k < places_per_sample; ++k)
+            for (std::size_t b = 0; b < bounce_count; ++b) {
+                const vec3 flux = mover.places[std::size_t(i) * places_per_sample + k].flux[b];
+                sample.flux += flux;
+                mover.flux[b] += flux;
+            }
+    }
+}
+
+void MoverReflections::follow_paths(Mover& mover, bool moved, const raytrace::RayScene& rays) {
+    if (mover.reflected == 0 || mover.direct == 0)
+        return;
+    const std::size_t first = mover.first + mover.direct;
+    const std::span<LightSample> reflected = std::span(samples_).subspan(first, mover.reflected);
+    const Source source(mover, std::span(samples_).subspan(mover.first, mover.direct), settings_.bounces);
+    const PathSpace space{settings_, rays,        settings_.bounces - 1,
+                          2,         paths_made_, std::span(moved_).subspan(first, mover.reflected)};
+    if (!mover.started)
+        mover.paths.reset(source, mover.reflected, hash_combine(settings_.seed, 0x3a70u + mover.first));
+    else if (moved)
+        mover.paths.validate(source, rays);
+    mover.paths.fill_gaps(source, mover.started ? max_resampled : mover.reflected, space, reflected);
+    mover.started = true;
+    mover.paths.share_flux(source, reflected);
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,86 @@
+// Light samples (VPLs) of the light that movers reflect. Random walks meet static geometry only, so that static samples
+// need not be made again when something moves; what movers reflect comes from here.
+//
+// Each mover has some samples at fixed places of its surface, which it takes along: a few a frame, since a sample that
+// is elsewhere needs a new shadow map. Their flux is what arrives there now from all other samples, by rays past
+// everything that stands in the way, times what the surface reflects there. Where that light goes on to, walks from
+// these samples follow: reflected samples that keep their places (followed_paths.h).
+// Light that one mover reflects to another, and from there on, is left out.
+#pragma once
+
+#include "engine/scene/scene_changes.h"
+#include "gi_module/light_sampling/followed_paths.h"
+#include "gi_module/light_sampling/mover_places.h"
+#include "gi_module/transport/light_row_shared.h"
+
+namespace sunfleck::gi {
+
+// Light that arrives at movers.
+struct IncomingLight {
+    shared::LightRow row;
+    std::uint32_t light_class = 0;
+    std::uint32_t bounce = 0; // reflections so far
+};
+
+class MoverReflections {
+public:
+    // The movers that reflect: those that block light, but lamps.
+    static std::vector<const scene::Drawable*> reflecting(const scene::SceneChanges& changes);
+
+    // Chooses places for `count` samples, on the movers that reflect most. They carry no light before the next update.
+    void reset(const scene::SceneChanges& changes, const scene::MeshStore& meshes, const raytrace::RayScene& rays,
+               std::uint32_t count, const SampleRequest& settings);
+    // Follows the movers and the light. A pure function of all updates since reset. `far`: beyond all geometry, m.
+    void update(std::span<const IncomingLight> light, float far, const scene::SceneChanges& changes,
+                const raytrace::RayScene& rays);
+
+    // All `dynamic` and reflected once or more; their number and kinds do not change until the next reset.
+    const std::vector<LightSample>& samples() const { return samples_; }
+    // By sample: whether position or direction changed in the last update. Flux may change with or without them.
+    const std::vector<std::uint8_t>& moved() const { return moved_; }
+
+private:
+    // Light by how often it was reflected before, all above in the last.
+    static constexpr std::size_t bounce_count = 8;
+    using LightByBounce = std::array<vec3, bounce_count>;
+
+    struct Place {
+        SurfacePlace where;
+        float area = 0.0f;    // that it represents, m2
+        LightByBounce flux{}; // W, reflected there
+    };
+    struct Mover {
+        ecs::Entity entity;
+        mat4 matrix{1.0f};
+        std::uint32_t first = 0, direct = 0, reflected = 0; // samples on the mover; those of paths follow
+        std::vector<Place> places;                          // as many for each sample on the mover, in their order
+        LightByBounce flux{};                               // of all places
+        FollowedPaths paths;
+        bool started = false;
+    };
+    class Source;
+
+    void add_mover(const scene::Drawable& drawable, std::vector<SurfacePart> parts, std::uint32_t count);
+    void find_places(const Mover& mover, const raytrace::RayScene& rays);
+    void move_samples();
+    void light_places(Mover& mover, std::span<const IncomingLight> light, float far, const raytrace::RayScene& rays);
+    static LightByBounce irradiance(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
+                                    const raytrace::RayScene& rays);
+    void follow_paths(Mover& mover, bool moved, const raytrace::RayScene& rays);
+
+    SampleRequest settings_;
+    std::vector<Mover> movers_;
+    std::vector<LightSample> samples_;
+    std::vector<std::uint8_t> moved_;
+    struct Wanted {
+        vec3 position{0.0f}, normal{0.0f};
+    };
+    std::vector<Wanted> wanted_;               // by sample on a mover: where it should be
+    std::uint32_t on_movers_ = 0, behind_ = 0; // samples there, and those of them that are not where they should be
+    bool placed_ = false;
+    std::uint32_t paths_made_ = 0;
+    std::uint64_t light_hash_ = 0;
+    scene::ChangeCursor cursor_;
+};
+
+} // namespace sunfleck::gi
