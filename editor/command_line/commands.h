@@ -24,6 +24,7 @@ struct ReferenceOptions {
     std::string view = "final";
     bool antialiasing = false;
     bool unlimited = false;
+    bool lambertian = false;
     std::string statistics;
     std::uint32_t threads = 0;
 };

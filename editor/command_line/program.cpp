@@ -107,6 +107,8 @@ Command make_reference_command(CLI::App& program) {
         ->capture_default_str();
     app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
     app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
+    app->add_flag("--lambertian", options->lambertian,
+                  "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
     app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");
     return {app, [options] {
                 watch_interrupts();

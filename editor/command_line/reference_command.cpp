@@ -58,10 +58,30 @@ struct TracedScene {
     std::uint32_t last_frame = 0;
 };
 
+// Every surface Lambertian, of its base colour alone, as other renderers can be asked for, too.
+void make_lambertian(ecs::Registry& registry) {
+    std::vector<ecs::Entity> found;
+    registry.view<scene::Material>().each([&](ecs::Entity entity, const scene::Material&) { found.push_back(entity); });
+    for (const ecs::Entity entity : found) {
+        registry.patch<scene::Material>(entity, [](scene::Material& material) {
+            material.metallic = material.transmission = 0.0f;
+            material.specular = false;
+        });
+        if (registry.has<scene::MaterialTextures>(entity))
+            registry.patch<scene::MaterialTextures>(entity, [](scene::MaterialTextures& textures) {
+                textures.metallic_roughness = textures.normal = textures.transmission = {};
+            });
+        if (registry.has<scene::SurfacePattern>(entity))
+            registry.remove<scene::SurfacePattern>(entity);
+    }
+}
+
 Status load(const ReferenceOptions& options, const std::filesystem::path& path, TracedScene& scene) {
     SUNFLECK_TRY(io::load_scene(path, scene.registry, scene.meshes, scene.textures, import_options(options.scene)));
     SUNFLECK_TRY(apply_environment(options.scene, scene.registry));
     viewer::add_default_light(scene.registry);
+    if (options.lambertian)
+        make_lambertian(scene.registry);
     scene.last_frame = options.scene.warmup + options.scene.frames - 1;
     simulation::set_movers_to_step(scene.registry, step_of_frame(options.scene, scene.last_frame));
     SUNFLECK_ASSIGN(scene.rays, raytrace::RayScene::create());
@@ -100,7 +120,7 @@ Result<std::uint64_t> hash_of(const ReferenceOptions& options, const std::filesy
                      options.scene.camera + "|" + options.view + "|" + std::to_string(settings.bounces) + "|" +
                      std::to_string(settings.seed) + "|" + std::to_string(last_frame) + "|" +
                      std::to_string(options.scene.motion) + "|" + std::to_string(options.scene.orbit_degrees) + "|" +
-                     std::to_string(options.antialiasing));
+                     std::to_string(options.antialiasing) + "|" + std::to_string(options.lambertian));
 }
 
 // Traces until there are options.samples a pixel; false if the user stopped it. Returns the seconds that it took.
