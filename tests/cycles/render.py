@@ -174,8 +174,9 @@ def render(case, options):
     set_file(partial)
     began = time.monotonic()
     bpy.ops.render.render(write_still=True)
-    facts = {**case, 'blender': bpy.app.version_string, 'cycles': settings,
-             'seconds': round(time.monotonic() - began, 1)}
+    of_tests = ('reference_samples', 'short')  # no part of how the picture was made
+    facts = {**{name: value for name, value in case.items() if name not in of_tests},
+             'blender': bpy.app.version_string, 'cycles': settings, 'seconds': round(time.monotonic() - began, 1)}
     os.replace(partial, options.output / (case['name'] + '.exr'))
     (options.output / (case['name'] + '.json')).write_text(json.dumps(facts, indent=2) + '\n', encoding='utf-8')
     print(f"{case['name']}: {facts['seconds']} s", flush=True)
