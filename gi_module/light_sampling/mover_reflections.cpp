@@ -118,6 +118,7 @@ void MoverReflections::reset(const scene::SceneChanges& changes, const scene::Me
     if (largest.empty())
         return;
     std::vector<double> weights;
+    weights.reserve(largest.size());
     for (const auto& [weight, drawable] : largest)
         weights.push_back(weight);
     const std::uint32_t spare = count - least_samples * std::uint32_t(largest.size());
@@ -135,7 +136,8 @@ void MoverReflections::reset(const scene::SceneChanges& changes, const scene::Me
 }
 
 // `count`: samples on the mover, one for each part, and of its paths.
-void MoverReflections::add_mover(const scene::Drawable& drawable, std::vector<SurfacePart> parts, std::uint32_t count) {
+void MoverReflections::add_mover(const scene::Drawable& drawable, const std::vector<SurfacePart>& parts,
+                                 std::uint32_t count) {
     Mover mover;
     mover.entity = drawable.entity;
     mover.matrix = drawable.matrix;

@@ -60,7 +60,7 @@ private:
     };
     class Source;
 
-    void add_mover(const scene::Drawable& drawable, std::vector<SurfacePart> parts, std::uint32_t count);
+    void add_mover(const scene::Drawable& drawable, const std::vector<SurfacePart>& parts, std::uint32_t count);
     void find_places(const Mover& mover, const raytrace::RayScene& rays);
     void move_samples();
     void light_places(Mover& mover, std::span<const IncomingLight> light, float far, const raytrace::RayScene& rays);
