@@ -13,6 +13,9 @@ endif()
 if(SUNFLECK_SANITIZE)
   target_compile_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
+  # Debug information names files from the project's root. The compiler cache otherwise takes the folder that a checkout
+  # lies in for part of what it compiles, and another checkout finds nothing there.
+  target_compile_options(sunfleck_flags INTERFACE -fdebug-prefix-map=${PROJECT_SOURCE_DIR}=.)
   target_link_options(sunfleck_flags INTERFACE -fsanitize=${SUNFLECK_SANITIZE})
 endif()
 
