@@ -111,8 +111,11 @@ LoadedSettings load_settings(const std::filesystem::path& path) {
         return result;
     result.found = true;
     const auto text = read_file(path, 1u << 20);
-    const nlohmann::json file =
-        text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json(nlohmann::json::value_t::discarded);
+    if (!text) { // what can't be read may be fine
+        result.problem = text.error().message + "; default settings are used";
+        return result;
+    }
+    const nlohmann::json file = nlohmann::json::parse(*text, nullptr, false);
     if (file.is_discarded() || !file.is_object()) {
         result.problem = "'" + path.string() + "' is damaged; default settings are used";
         std::filesystem::rename(path, path.string() + ".damaged", code);

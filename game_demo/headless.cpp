@@ -1,6 +1,8 @@
 // Playback without a window: recorded input or the built-in walk, rendered frame by frame, with statistics as JSON.
 #include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
 #include "engine/statistics/summary.h"
 #include "game_demo/level.h"
 #include "game_demo/options.h"
@@ -90,6 +92,8 @@ public:
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
             SUNFLECK_TRY(level.renderer().render_and_wait(request));
+            if (stop_requested())
+                return Error{std::string("stopped by ") + signal_name(stop_signal())};
             times_.add(level.renderer().statistics());
             const bool last = frame + 1 == frames_ || (options_.frames == 0 && recorded_.empty() && walk_.finished());
             if (options_.pictures > 0 && (frame % interval_ == 0 || last)) {
@@ -148,18 +152,23 @@ Status run_headless(const Options& options) {
     std::filesystem::create_directories(options.output, code);
     if (code)
         return Error{"cannot create folder '" + options.output + "': " + code.message()};
+    const std::filesystem::path statistics_file = std::filesystem::path(options.output) / "stats.json";
+    const NamedFile outputs[] = {{"-o", statistics_file}, {"--record", options.record}};
+    const NamedFile inputs[] = {{"--input", options.input}, {"--scene", options.scene}};
+    SUNFLECK_TRY(try_outputs(outputs, inputs));
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, options.validation, {}}));
     DemoSettings settings;
     settings.preset = options.preset.value_or(default_preset(device->traits().software));
     apply_preset(settings);
     settings.transfer = options.transfer.value_or(settings.transfer);
-    SUNFLECK_ASSIGN(const auto level, Level::load(*device, options.scene, settings, 2));
+    SUNFLECK_ASSIGN(const auto level, Level::load(*device, source_of(options), settings, 2));
     Playback playback(options, settings, std::move(recorded));
-    SUNFLECK_TRY(playback.run(*level));
+    const Status played = playback.run(*level);
     if (!options.record.empty())
         SUNFLECK_TRY(simulation::write_recording(options.record, playback.played()));
+    SUNFLECK_TRY(played);
     const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);
-    SUNFLECK_TRY(write_file(std::filesystem::path(options.output) / "stats.json", statistics.dump(2) + "\n"));
+    SUNFLECK_TRY(write_file(statistics_file, statistics.dump(2) + "\n"));
     if (device->validation_messages() > 0)
         return Error{"validation printed messages (see above)"};
     return {};

@@ -22,13 +22,15 @@ std::filesystem::path built_in_scene(const std::string& name) {
     return std::filesystem::exists(installed, code) ? installed : program.parent_path() / "../scenes" / file;
 }
 
-Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const std::string& scene, const DemoSettings& settings,
+Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSource& source, const DemoSettings& settings,
                                            std::uint32_t frames_in_flight, const std::function<bool(float)>& progress) {
     std::unique_ptr<Level> level(new Level());
     SUNFLECK_ASSIGN(level->renderer_, viewer::SceneRenderer::create(device, frames_in_flight));
+    const std::string& scene = source.scene;
     const bool is_path = scene.find('/') != std::string::npos || scene.find('.') != std::string::npos;
     io::ImportOptions import;
     import.progress = progress;
+    import.allow_outside = source.allow_outside;
     level->renderer_->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene), import));
     ecs::Registry& registry = level->renderer_->registry();

@@ -10,11 +10,16 @@ namespace sunfleck::demo {
 // The file of a built-in scene, installed or in the build folder.
 std::filesystem::path built_in_scene(const std::string& name);
 
+// A scene file, glTF file, or the name of a built-in scene.
+struct LevelSource {
+    std::string scene;
+    bool allow_outside = false; // io::ImportOptions::allow_outside
+};
+
 class Level {
 public:
-    // `scene`: a scene file, glTF file, or the name of a built-in scene.
     // `progress`: io::ImportOptions::progress.
-    static Result<std::unique_ptr<Level>> load(gpu::Device& device, const std::string& scene,
+    static Result<std::unique_ptr<Level>> load(gpu::Device& device, const LevelSource& source,
                                                const DemoSettings& settings, std::uint32_t frames_in_flight,
                                                const std::function<bool(float)>& progress = {});
     // Does the work that would delay the first frame at this size: samples, visibility, all shadow maps. Works in

@@ -10,9 +10,9 @@ constexpr float read_until = 0.3f;
 
 } // namespace
 
-LevelLoader::LevelLoader(gpu::Device& device, std::string scene, const DemoSettings& settings, std::uint32_t width,
+LevelLoader::LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings, std::uint32_t width,
                          std::uint32_t height)
-    : device_(device), scene_(std::move(scene)), settings_(settings) {
+    : device_(device), source_(std::move(source)), settings_(settings) {
     thread_ = std::thread([this, width, height] {
         result_ = load(width, height);
         finished_ = true;
@@ -33,7 +33,7 @@ bool LevelLoader::report(float share) {
 Result<std::unique_ptr<Level>> LevelLoader::load(std::uint32_t width, std::uint32_t height) {
     const auto reading = [&](float share) { return report(read_until * share); };
     const auto preparing = [&](float share) { return report(read_until + (1.0f - read_until) * share); };
-    SUNFLECK_ASSIGN(std::unique_ptr<Level> level, Level::load(device_, scene_, settings_, 2, reading));
+    SUNFLECK_ASSIGN(std::unique_ptr<Level> level, Level::load(device_, source_, settings_, 2, reading));
     SUNFLECK_TRY(level->prepare(settings_, width, height, preparing));
     return level;
 }

@@ -11,7 +11,7 @@ namespace sunfleck::demo {
 class LevelLoader {
 public:
     // Starts loading. `width` and `height` are the window's.
-    LevelLoader(gpu::Device& device, std::string scene, const DemoSettings& settings, std::uint32_t width,
+    LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings, std::uint32_t width,
                 std::uint32_t height);
     // Cancels loading and waits for the thread, which in the long parts takes a fraction of a second.
     ~LevelLoader();
@@ -29,7 +29,7 @@ private:
     bool report(float share);
 
     gpu::Device& device_;
-    const std::string scene_;
+    const LevelSource source_;
     const DemoSettings settings_;
     std::atomic<bool> finished_{false}, stop_{false};
     std::atomic<float> share_{0.0f};

@@ -1,60 +1,67 @@
 // The demo's command line.
+#include "engine/core/exit_status.h"
 #include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
+#include "viewer/options.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 namespace sunfleck {
 namespace {
 
+constexpr int most_frames = 10'000'000;
+
 // Options that are parsed as text and then translated.
 struct TextOptions {
-    std::string size, preset, movers;
+    viewer::PictureSize size{1280, 720};
+    std::string preset, movers;
     bool no_indirect = false;
 };
+
+void add_run_options(CLI::App& program, demo::Options& options) {
+    program.add_flag("--headless", options.headless, "Run without a window and write to the folder given by -o");
+    viewer::add_whole(program, "--frames", options.frames, 0, most_frames,
+                      "Stop after this many frames (0: at the end of the input)");
+    viewer::add_name(program, "-o,--output", options.output, "Folder for images and stats.json", "FOLDER");
+    viewer::add_name(program, "--input", options.input,
+                     "Recorded input to replay when headless (default: the built-in walk)", "FILE");
+    viewer::add_name(program, "--record", options.record, "Record the input to this file", "FILE");
+    viewer::add_whole(program, "--pictures", options.pictures, 0, most_frames,
+                      "Number of images that a headless run writes");
+    viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,
+                      "Simulation steps of 1/60 s per frame of a headless run");
+    viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
+    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
+}
 
 void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
     program.footer("Examples: sunfleck_demo\n"
                    "          sunfleck_demo --headless --frames 300 -o out\n"
-                   "          sunfleck_demo --headless --input walk.txt --preset high -o out");
-    program.add_flag("--headless", options.headless, "Run without a window and write to the folder given by -o");
-    program.add_option("--frames", options.frames, "Stop after this many frames (0: at the end of the input)");
-    program.add_option("-o,--output", options.output, "Folder for images and stats.json");
-    program.add_option("--input", options.input, "Recorded input to replay when headless (default: the built-in walk)");
-    program.add_option("--record", options.record, "Record the input to this file");
-    program.add_option("--pictures", options.pictures, "Number of images that a headless run writes")
+                   "          sunfleck_demo --headless --input walk.txt --preset high -o out\n"
+                   "Exit status: 0 done, 1 failed, 2 the command line is wrong, 128 + N ended by signal N.");
+    add_run_options(program, options);
+    viewer::add_size(program, "--size", text.size, "Window or image size; the preset sets the render scale");
+    viewer::add_name(program, "--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
         ->capture_default_str();
-    program
-        .add_option("--steps-per-frame", options.steps_per_frame,
-                    "Simulation steps of 1/60 s per frame of a headless run")
-        ->check(CLI::Range(1, 60))
-        ->capture_default_str();
-    program.add_option("--size", text.size, "Window or image size, WIDTHxHEIGHT; the preset sets the render scale");
-    program.add_option("--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
-        ->capture_default_str();
-    program
-        .add_option("--preset", text.preset,
-                    "Quality: software, low, medium, high or ultra (default: chosen for the device)")
-        ->check(CLI::IsMember({"software", "low", "medium", "high", "ultra"}));
-    program
-        .add_option("--movers", text.movers,
-                    "Lighting of complex moving objects: per_pixel or prt, precomputed (default: set by the preset)")
-        ->check(CLI::IsMember(demo::has_transfer() ? std::vector<std::string>{"per_pixel", "prt"}
-                                                   : std::vector<std::string>{"per_pixel"}));
-    program.add_option("--settings", options.settings_file,
-                       "Settings file (default: sunfleck/demo.json in the configuration folder)");
+    program.add_flag("--allow-outside", options.allow_outside,
+                     "The scene may read files outside of its folder: for scenes that you trust");
+    viewer::add_choice(program, "--preset", text.preset, {"software", "low", "medium", "high", "ultra"},
+                       "Quality (default: chosen for the device)");
+    viewer::add_choice(program, "--movers", text.movers,
+                       demo::has_transfer() ? std::vector<std::string>{"per_pixel", "prt"}
+                                            : std::vector<std::string>{"per_pixel"},
+                       "Lighting of complex moving objects; prt: precomputed (default: set by the preset)");
+    viewer::add_name(program, "--settings", options.settings_file,
+                     "Settings file (default: sunfleck/demo.json in the configuration folder)", "FILE");
     program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");
-    program.add_option("--device", options.device, "Vulkan device, by index or part of its name");
-    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
 }
 
-Status translate(const TextOptions& text, demo::Options& options) {
-    if (!text.size.empty() &&
-        (std::sscanf(text.size.c_str(), "%ux%u", &options.width, &options.height) != 2 || options.width < 1 ||
-         options.height < 1 || options.width > 16384 || options.height > 16384))
-        return Error{"--size '" + text.size + "': WIDTHxHEIGHT from 1x1 to 16384x16384 is needed"};
+void translate(const TextOptions& text, demo::Options& options) {
+    options.width = text.size.width;
+    options.height = text.size.height;
     options.indirect = !text.no_indirect;
     if (!text.movers.empty())
         options.transfer = text.movers == "prt";
@@ -62,7 +69,13 @@ Status translate(const TextOptions& text, demo::Options& options) {
     for (std::uint32_t i = 0; i < 5; ++i)
         if (text.preset == names[i])
             options.preset = demo::Preset(i);
-    return {};
+}
+
+int flushed(int status) {
+    const Status written = flush_standard_output();
+    if (!written)
+        log_error(written.error().message);
+    return written ? status : exit_failed;
 }
 
 } // namespace
@@ -70,18 +83,23 @@ Status translate(const TextOptions& text, demo::Options& options) {
 
 int main(int argc, char** argv) {
     using namespace sunfleck;
+    hold_standard_streams();
     demo::Options options;
     TextOptions text;
     CLI::App program("Lantern House, the Sunfleck demo: a house to walk through. Doors, lamps and a lantern move, and\n"
                      "indirect light follows. Escape pauses; Help in the menu lists the keys.");
     add_options(program, options, text);
-    CLI11_PARSE(program, argc, argv);
-    if (const Status status = translate(text, options); !status) {
-        log_error(status.error().message);
-        return 2;
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? flushed(exit_done) : exit_usage;
     }
+    translate(text, options);
+    watch_stop_signals();
     const Status status = options.headless ? demo::run_headless(options) : demo::run_window(options);
     if (!status)
         log_error(status.error().message);
-    return status ? 0 : 1;
+    if (stop_requested())
+        return exit_stopped_by(stop_signal());
+    return status ? exit_done : exit_failed;
 }

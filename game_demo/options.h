@@ -1,7 +1,7 @@
 // Options of the command line.
 #pragma once
 
-#include "game_demo/demo_settings.h"
+#include "game_demo/level.h"
 
 #include <optional>
 
@@ -18,7 +18,12 @@ struct Options {
     std::uint32_t width = 1280, height = 720;
     bool indirect = true;
     std::string settings_file; // empty: the default one
+    bool allow_outside = false;
 };
+
+inline LevelSource source_of(const Options& options) {
+    return {options.scene, options.allow_outside};
+}
 
 Status run_window(const Options& options);
 Status run_headless(const Options& options);

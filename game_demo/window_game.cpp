@@ -1,6 +1,8 @@
 // The demo in a window: real time, the simulation on its fixed step.
 #include "engine/app/gui_screen.h"
 #include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
 #include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
 #include "game_demo/level_loader.h"
@@ -40,9 +42,28 @@ class Game {
 public:
     explicit Game(const Options& options) : options_(options) {}
 
+    // However it ends, settings and recording are written.
     Status run() {
+        SUNFLECK_TRY(check_files());
         SUNFLECK_TRY(start());
-        for (std::uint32_t frame = 0; !window_->should_close() && (options_.frames == 0 || frame < options_.frames);) {
+        const Status played = play();
+        const Status finished = finish();
+        return played ? finished : played;
+    }
+
+private:
+    Status check_files() const {
+        const NamedFile outputs[] = {{"--record", options_.record}, {"--settings", options_.settings_file}};
+        const NamedFile inputs[] = {{"--scene", options_.scene}};
+        SUNFLECK_TRY(check_outputs(outputs, inputs));
+        return options_.record.empty() ? Status() : try_output(options_.record);
+    }
+
+    Status play() {
+        const auto ends = [&](std::uint32_t frame) {
+            return window_->should_close() || stop_requested() || (options_.frames > 0 && frame >= options_.frames);
+        };
+        for (std::uint32_t frame = 0; !ends(frame);) {
             const auto began = Clock::now();
             if (loader_) {
                 SUNFLECK_TRY(loading_frame());
@@ -57,10 +78,9 @@ public:
             if (rest > 0.0)
                 std::this_thread::sleep_for(std::chrono::duration<double>(rest));
         }
-        return finish();
+        return {};
     }
 
-private:
     Status start() {
         settings_path_ =
             options_.settings_file.empty() ? settings_path() : std::filesystem::path(options_.settings_file);
@@ -94,7 +114,7 @@ private:
         level_.reset();
         std::uint32_t width = 0, height = 0;
         window_->size(width, height);
-        loader_ = std::make_unique<LevelLoader>(*device_, options_.scene, settings_, width, height);
+        loader_ = std::make_unique<LevelLoader>(*device_, source_of(options_), settings_, width, height);
     }
 
     // One frame of the loading screen. The device is idle when the level takes over, because submission serials
@@ -291,10 +311,10 @@ private:
 
     Status finish() {
         loader_.reset();
-        SUNFLECK_TRY(device_->wait_idle());
         store_settings();
         if (!options_.record.empty())
             SUNFLECK_TRY(simulation::write_recording(options_.record, inputs_));
+        SUNFLECK_TRY(device_->wait_idle());
         if (device_->validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};

@@ -2,6 +2,7 @@
 #include "editor/command_line/bench_runner.h"
 
 #include "engine/core/file.h"
+#include "engine/core/output.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +41,7 @@ Status check_techniques(const std::string& suite) {
 
 Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& plot) {
     if (plot.empty())
-        return Error{"--plot: the suite '" + options.suite + "' has no plot (only convergence and thesis have)"};
+        return Error{"--plot: this part of the suite '" + options.suite + "' has no plot"};
     const bool thesis = options.suite == "thesis";
     const char* title = thesis ? "Frame time, 1024x768" : "Error against the path tracer, brute force, five seeds";
     const char* unit = thesis ? "ms per frame" : "RMSE of irradiance, W/m2";
@@ -53,6 +54,15 @@ Status bench(const BenchOptions& options) {
     SUNFLECK_TRY(check_techniques(options.suite));
     if (!options.part.empty() && options.suite != "thesis")
         return Error{"--part: only the suite 'thesis' has parts"};
+    if (!options.scene.empty() && options.suite != "kernel" && options.suite != "convergence")
+        return Error{"--scene: the suite '" + options.suite +
+                     "' has scenes of its own (only kernel and convergence take one)"};
+    if (!options.scene.empty())
+        SUNFLECK_TRY(find_scene(options.scene));
+    if (!options.plot.empty() && options.suite != "convergence" && options.suite != "thesis")
+        return Error{"--plot: the suite '" + options.suite + "' has no plot (only convergence and thesis have)"};
+    const NamedFile outputs[] = {{"--csv", options.csv}, {"--plot", options.plot}};
+    SUNFLECK_TRY(try_outputs(outputs));
     std::vector<PlotSeries> plot;
     SUNFLECK_ASSIGN(const BenchTable table, run_suite(options, plot));
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, false, {}}));

@@ -5,6 +5,7 @@
 #include "editor/gate/level_file.h"
 #include "editor/gate/revision_build.h"
 #include "editor/gate/verdict_text.h"
+#include "engine/core/output.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -128,6 +129,9 @@ Result<std::vector<std::string>> command_of(const std::string& side, const Level
 }
 
 Result<gate::Outcome> bench_compare(const CompareRunOptions& options) {
+    const NamedFile output = {"--report", options.report};
+    const NamedFile inputs[] = {{"BASE", options.base}, {"HEAD", options.head}, {"--input", options.level.input}};
+    SUNFLECK_TRY(try_outputs({&output, 1}, inputs));
     SUNFLECK_ASSIGN(const auto folder, gate::TemporaryFolder::make());
     SUNFLECK_ASSIGN(const gate::GateRun run, run_gate(options, folder->path()));
     if (!options.report.empty())

@@ -2,6 +2,7 @@
 #include "editor/command_line/level_run.h"
 
 #include "engine/core/file.h"
+#include "engine/core/output.h"
 
 #include <cstdio>
 #include <iostream>
@@ -87,6 +88,9 @@ Status measure(LevelRun& run, const LevelOptions& options) {
 } // namespace
 
 Status bench_level(const LevelOptions& options) {
+    const NamedFile output = {"-o", options.output},
+                    inputs[] = {{"--input", options.input}, {"--scene", options.scene}};
+    SUNFLECK_TRY(try_outputs({&output, 1}, inputs));
     SUNFLECK_ASSIGN(const auto run, LevelRun::create(options));
     return options.serve ? serve(*run) : measure(*run, options);
 }

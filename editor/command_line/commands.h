@@ -26,7 +26,7 @@ struct ReferenceOptions {
     bool unlimited = false;
     bool lambertian = false;
     std::string statistics;
-    std::uint32_t threads = 0;
+    float save_interval = 30.0f; // s
 };
 Status reference(const ReferenceOptions& options);
 
@@ -48,6 +48,6 @@ Status bench(const BenchOptions& options);
 
 Status describe_device(const std::string& wanted, bool as_json);
 // What a scene file holds, and what its import leaves out.
-Status describe_scene(const std::string& scene, bool as_json);
+Status describe_scene(const std::string& scene, bool allow_outside, bool as_json);
 
 } // namespace sunfleck::command_line

@@ -1,21 +1,19 @@
 #include "editor/command_line/common.h"
 
 #include "engine/core/log.h"
+#include "engine/core/stop_signals.h"
 
 #include "gi_module/technique.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
 namespace sunfleck::command_line {
 namespace {
-
-volatile std::sig_atomic_t interrupt_count = 0;
 
 // Built-in scenes lie beside the program: ../scenes in a build, ../share/sunfleck/scenes when installed.
 std::filesystem::path scene_folder() {
@@ -33,10 +31,11 @@ std::filesystem::path scene_folder() {
 
 } // namespace
 
-Status apply_environment(const SceneOptions& options, ecs::Registry& registry) {
+Status apply_environment(const SceneOptions& options, ecs::Registry& registry, std::uint64_t* content_hash) {
     if (options.environment.empty())
         return {};
-    SUNFLECK_ASSIGN(auto image, io::load_environment_image(options.environment));
+    // The user's own choice may lie anywhere.
+    SUNFLECK_ASSIGN(auto image, io::load_environment_image(options.environment, {{}, true, content_hash}));
     std::vector<ecs::Entity> present;
     registry.view<scene::Environment>().each(
         [&](ecs::Entity entity, const scene::Environment&) { present.push_back(entity); });
@@ -58,15 +57,6 @@ io::ImportOptions import_options(const SceneOptions& options) {
         return !interrupted();
     };
     return result;
-}
-
-Result<Size> parse_size(const std::string& text) {
-    unsigned width = 0, height = 0;
-    char extra = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &extra) != 2 || width < 1 || height < 1 ||
-        width > 16384 || height > 16384 || text.find('-') != std::string::npos)
-        return Error{"--size '" + text + "': WIDTHxHEIGHT from 1x1 to 16384x16384 is needed"};
-    return Size{width, height};
 }
 
 std::vector<std::string> built_in_scene_names() {
@@ -179,14 +169,14 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
 
 int fail(const Error& error) {
     std::fprintf(stderr, "error: %s\n", error.message.c_str());
-    return 1;
+    return exit_failed;
 }
 
 int exit_status(const Status& status, int on_error) {
     if (status)
-        return 0;
+        return exit_done;
     fail(status.error());
-    return on_error;
+    return stop_requested() ? exit_stopped_by(stop_signal()) : on_error;
 }
 
 Progress::~Progress() {
@@ -208,15 +198,7 @@ void Progress::show(double share, const std::string& detail) {
 }
 
 bool interrupted() {
-    return interrupt_count > 0;
-}
-
-void watch_interrupts() {
-    std::signal(SIGINT, [](int) {
-        interrupt_count = interrupt_count + 1;
-        if (interrupt_count > 1) // pressed again: at once
-            std::_Exit(130);
-    });
+    return stop_requested();
 }
 
 } // namespace sunfleck::command_line

@@ -2,9 +2,11 @@
 // CLI11 stays in program.cpp and the full JSON header in the files that use it: each costs seconds in every file.
 #pragma once
 
+#include "engine/core/exit_status.h"
 #include "engine/statistics/summary.h"
 #include "gi_module/settings.h"
 #include "viewer/exposure.h"
+#include "viewer/option_values.h"
 #include "viewer/scene_renderer.h"
 
 #include <functional>
@@ -15,12 +17,13 @@
 namespace sunfleck::command_line {
 
 using Json = nlohmann::ordered_json;
+using Size = viewer::PictureSize;
 
 // Options that name a scene, a camera and a time, on `render` and `reference` alike.
 struct SceneOptions {
     std::string scene;
     std::string camera;
-    std::string size = "1280x720";
+    Size size{1280, 720};
     bool motion = true;
     float orbit_degrees = 0.0f; // per frame
     std::uint32_t frames = 1;
@@ -33,14 +36,10 @@ struct SceneOptions {
     bool validation = false;
 };
 // --environment: the picture lights the scene in place of any environment that it has.
-Status apply_environment(const SceneOptions& options, ecs::Registry& registry);
+// `content_hash`: io::ImportOptions::content_hash.
+Status apply_environment(const SceneOptions& options, ecs::Registry& registry, std::uint64_t* content_hash = nullptr);
 // With a progress bar for what takes long, and Ctrl-C to stop.
 io::ImportOptions import_options(const SceneOptions& options);
-
-struct Size {
-    std::uint32_t width, height;
-};
-Result<Size> parse_size(const std::string& text);
 
 // What the command line or the scene says; none: the picture decides (viewer::automatic_exposure).
 std::optional<float> exposure_of(const SceneOptions& options, ecs::Registry& registry);
@@ -76,10 +75,10 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
 using statistics::median;
 using statistics::percentile;
 
-// Prints "error: ..." once and returns 1.
+// Prints "error: ..." once and returns exit_failed.
 int fail(const Error& error);
-// 0, or the message and `on_error`.
-int exit_status(const Status& status, int on_error = 1);
+// exit_done, or the message and `on_error`; where a signal ended the work, exit_stopped_by it.
+int exit_status(const Status& status, int on_error = exit_failed);
 
 // A line on standard error that shows how far the work is; silent where standard error is no terminal, but for a line
 // every ten percent.
@@ -95,8 +94,7 @@ private:
     bool drawn_ = false;
 };
 
-// True once the user pressed Ctrl-C.
+// True once the user pressed Ctrl-C, or the program was asked to end by another signal (engine/core/stop_signals.h).
 bool interrupted();
-void watch_interrupts();
 
 } // namespace sunfleck::command_line

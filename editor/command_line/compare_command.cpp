@@ -2,12 +2,16 @@
 #include "editor/command_line/commands.h"
 #include "editor/command_line/metrics.h"
 
-#include "engine/core/file.h"
+#include "engine/core/output.h"
 
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 Status compare(const CompareOptions& options) {
+    const NamedFile inputs[] = {{"A", options.a}, {"B", options.b}}, output = {"--diff", options.difference};
+    SUNFLECK_TRY(try_outputs({&output, 1}, inputs));
+    if (!options.difference.empty())
+        SUNFLECK_TRY(io::picture_kind(options.difference));
     SUNFLECK_ASSIGN(const io::Picture a, io::read_picture(options.a));
     SUNFLECK_ASSIGN(const io::Picture b, io::read_picture(options.b));
     if (a.width != b.width || a.height != b.height)

@@ -1,25 +1,30 @@
 #include "editor/command_line/gate_commands.h"
 
 #include "editor/command_line/bench_compare.h"
+#include "engine/core/stop_signals.h"
 
-#include <CLI/CLI.hpp>
+#include "viewer/options.h"
 
 namespace sunfleck::command_line {
 namespace {
 
 void add_level_options(CLI::App& app, LevelOptions& options) {
-    app.add_option("--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
+    viewer::add_name(app, "--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
         ->capture_default_str();
-    app.add_option("--input", options.input, "Recorded input to play (default: the scene's own walk)");
-    app.add_option("--size", options.size, "Rendered size, WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--preset", options.preset, "Quality: software, low, medium, high or ultra")
-        ->check(CLI::IsMember({"software", "low", "medium", "high", "ultra"}))
+    viewer::add_name(app, "--input", options.input, "Recorded input to play (default: the scene's own walk)", "FILE");
+    app.add_option("--size", options.size, "Rendered size")
+        ->type_name("WIDTHxHEIGHT")
+        ->check([](const std::string& text) {
+            const auto size = viewer::size_value(text);
+            return size ? std::string() : size.error().message;
+        })
         ->capture_default_str();
-    app.add_option("--set", options.settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
-    app.add_option("--steps-per-frame", options.steps_per_frame, "Simulation steps of 1/60 s a frame")
-        ->check(CLI::Range(1, 60))
+    viewer::add_choice(app, "--preset", options.preset, {"software", "low", "medium", "high", "ultra"}, "Quality")
         ->capture_default_str();
-    app.add_option("--device", options.device, "Vulkan device by number or part of its name");
+    app.add_option("--set", options.settings, "Lighting setting as name=value; repeatable (see sunfleck info)")
+        ->type_name("NAME=VALUE");
+    viewer::add_whole(app, "--steps-per-frame", options.steps_per_frame, 1, 60, "Simulation steps of 1/60 s a frame");
+    viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
 }
 
 int outcome_status(const Result<gate::Outcome>& outcome) {
@@ -32,16 +37,13 @@ std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
     app->footer("Example: sunfleck bench level --frames 200 -o level.json\n"
                 "Without -o the JSON goes to standard output. docs/gate.md describes it.");
     add_level_options(*app, *options);
-    app->add_option("--frames", options->frames, "Frames to measure (0: to the end of the recording)")
-        ->check(CLI::Range(0u, gate::most_frames))
-        ->capture_default_str();
-    app->add_option("--warmup", options->warmup, "Frames before those")
-        ->check(CLI::Range(0u, gate::most_frames / 2))
-        ->capture_default_str();
-    app->add_option("-o,--output", options->output, "JSON file to write");
+    viewer::add_whole(*app, "--frames", options->frames, 0, gate::most_frames,
+                      "Frames to measure (0: to the end of the recording)");
+    viewer::add_whole(*app, "--warmup", options->warmup, 0, gate::most_frames / 2, "Frames before those");
+    viewer::add_name(*app, "-o,--output", options->output, "JSON file to write", "FILE");
     app->add_flag("--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
     return [options] {
-        watch_interrupts();
+        watch_stop_signals();
         return exit_status(bench_level(*options), int(gate::Outcome::error));
     };
 }
@@ -56,34 +58,32 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
                 "weaker verdict. Exit status: 0 fine, 1 slower, 2 error, 3 cannot tell, 4 work or pictures changed.");
     app->add_option("BASE", options->base, "The program before the change");
     app->add_option("HEAD", options->head, "The program after it");
-    app->add_option("--base", options->base_revision,
-                    "Build BASE from this revision of the project; the program named is HEAD (default: this one)");
+    viewer::add_name(*app, "--base", options->base_revision,
+                     "Build BASE from this revision of the project; the program named is HEAD (default: this one)");
     add_level_options(*app, options->level);
-    app->add_option("--stored", options->stored, "Folder of stored pictures that head must draw, too");
-    app->add_option("--report", options->report, "Write a report as one HTML file");
+    viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures that head must draw, too", "FOLDER");
+    viewer::add_name(*app, "--report", options->report, "Write a report as one HTML file", "FILE");
     app->add_option("--accept-counters", options->accepted_counters, "Counter that was meant to change; repeatable");
-    app->add_option("--time-limit", options->time_limit, "Seconds that a program may take for an answer")
-        ->check(CLI::Range(0.1, 1e6))
-        ->capture_default_str();
+    viewer::add_real(*app, "--time-limit", options->time_limit, 0.1, 1e6,
+                     "Seconds that a program may take for an answer");
     app->add_option("--looks", options->looks, "Numbers of pairs at which a verdict is sought")
         ->delimiter(',')
         ->capture_default_str();
     app->add_flag("--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
-    app->add_option("--turns", options->pair.turns, "Turns of each process in a pair")->capture_default_str();
-    app->add_option("--seed", options->pair.seed, "Which frames are drawn, and in which order")->capture_default_str();
+    viewer::add_whole(*app, "--turns", options->pair.turns, 1, 10000, "Turns of each process in a pair");
+    viewer::add_whole(*app, "--seed", options->pair.seed, 0, 4294967295, "Which frames are drawn, and in which order");
     auto self_test = std::make_shared<SelfTestCommandOptions>();
     auto is_self_test = std::make_shared<bool>(false);
     app->add_flag("--self-test", *is_self_test,
                   "How often does the gate err here? Builds the project many times over; takes hours, and goes on\n"
                   "where it was stopped");
-    app->add_option("--triples", self_test->triples, "Of the self-test: base, a rebuild and a slower build at once")
-        ->capture_default_str();
-    app->add_option("--rebuilds", self_test->rebuilds, "Of the self-test: builds of the same source with other bytes")
-        ->check(CLI::Range(1, 99))
-        ->capture_default_str();
-    app->add_option("--folder", self_test->folder, "Of the self-test: for builds and triples");
+    viewer::add_whole(*app, "--triples", self_test->triples, 1, 100000,
+                      "Of the self-test: base, a rebuild and a slower build at once");
+    viewer::add_whole(*app, "--rebuilds", self_test->rebuilds, 1, 99,
+                      "Of the self-test: builds of the same source with other bytes");
+    viewer::add_name(*app, "--folder", self_test->folder, "Of the self-test: for builds and triples", "FOLDER");
     return [options, self_test, is_self_test] {
-        watch_interrupts();
+        watch_stop_signals();
         if (*is_self_test) {
             self_test->level = options->level;
             self_test->looks = options->looks;
@@ -102,16 +102,16 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
                 "Equal to the bit on the processor and driver that they were drawn on, within limits elsewhere\n"
                 "(docs/gate.md). Exit status: 0 fine, 2 error, 4 pictures changed.");
     app->add_option("PROGRAM", options->program, "As HEAD of `bench compare` (default: this one)");
-    app->add_option("--stored", options->stored, "Folder of stored pictures")->required();
+    viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures", "FOLDER")->required();
     app->add_flag("--accept", options->accept, "Store what is drawn now, and list what was written");
     app->add_option("--frame", options->frames, "Frame to store or compare, NAME=NUMBER; repeatable");
-    app->add_option("--differences", options->differences, "Folder for pictures of the differences, times eight");
-    app->add_option("--time-limit", options->time_limit, "Seconds that the program may take for an answer")
-        ->check(CLI::Range(0.1, 1e6))
-        ->capture_default_str();
+    viewer::add_name(*app, "--differences", options->differences, "Folder for pictures of the differences, times eight",
+                     "FOLDER");
+    viewer::add_real(*app, "--time-limit", options->time_limit, 0.1, 1e6,
+                     "Seconds that the program may take for an answer");
     add_level_options(*app, options->level);
     return [options] {
-        watch_interrupts();
+        watch_stop_signals();
         return outcome_status(bench_pictures(*options));
     };
 }

@@ -56,12 +56,14 @@ Status describe_device(const std::string& wanted, bool as_json) {
     return {};
 }
 
-Status describe_scene(const std::string& scene, bool as_json) {
+Status describe_scene(const std::string& scene, bool allow_outside, bool as_json) {
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(scene));
     ecs::Registry registry;
     scene::MeshStore meshes;
     scene::TextureStore textures;
-    SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes, textures));
+    io::ImportOptions import;
+    import.allow_outside = allow_outside;
+    SUNFLECK_ASSIGN(const io::ImportReport report, io::load_scene(path, registry, meshes, textures, import));
     const Bounds bounds = viewer::scene_bounds(registry, meshes);
     const auto list = [](vec3 v) { return Json{v.x, v.y, v.z}; };
     const Json json = {{"file", path.string()},

@@ -43,7 +43,7 @@ std::string hash_text(std::uint64_t hash) {
 Result<std::unique_ptr<LevelRun>> LevelRun::create(const LevelOptions& options) {
     std::unique_ptr<LevelRun> run(new LevelRun());
     run->stride_ = options.steps_per_frame;
-    SUNFLECK_ASSIGN(run->size_, parse_size(options.size));
+    SUNFLECK_ASSIGN(run->size_, viewer::size_value(options.size));
     SUNFLECK_TRY(make_settings(options, {})); // what is wrong on the command line, before anything is loaded
     SUNFLECK_TRY(run->read_input(options));
     SUNFLECK_TRY(run->load(options));

@@ -2,6 +2,7 @@
 #include "editor/command_line/program.h"
 
 #include "engine/core/log.h"
+#include "engine/core/output.h"
 
 #include <csignal>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -22,6 +23,7 @@ void install_log() {
 } // namespace
 
 int main(int argc, char** argv) {
+    sunfleck::hold_standard_streams();
     install_log();
     std::signal(SIGXFSZ, SIG_IGN); // a file-size limit becomes a write error like any other
     return sunfleck::command_line::run_program(argc, argv);

@@ -3,9 +3,14 @@
 
 #include "editor/command_line/commands.h"
 #include "editor/command_line/gate_commands.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
 #include "gi_module/settings_reference.h"
 
-#include <CLI/CLI.hpp>
+#include "viewer/options.h"
+
+#include <iostream>
+#include <sstream>
 
 namespace sunfleck::command_line {
 namespace {
@@ -36,36 +41,53 @@ void add_setting_options(CLI::App& app, std::map<std::string, std::string>& give
     }
 }
 
+constexpr int most_parts = 1'000'000; // scenes or animations of a file
+
+// Output pictures are known by their extension.
+std::string picture_problem(const std::string& text) {
+    const auto kind = io::picture_kind(text);
+    return kind ? std::string() : kind.error().message;
+}
+
+std::string setting_problem(const std::string& text) {
+    gi::Settings settings;
+    const Status status = apply_setting(settings, text);
+    return status ? std::string() : status.error().message;
+}
+
 // Options that name a scene, a camera and a time, on `render` and `reference` alike.
 void add_scene_options(CLI::App& app, SceneOptions& options) {
-    app.add_option("SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")
+    viewer::add_name(app, "SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")
         ->required();
-    app.add_option("--size", options.size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
-    app.add_option("--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (degrees)");
+    viewer::add_size(app, "--size", options.size, "Picture size");
+    viewer::add_name(app, "--camera", options.camera, "Camera by name, number, or px,py,pz,tx,ty,tz,fov (m; degrees)");
     add_setting_options(app, options.lighting, {"movers"});
     app.add_option_function<std::string>(
            "--motion", [&options](const std::string& text) { options.motion = text == "on"; },
            "on: frame k shows step k; off: movers stay at step 0 (default on)")
-        ->check(CLI::IsMember({"on", "off"}));
-    app.add_option("--orbit", options.orbit_degrees, "Degrees that the camera turns about its target each frame")
-        ->check(CLI::Range(-360.0, 360.0))
-        ->capture_default_str();
-    app.add_option("--frames", options.frames, "Frames to render after the warm-up; the last is written")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
-    app.add_option("--warmup", options.warmup, "Frames before those")
-        ->check(CLI::Range(0, 1000000))
-        ->capture_default_str();
+        ->type_name("on | off")
+        ->check([](const std::string& text) {
+            return text == "on" || text == "off" ? std::string() : "'" + text + "' is neither on nor off";
+        });
+    viewer::add_real(app, "--orbit", options.orbit_degrees, -360.0, 360.0,
+                     "Degrees that the camera turns about its target each frame");
+    viewer::add_whole(app, "--frames", options.frames, 1, 1000000,
+                      "Frames to render after the warm-up; the last is written");
+    viewer::add_whole(app, "--warmup", options.warmup, 0, 1000000, "Frames before those");
     add_setting_options(app, options.lighting, {"seed", "bounces"});
-    app.add_option("--ev100", options.ev100, "EV100, in place of the scene's; where neither is, the picture decides")
-        ->check(CLI::Range(viewer::lowest_exposure, viewer::highest_exposure));
-    app.add_option("--environment", options.environment,
-                   "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)");
-    app.add_option("--scene", options.import.scene, "Which scene of a glTF file, by number (default: the file's own)");
-    app.add_option("--variant", options.import.variant, "Material variant of a glTF file, by name");
-    app.add_option("--animation", options.import.animation, "Which animation of a glTF file plays; -1: none")
-        ->capture_default_str();
-    app.add_option("--device", options.device, "Vulkan device by number or part of its name");
+    viewer::add_real(app, "--ev100", options.ev100, viewer::lowest_exposure, viewer::highest_exposure,
+                     "EV100, in place of the scene's; where neither is, the picture decides");
+    viewer::add_name(app, "--environment", options.environment,
+                     "Light the scene by this picture of its surroundings (equirectangular EXR, HDR, PNG or JPEG)",
+                     "FILE");
+    viewer::add_whole(app, "--scene", options.import.scene, -1, most_parts,
+                      "Which scene of a glTF file, by number; -1: the file's own choice");
+    viewer::add_name(app, "--variant", options.import.variant, "Material variant of a glTF file, by name");
+    viewer::add_whole(app, "--animation", options.import.animation, -1, most_parts,
+                      "Which animation of a glTF file plays; -1: none");
+    app.add_flag("--allow-outside", options.import.allow_outside,
+                 "The scene may read files outside of its folder: for scenes that you trust");
+    viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
     app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
 }
 
@@ -76,17 +98,21 @@ Command make_render_command(CLI::App& program) {
                 "A scene in which nothing emits light is lit by a sky of 0.3 W/(sr m2) and a sun of 2 W/m2.");
     add_scene_options(*app, options->scene);
     app->add_option("-o,--output", options->output, "Picture to write: .png (tone-mapped) or .exr (scene-linear)")
+        ->type_name("FILE")
+        ->check(picture_problem)
         ->required();
     add_setting_options(*app, options->scene.lighting,
                         {"punctual", "direct", "indirect", "specular", "source", "lights", "direct_share"});
-    app->add_option("--view", options->view, "What to show")->check(CLI::IsMember(view_names()))->capture_default_str();
-    app->add_option("--set", options->settings, "Lighting setting as name=value; repeatable (see sunfleck info)");
-    app->add_option("--stats", options->statistics, "Write times, counters and memory as JSON");
-    app->add_option("--trace", options->trace,
-                    "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev");
+    viewer::add_choice(*app, "--view", options->view, view_names(), "What to show")->capture_default_str();
+    app->add_option("--set", options->settings, "Lighting setting; repeatable (see sunfleck info)")
+        ->type_name("NAME=VALUE")
+        ->check(setting_problem);
+    viewer::add_name(*app, "--stats", options->statistics, "Write times, counters and memory as JSON", "FILE");
+    viewer::add_name(*app, "--trace", options->trace,
+                     "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev", "FILE");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
-                watch_interrupts();
+                watch_stop_signals();
                 return exit_status(render(*options));
             }};
 }
@@ -94,24 +120,27 @@ Command make_render_command(CLI::App& program) {
 Command make_reference_command(CLI::App& program) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* app = program.add_subcommand("reference", "Renders a scene with the path tracer: the truth, slowly");
-    app->footer("Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
-                "Ctrl-C saves what is there; the same command goes on from it.");
+    app->footer(
+        "Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
+        "Whatever ends it, the same command goes on from what was saved last: beside the picture there are two\n"
+        "files, NAME.state and NAME.state2, until it is done. Ctrl-C and other signals save first.");
     add_scene_options(*app, options->scene);
     app->add_option("-o,--output", options->output, "Picture to write: .exr (scene-linear) or .png (tone-mapped)")
+        ->type_name("FILE")
+        ->check(picture_problem)
         ->required();
-    app->add_option("--spp", options->samples, "Samples per pixel")
-        ->check(CLI::Range(1, 1 << 24))
-        ->capture_default_str();
-    app->add_option("--view", options->view, "What to show")
-        ->check(CLI::IsMember({"final", "irradiance", "direct", "indirect"}))
+    viewer::add_whole(*app, "--spp", options->samples, 1, 1 << 24, "Samples per pixel");
+    viewer::add_choice(*app, "--view", options->view, {"final", "irradiance", "direct", "indirect"}, "What to show")
         ->capture_default_str();
     app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
     app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
     app->add_flag("--lambertian", options->lambertian,
                   "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
-    app->add_option("--stats", options->statistics, "Write seconds and rays per second as JSON");
+    viewer::add_name(*app, "--stats", options->statistics, "Write seconds and rays per second as JSON", "FILE");
+    viewer::add_real(*app, "--save-interval", options->save_interval, 0.05, 86400.0,
+                     "Seconds between saves of what is there so far; more where they would take over 2 % of the time");
     return {app, [options] {
-                watch_interrupts();
+                watch_stop_signals();
                 return exit_status(reference(*options));
             }};
 }
@@ -123,9 +152,11 @@ Command make_compare_command(CLI::App& program) {
                 "EXR is compared scene-linear, PNG as display values. Pixels with alpha 0 in either are left out.\n"
                 "relative_mse: mean of |A-B|^2 / (|B|^2 + 0.01 m^2), m the mean of |B|. ssim and flip of EXR pictures\n"
                 "are taken after x / (x + m). psnr is 999 for equal pictures.");
-    app->add_option("A", options->a, "Picture to judge")->required();
-    app->add_option("B", options->b, "Reference")->required();
-    app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png");
+    viewer::add_name(*app, "A", options->a, "Picture to judge", "FILE")->required();
+    viewer::add_name(*app, "B", options->b, "Reference", "FILE")->required();
+    app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png")
+        ->type_name("FILE")
+        ->check(picture_problem);
     app->add_flag("--json", options->as_json, "Print one JSON object");
     return {app, [options] { return exit_status(compare(*options)); }};
 }
@@ -142,23 +173,24 @@ Command make_bench_command(CLI::App& program) {
                 "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
                 "             (--part movers runs one of its experiments)");
     const auto run_gate = add_gate_commands(*app);
-    app->add_option("SUITE", options->suite, "Name of the experiment")
-        ->check(CLI::IsMember({"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"}));
+    viewer::add_choice(*app, "SUITE", options->suite,
+                       {"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"},
+                       "Name of the experiment");
     app->add_flag("--json", options->as_json, "Print one JSON object");
-    app->add_option("--csv", options->csv, "Write the rows as CSV");
-    app->add_option("--plot", options->plot, "Write a plot as SVG");
-    app->add_option("--repeat", options->repeat, "Measurements of each row")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    app->add_option("--scene", options->scene, "Scene, where the suite takes one");
-    app->add_option("--part", options->part, "One experiment of the thesis")->check(CLI::IsMember(thesis_parts()));
-    app->add_option("--device", options->device, "Vulkan device by number or part of its name");
+    viewer::add_name(*app, "--csv", options->csv, "Write the rows as CSV", "FILE");
+    viewer::add_name(*app, "--plot", options->plot, "Write a plot as SVG", "FILE");
+    viewer::add_whole(*app, "--repeat", options->repeat, 1, 1000, "Measurements of each row");
+    viewer::add_name(*app, "--scene", options->scene, "Scene, where the suite takes one (kernel, convergence)");
+    viewer::add_choice(*app, "--part", options->part, thesis_parts(), "One experiment of the thesis");
+    viewer::add_name(*app, "--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options, run_gate] {
                 if (int gate_status = 0; run_gate(gate_status))
                     return gate_status;
-                if (options->suite.empty())
-                    return fail({"a SUITE, 'level' or 'compare' is needed (sunfleck bench --help)"});
-                watch_interrupts();
+                if (options->suite.empty()) {
+                    fail({"a SUITE, 'level' or 'compare' is needed (sunfleck bench --help)"});
+                    return int(exit_usage);
+                }
+                watch_stop_signals();
                 return exit_status(bench(*options));
             }};
 }
@@ -170,40 +202,83 @@ Command make_info_command(CLI::App& program) {
     auto reference = std::make_shared<bool>(false);
     CLI::App* app = program.add_subcommand("info", "Shows device, driver, limits, scenes and settings");
     app->footer("Example: sunfleck info --json\nExample: sunfleck info helmet.gltf");
-    app->add_option("SCENE", *scene, "Show what is in this scene or glTF file instead");
-    app->add_option("--device", *device, "Vulkan device by number or part of its name");
+    auto allow_outside = std::make_shared<bool>(false);
+    viewer::add_name(*app, "SCENE", *scene, "Show what is in this scene or glTF file instead");
+    app->add_flag("--allow-outside", *allow_outside, "The scene may read files outside of its folder");
+    viewer::add_name(*app, "--device", *device, "Vulkan device by number or part of its name");
     app->add_flag("--json", *as_json, "Print one JSON object");
     app->add_flag("--schema", *schema, "Print the JSON schema of scene files");
     app->add_flag("--reference", *reference, "Print all settings, counters and views as Markdown (docs/settings.md)");
-    return {app, [device, scene, as_json, schema, reference] {
+    return {app, [device, scene, allow_outside, as_json, schema, reference] {
                 if (*schema || *reference) {
                     std::fputs((*schema ? io::scene_file_schema() : gi::settings_reference()).c_str(), stdout);
                     return 0;
                 }
                 return exit_status(scene->empty() ? describe_device(*device, *as_json)
-                                                  : describe_scene(*scene, *as_json));
+                                                  : describe_scene(*scene, *allow_outside, *as_json));
             }};
 }
+
+// What a command printed is part of what was asked for.
+int printed(int status) {
+    const Status flushed = flush_standard_output();
+    return flushed || status != exit_done ? status : fail(flushed.error());
+}
+
+class Program {
+public:
+    Program() {
+        app_.require_subcommand(1);
+        app_.set_version_flag("--version", "sunfleck 0.1.0");
+        app_.footer(
+            "Example: sunfleck render cornell -o cornell.png --lights 300\n"
+            "Exit status: 0 done, 1 failed, 2 the command line is wrong, 128 + N ended by signal N; of the gate\n"
+            "(sunfleck bench compare --help) also 3 and 4.");
+        for (const auto make :
+             {make_render_command, make_reference_command, make_compare_command, make_bench_command, make_info_command})
+            commands_.push_back(make(app_));
+    }
+
+    // The exit status where there is nothing to run: help was asked for, or the command line is wrong.
+    std::optional<int> parse(int argc, const char* const* argv, std::ostream& out, std::ostream& errors) {
+        try {
+            app_.parse(argc, argv);
+        } catch (const CLI::ParseError& error) {
+            return app_.exit(error, out, errors) == 0 ? exit_done : exit_usage;
+        }
+        return std::nullopt;
+    }
+
+    int run() const {
+        for (const Command& command : commands_)
+            if (command.app->parsed())
+                return command.run();
+        return exit_usage;
+    }
+
+private:
+    CLI::App app_{"Sunfleck: real-time global illumination with hundreds of shadowed light samples."};
+    std::vector<Command> commands_;
+};
 
 } // namespace
 
 int run_program(int argc, const char* const* argv) {
-    CLI::App program("Sunfleck: real-time global illumination with hundreds of shadowed light samples.");
-    program.require_subcommand(1);
-    program.set_version_flag("--version", "sunfleck 0.1.0");
-    program.footer("Example: sunfleck render cornell -o cornell.png --lights 300");
-    const Command commands[] = {make_render_command(program), make_reference_command(program),
-                                make_compare_command(program), make_bench_command(program), make_info_command(program)};
+    Program program;
+    const std::optional<int> status = program.parse(argc, argv, std::cout, std::cerr);
     try {
-        program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        const int status = program.exit(error);
-        return status == 0 ? 0 : 2;
+        return printed(status ? *status : program.run());
+    } catch (const std::bad_alloc&) {
+        return fail({"the memory is not enough"});
     }
-    for (const Command& command : commands)
-        if (command.app->parsed())
-            return command.run();
-    return 2;
+}
+
+int check_command_line(int argc, const char* const* argv, std::string& message) {
+    Program program;
+    std::ostringstream text;
+    const int status = program.parse(argc, argv, text, text).value_or(exit_done);
+    message = text.str();
+    return status;
 }
 
 } // namespace sunfleck::command_line

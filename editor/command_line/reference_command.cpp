@@ -3,10 +3,13 @@
 
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
+#include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
 #include "engine/render/tone_map.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
-#include "gi_module/reference/path_tracer.h"
+#include "gi_module/reference/accumulation_file.h"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -38,15 +41,6 @@ io::Picture to_picture(const Accumulation& accumulation, bool display, bool irra
     return picture;
 }
 
-Result<Accumulation> start_or_resume(const std::string& state_file, std::uint64_t hash) {
-    std::error_code code;
-    if (!std::filesystem::exists(state_file, code))
-        return Accumulation{};
-    SUNFLECK_ASSIGN(Accumulation accumulation, load_accumulation(state_file, hash));
-    std::fprintf(stderr, "going on from %u samples per pixel in '%s'\n", accumulation.samples, state_file.c_str());
-    return accumulation;
-}
-
 // Everything that is loaded to trace one frame.
 struct TracedScene {
     ecs::Registry registry;
@@ -56,6 +50,7 @@ struct TracedScene {
     Bounds bounds;
     scene::CameraView camera;
     std::uint32_t last_frame = 0;
+    std::uint64_t content_hash = hash_start; // of the bytes of all files that were read
 };
 
 // Every surface Lambertian, of its base colour alone, as other renderers can be asked for, too.
@@ -77,8 +72,10 @@ void make_lambertian(ecs::Registry& registry) {
 }
 
 Status load(const ReferenceOptions& options, const std::filesystem::path& path, TracedScene& scene) {
-    SUNFLECK_TRY(io::load_scene(path, scene.registry, scene.meshes, scene.textures, import_options(options.scene)));
-    SUNFLECK_TRY(apply_environment(options.scene, scene.registry));
+    io::ImportOptions import = import_options(options.scene);
+    import.content_hash = &scene.content_hash;
+    SUNFLECK_TRY(io::load_scene(path, scene.registry, scene.meshes, scene.textures, import));
+    SUNFLECK_TRY(apply_environment(options.scene, scene.registry, &scene.content_hash));
     viewer::add_default_light(scene.registry);
     if (options.lambertian)
         make_lambertian(scene.registry);
@@ -94,13 +91,13 @@ Status load(const ReferenceOptions& options, const std::filesystem::path& path, 
     return {};
 }
 
-Result<ReferenceSettings> settings_of(const ReferenceOptions& options, Size size) {
+Result<ReferenceSettings> settings_of(const ReferenceOptions& options) {
     gi::Settings lighting;
     for (const auto& [name, value] : options.scene.lighting)
         SUNFLECK_TRY(lighting.set(name, value));
     ReferenceSettings settings;
-    settings.width = size.width;
-    settings.height = size.height;
+    settings.width = options.scene.size.width;
+    settings.height = options.scene.size.height;
     settings.bounces = options.unlimited ? unlimited_bounces : lighting.bounces;
     settings.seed = lighting.seed;
     settings.antialiasing = options.antialiasing;
@@ -111,80 +108,197 @@ Result<ReferenceSettings> settings_of(const ReferenceOptions& options, Size size
     return settings;
 }
 
-// Of all that decides the picture; a state with another hash is not resumed.
-Result<std::uint64_t> hash_of(const ReferenceOptions& options, const std::filesystem::path& path,
-                              const ReferenceSettings& settings, std::uint32_t last_frame) {
-    SUNFLECK_ASSIGN(const std::string scene_bytes, read_file(path));
-    constexpr const char* method = "2"; // raised with whatever makes the tracer's pictures differ
-    return hash_text(scene_bytes + "|" + method + "|" + path.string() + "|" + options.scene.size + "|" +
-                     options.scene.camera + "|" + options.view + "|" + std::to_string(settings.bounces) + "|" +
-                     std::to_string(settings.seed) + "|" + std::to_string(last_frame) + "|" +
-                     std::to_string(options.scene.motion) + "|" + std::to_string(options.scene.orbit_degrees) + "|" +
-                     std::to_string(options.antialiasing) + "|" + std::to_string(options.lambertian));
+// Of all that decides the picture: a state with another key is not resumed. The bytes of all files are in content_hash.
+std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettings& settings,
+                          const TracedScene& scene) {
+    constexpr int method = 3; // raised with whatever makes the tracer's pictures differ
+    const SceneOptions& of = options.scene;
+    Json json = {{"method", method},
+                 {"content", scene.content_hash},
+                 {"scene", of.import.scene},
+                 {"variant", of.import.variant},
+                 {"animation", of.import.animation},
+                 {"environment", !of.environment.empty()},
+                 {"lighting", of.lighting},
+                 {"size", {settings.width, settings.height}},
+                 {"camera", of.camera},
+                 {"orbit", of.orbit_degrees},
+                 {"frame", scene.last_frame},
+                 {"motion", of.motion},
+                 {"view", options.view},
+                 {"bounces", settings.bounces},
+                 {"seed", settings.seed},
+                 {"antialiasing", settings.antialiasing},
+                 {"lambertian", options.lambertian}};
+    return hash_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// Traces until there are options.samples a pixel; false if the user stopped it. Returns the seconds that it took.
-Result<double> trace(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
-                     Accumulation& accumulation, bool& complete) {
-    const PathTracer tracer(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds),
-                            gi::collect_backgrounds(scene.registry));
-    const auto began = std::chrono::steady_clock::now();
-    const auto seconds = [&] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    };
-    const std::uint64_t rays_before = accumulation.rays;
-    Progress progress("reference");
-    complete = true;
-    while (accumulation.samples < options.samples && complete) {
-        // Few samples first, so that an early interrupt has something to show.
-        const std::uint32_t batch =
-            std::min({std::max(1u, accumulation.samples), 16u, options.samples - accumulation.samples});
-        complete = tracer.accumulate(accumulation, scene.camera, settings, batch, interrupted);
-        char detail[96];
-        std::snprintf(detail, sizeof detail, "%u of %u spp, %.2f million rays/s", accumulation.samples, options.samples,
-                      double(accumulation.rays - rays_before) / seconds() * 1e-6);
-        progress.show(double(accumulation.samples) / options.samples, detail);
+// Seconds since it was made.
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+// When to save: every so many seconds, but so that saving takes 2 % of the time at most.
+class SaveClock {
+public:
+    explicit SaveClock(double interval) : interval_(interval), next_(interval) {}
+    bool is_time() const { return since_.seconds() >= next_; }
+    void saved(double seconds) {
+        constexpr double most_share = 0.02;
+        next_ = std::max(interval_, seconds * (1.0 / most_share - 1.0));
+        since_ = Stopwatch();
     }
-    return seconds();
+
+private:
+    double interval_, next_;
+    Stopwatch since_;
+};
+
+// A picture on its way to options.samples a pixel, saved now and then.
+class Tracing {
+public:
+    Tracing(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
+            SavedAccumulation& state)
+        : options_(options), scene_(scene), settings_(settings), state_(state), clock_(options.save_interval),
+          tracer_(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds),
+                  gi::collect_backgrounds(scene.registry)) {}
+
+    // Takes up the saved state, if there is one.
+    Status resume() {
+        SUNFLECK_ASSIGN(accumulation_, state_.load());
+        const std::vector<std::uint32_t>& counts = accumulation_.counts;
+        // A state may have more samples than are asked for now: all pixels then get as many.
+        goal_ = counts.empty() ? options_.samples
+                               : std::max(options_.samples, *std::max_element(counts.begin(), counts.end()));
+        rays_before_ = accumulation_.rays;
+        if (!counts.empty())
+            std::fprintf(stderr, "going on from %u samples per pixel in '%s'\n", accumulation_.samples,
+                         state_.newest().c_str());
+        return {};
+    }
+
+    // An error where it was stopped; the state is saved then.
+    Status run() {
+        const Stopwatch watch;
+        Progress progress("reference");
+        while (accumulation_.samples < goal_ && !interrupted()) {
+            trace_for(std::min(0.5, 0.5 * double(options_.save_interval)));
+            seconds_ = watch.seconds();
+            show(progress);
+            // What can't be saved now may be later; the work goes on.
+            if (clock_.is_time())
+                if (const Status status = save(); !status)
+                    log_warning(status.error().message);
+        }
+        if (accumulation_.samples >= goal_)
+            return {};
+        SUNFLECK_TRY(save());
+        return Error{std::string("stopped by ") + signal_name(stop_signal()) + "; the same command goes on from '" +
+                     state_.newest().string() + "'"};
+    }
+
+    Status save() {
+        const Stopwatch watch;
+        const Status status = state_.save(accumulation_);
+        clock_.saved(watch.seconds());
+        return status;
+    }
+
+    const Accumulation& accumulation() const { return accumulation_; }
+    double seconds() const { return seconds_; }
+    double rays_per_second() const { return double(accumulation_.rays - rays_before_) / std::max(seconds_, 1e-9); }
+
+private:
+    // Few samples first, so that an early stop has something to show.
+    void trace_for(double slice) {
+        const std::uint32_t batch = std::min({std::max(1u, accumulation_.samples), 16u, goal_ - accumulation_.samples});
+        const Stopwatch watch;
+        tracer_.accumulate(accumulation_, scene_.camera, settings_, batch,
+                           [&] { return interrupted() || watch.seconds() > slice; });
+    }
+    void show(Progress& progress) const {
+        double samples = 0.0;
+        for (const std::uint32_t count : accumulation_.counts)
+            samples += double(count);
+        char detail[96];
+        std::snprintf(detail, sizeof detail, "%u of %u spp, %.2f million rays/s", accumulation_.samples, goal_,
+                      rays_per_second() * 1e-6);
+        progress.show(samples / (double(goal_) * double(accumulation_.counts.size())), detail);
+    }
+
+    const ReferenceOptions& options_;
+    const TracedScene& scene_;
+    const ReferenceSettings& settings_;
+    SavedAccumulation& state_;
+    SaveClock clock_;
+    PathTracer tracer_;
+    Accumulation accumulation_;
+    std::uint32_t goal_ = 0;
+    std::uint64_t rays_before_ = 0;
+    double seconds_ = 0.0;
+};
+
+Status write_statistics(const ReferenceOptions& options, const Tracing& tracing, float ev100) {
+    const Json json = {{"scene", options.scene.scene},
+                       {"samples_per_pixel", tracing.accumulation().samples},
+                       {"ev100", ev100},
+                       {"seconds", tracing.seconds()},
+                       {"rays", tracing.accumulation().rays},
+                       {"rays_per_second", tracing.rays_per_second()}};
+    return write_file(options.statistics, json.dump(2) + "\n");
+}
+
+Status write_results(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
+                     const Tracing& tracing) {
+    const bool irradiance = settings.view != ReferenceView::radiance;
+    const std::optional<float> said = exposure_of(options.scene, scene.registry);
+    const Accumulation& sums = tracing.accumulation();
+    const float ev100 =
+        said ? *said
+             : viewer::automatic_exposure(to_picture(sums, false, irradiance, viewer::default_exposure), irradiance);
+    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
+    SUNFLECK_TRY(io::write_picture(options.output, to_picture(sums, kind == io::PictureKind::png, irradiance, ev100)));
+    return options.statistics.empty() ? Status() : write_statistics(options, tracing, ev100);
+}
+
+// What would fail hours later fails now.
+Status try_files(const ReferenceOptions& options, const std::filesystem::path& scene) {
+    const SavedAccumulation state(options.output + ".state", 0);
+    const NamedFile outputs[] = {{"-o", options.output},
+                                 {"--stats", options.statistics},
+                                 {"the state of -o", state.file(0)},
+                                 {"the state of -o", state.file(1)}};
+    const NamedFile inputs[] = {{"SCENE", scene}, {"--environment", options.scene.environment}};
+    SUNFLECK_TRY(try_outputs(outputs, inputs));
+    return try_output(state.file(0), SavedAccumulation::bytes(options.scene.size.width, options.scene.size.height));
 }
 
 } // namespace
 
 Status reference(const ReferenceOptions& options) {
-    SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
-    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
+    SUNFLECK_TRY(io::picture_kind(options.output));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    SUNFLECK_TRY(try_files(options, path));
     TracedScene scene;
     SUNFLECK_TRY(load(options, path, scene));
-    SUNFLECK_ASSIGN(const ReferenceSettings settings, settings_of(options, size));
-    SUNFLECK_ASSIGN(const std::uint64_t hash, hash_of(options, path, settings, scene.last_frame));
-    const std::string state_file = options.output + ".state";
-    SUNFLECK_ASSIGN(Accumulation accumulation, start_or_resume(state_file, hash));
-    const std::uint64_t rays_before = accumulation.rays;
-    bool complete = false;
-    SUNFLECK_ASSIGN(const double seconds, trace(options, scene, settings, accumulation, complete));
-    if (!complete) {
-        SUNFLECK_TRY(save_accumulation(state_file, accumulation, hash));
-        return Error{"interrupted; the same command goes on from '" + state_file + "'"};
+    SUNFLECK_ASSIGN(const ReferenceSettings settings, settings_of(options));
+    SavedAccumulation state(options.output + ".state", picture_key(options, settings, scene));
+    Tracing tracing(options, scene, settings, state);
+    SUNFLECK_TRY(tracing.resume());
+    SUNFLECK_TRY(tracing.run());
+    if (const Status status = write_results(options, scene, settings, tracing); !status) {
+        const Status saved = tracing.save();
+        return Error{status.error().message + "; " +
+                     (saved ? "once that is mended, the same command ends at once: all samples are in '" +
+                                  state.newest().string() + "'"
+                            : saved.error().message + "; the same command goes on from the state saved before")};
     }
-    const bool irradiance = settings.view != ReferenceView::radiance;
-    const std::optional<float> said = exposure_of(options.scene, scene.registry);
-    const float ev100 = said ? *said
-                             : viewer::automatic_exposure(
-                                   to_picture(accumulation, false, irradiance, viewer::default_exposure), irradiance);
-    SUNFLECK_TRY(
-        io::write_picture(options.output, to_picture(accumulation, kind == io::PictureKind::png, irradiance, ev100)));
-    std::error_code code;
-    std::filesystem::remove(state_file, code);
-    if (options.statistics.empty())
-        return {};
-    const Json json = {{"scene", options.scene.scene},
-                       {"samples_per_pixel", accumulation.samples},
-                       {"ev100", ev100},
-                       {"seconds", seconds},
-                       {"rays", accumulation.rays},
-                       {"rays_per_second", double(accumulation.rays - rays_before) / seconds}};
-    return write_file(options.statistics, json.dump(2) + "\n");
+    state.remove();
+    return {};
 }
 
 } // namespace sunfleck::command_line

@@ -4,6 +4,7 @@
 
 #include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/core/output.h"
 
 #include <nlohmann/json.hpp>
 
@@ -51,12 +52,11 @@ Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<
 // What the command line and the scene file say about the picture.
 Result<viewer::FrameRequest> make_request(const RenderOptions& options, viewer::SceneRenderer& renderer) {
     viewer::FrameRequest request;
-    SUNFLECK_ASSIGN(const Size size, parse_size(options.scene.size));
     SUNFLECK_ASSIGN(const io::PictureKind kind, io::picture_kind(options.output));
     const Bounds bounds = viewer::scene_bounds(renderer.registry(), renderer.meshes());
     SUNFLECK_ASSIGN(request.camera, viewer::find_camera(renderer.registry(), bounds, options.scene.camera));
-    request.width = size.width;
-    request.height = size.height;
+    request.width = options.scene.size.width;
+    request.height = options.scene.size.height;
     set_view(options.view, request);
     request.tone_map = kind == io::PictureKind::png;
     request.ev100 = exposure_of(options.scene, renderer.registry()).value_or(viewer::default_exposure);
@@ -139,9 +139,11 @@ std::vector<std::string> view_names() {
 Status render(const RenderOptions& options) {
     // What is wrong on the command line, before anything is loaded.
     SUNFLECK_TRY(io::picture_kind(options.output));
-    SUNFLECK_TRY(parse_size(options.scene.size));
     SUNFLECK_TRY(make_settings(options, {}));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    const NamedFile outputs[] = {{"-o", options.output}, {"--stats", options.statistics}, {"--trace", options.trace}};
+    const NamedFile inputs[] = {{"SCENE", path}, {"--environment", options.scene.environment}};
+    SUNFLECK_TRY(try_outputs(outputs, inputs));
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
     renderer->lighting().set_cache_folder(user_cache_folder());

@@ -2,11 +2,18 @@
 #pragma once
 
 #include "editor/gate/comparison.h"
+#include "engine/core/exit_status.h"
 
 namespace sunfleck::gate {
 
 // Exit statuses of `bench compare`.
-enum class Outcome { fine = 0, slower = 1, error = 2, cannot_tell = 3, changed = 4 };
+enum class Outcome {
+    fine = exit_done,
+    slower = exit_failed,
+    error = exit_usage,
+    cannot_tell = exit_cannot_tell,
+    changed = exit_changed
+};
 
 struct GateRunOptions {
     PairOptions pair;

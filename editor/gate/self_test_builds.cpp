@@ -47,11 +47,8 @@ struct Builder {
     }
     // The tree's program under its own name. Renamed last: one that is there is whole.
     Status keep(const std::string& tree_name, const std::string& name) const {
-        return replace_file(program(name), [&](const fs::path& temporary) -> Status {
-            std::error_code code;
-            fs::copy_file(tree(tree_name) / "bin" / "sunfleck", temporary, code);
-            return code ? Status(Error{"cannot copy to '" + temporary.string() + "': " + code.message()}) : Status();
-        });
+        SUNFLECK_ASSIGN(const std::string bytes, read_file(tree(tree_name) / "bin" / "sunfleck"));
+        return write_file(program(name), bytes, 0777);
     }
     Status make(const std::string& name, const std::vector<std::string>& options) const {
         std::error_code code;

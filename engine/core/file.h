@@ -1,25 +1,27 @@
 // Whole-file reads and atomic replacement: a reader sees either the old or the new content, never a mixture.
+// output.h finds out beforehand what a write would meet.
 #pragma once
 
 #include "engine/core/result.h"
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
 namespace sunfleck {
 
-Result<std::string> read_file(const std::filesystem::path& path, std::size_t size_limit = std::size_t(1) << 31);
+inline constexpr std::size_t usual_size_limit = std::size_t(1) << 31;
 
-// Writes a temporary file beside `path`, flushes it to disk and renames it over `path`. On any failure (no space, no
-// permission) the temporary file is removed and `path` keeps its previous content.
-Status write_file(const std::filesystem::path& path, std::string_view content);
+// Regular files of at most `size_limit` bytes.
+Result<std::string> read_file(const std::filesystem::path& path, std::size_t size_limit = usual_size_limit);
 
-// The same for writers that need a file name: `writer` fills the temporary file, which has the extension of `path`.
-Status replace_file(const std::filesystem::path& path,
-                    const std::function<Status(const std::filesystem::path& temporary)>& writer);
+// The one writer of files. Writes a temporary file in the folder of `path`, flushes it to disk and renames it over
+// `path`, which keeps its owner and permissions; a new file gets `permissions`, less the process's mask. On any failure
+// (no space, no permission) the temporary file is removed and `path` keeps its previous content; what a killed program
+// left is removed by the next write of the same name. Links are followed, which is logged. Only regular files and new
+// names are replaced: pipes and devices are written to; folders and sockets are refused.
+Status write_file(const std::filesystem::path& path, std::string_view content, unsigned permissions = 0666);
 
 // $XDG_CACHE_HOME/sunfleck or ~/.cache/sunfleck, for data that can be recomputed. Empty if neither variable is set.
 std::filesystem::path user_cache_folder();

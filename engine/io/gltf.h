@@ -26,6 +26,10 @@ struct ImportOptions {
     int scene = -1;      // -1: the file's default, else its first, else all nodes without a parent
     std::string variant; // of KHR_materials_variants, by name; empty: the file's own materials
     int animation = 0;   // which one is played; -1: none
+    // What other files the file names must lie under this folder, once all links are resolved; empty: the file's own.
+    std::filesystem::path root;
+    bool allow_outside = false;            // they may lie anywhere: for files that the user trusts
+    std::uint64_t* content_hash = nullptr; // where not null, continued with the bytes of every file that is read
     // Called occasionally with the fraction done, from any thread but never concurrently; returning false cancels the
     // import with an error.
     std::function<bool(float)> progress;
@@ -40,8 +44,8 @@ struct ImportReport {
     std::map<std::string, std::string> settings;       // lighting settings of a scene file
 };
 
-// Adds a scene of the file to `registry`. Names of entities are made unique by appending a number. Files
-// outside the glTF file's folder are not read. On failure nothing is added.
+// Adds a scene of the file to `registry`. Names of entities are made unique by appending a number. What
+// other files may be read: ImportOptions::root. On failure nothing is added.
 Result<ImportReport> import_gltf(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
                                  scene::TextureStore& textures, const ImportOptions& options = {});
 // The same from memory, without any other files.

@@ -57,9 +57,18 @@ Result<Chunks> split_chunks(std::string bytes) {
     return chunks;
 }
 
+// Where URIs lead.
+struct FileSource {
+    const std::filesystem::path& folder;
+    const FileAccess& access;
+
+    Result<std::string> read(const json& uri) const {
+        return read_uri(uri.get_ref<const std::string&>(), folder, access);
+    }
+};
+
 // Bytes of a buffer: from its URI or the binary chunk; none for the fallback buffer of compressed views.
-Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& chunks,
-                                 const std::filesystem::path& folder) {
+Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& chunks, const FileSource& files) {
     const std::string place = "buffer " + std::to_string(index);
     const auto length_entry = buffer.find("byteLength");
     if (length_entry == buffer.end() || !length_entry->is_number_integer() || length_entry->get<std::int64_t>() < 1)
@@ -70,7 +79,7 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
     if (uri != buffer.end()) {
         if (!uri->is_string())
             return Error{place + " has a URI that is not text"};
-        auto read = read_uri(uri->get_ref<const std::string&>(), folder);
+        auto read = files.read(*uri);
         if (!read)
             return Error{place + ": " + read.error().message};
         bytes = std::move(*read);
@@ -168,11 +177,11 @@ Status decompress_view(tinygltf::Model& model, std::size_t index) {
     return {};
 }
 
-Result<std::string> image_bytes(const json& image, const tinygltf::Model& model, const std::filesystem::path& folder) {
+Result<std::string> image_bytes(const json& image, const tinygltf::Model& model, const FileSource& files) {
     if (const auto uri = image.find("uri"); uri != image.end()) {
         if (!uri->is_string())
             return Error{"its URI is not text"};
-        return read_uri(uri->get_ref<const std::string&>(), folder);
+        return files.read(*uri);
     }
     if (!image.contains("bufferView"))
         return Error{"it has neither a URI nor a buffer view"};
@@ -188,11 +197,11 @@ Status noted_if_unused(const Status& status, const char* section, std::size_t in
     return {};
 }
 
-Status read_buffers(const json& file, Chunks& chunks, const std::filesystem::path& folder, GltfDocument& document) {
+Status read_buffers(const json& file, Chunks& chunks, const FileSource& files, GltfDocument& document) {
     tinygltf::Model& model = document.model;
     for (std::size_t i = 0; i < model.buffers.size(); ++i) {
         model.buffers[i].data.clear();
-        auto content = buffer_bytes(file["buffers"][i], i, chunks, folder);
+        auto content = buffer_bytes(file["buffers"][i], i, chunks, files);
         SUNFLECK_TRY(noted_if_unused(content ? Status() : Status(content.error()), "buffers", i, document));
         if (content)
             model.buffers[i].data.assign(content->begin(), content->end());
@@ -203,12 +212,12 @@ Status read_buffers(const json& file, Chunks& chunks, const std::filesystem::pat
     return {};
 }
 
-Status read_images(const json& file, const std::filesystem::path& folder, GltfDocument& document) {
+Status read_images(const json& file, const FileSource& files, GltfDocument& document) {
     const auto images = file.find("images");
     if (images == file.end())
         return {};
     for (std::size_t i = 0; i < images->size(); ++i) {
-        auto content = image_bytes((*images)[i], document.model, folder);
+        auto content = image_bytes((*images)[i], document.model, files);
         const Status status =
             content ? Status() : Status(Error{"image " + std::to_string(i) + ": " + content.error().message});
         SUNFLECK_TRY(noted_if_unused(status, "images", i, document));
@@ -219,7 +228,8 @@ Status read_images(const json& file, const std::filesystem::path& folder, GltfDo
 
 } // namespace
 
-Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder) {
+Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder,
+                                         const FileAccess& access) {
     if (bytes.empty())
         return Error{"the file is empty"};
     SUNFLECK_ASSIGN(Chunks chunks, split_chunks(std::move(bytes)));
@@ -238,14 +248,10 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
         error = error.substr(0, error.find('\n'));
         return Error{error.empty() ? "it is not valid glTF" : error};
     }
-    SUNFLECK_TRY(read_buffers(file, chunks, folder, document));
-    SUNFLECK_TRY(read_images(file, folder, document));
+    const FileSource files{folder, access};
+    SUNFLECK_TRY(read_buffers(file, chunks, files, document));
+    SUNFLECK_TRY(read_images(file, files, document));
     return document;
-}
-
-Result<GltfDocument> read_gltf_document(const std::filesystem::path& path) {
-    SUNFLECK_ASSIGN(std::string bytes, read_file(path));
-    return parse_gltf_document(std::move(bytes), path.has_parent_path() ? path.parent_path() : ".");
 }
 
 } // namespace sunfleck::io

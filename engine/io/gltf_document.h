@@ -3,10 +3,9 @@
 // glTF file's folder, and images stay encoded.
 #pragma once
 
+#include "engine/io/file_access.h"
 #include "engine/io/gltf_accessor.h"
 #include "engine/io/gltf_references.h"
-
-#include <filesystem>
 
 namespace sunfleck::io {
 
@@ -18,8 +17,8 @@ struct GltfDocument {
     std::vector<std::string> notes; // what is broken, and left out because nothing uses it
 };
 
-Result<GltfDocument> read_gltf_document(const std::filesystem::path& path);
-// From memory; other files may be read from `folder` (empty: none).
-Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder);
+// From memory; other files, relative to `folder`, as far as `access` allows (an empty folder: none).
+Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesystem::path& folder,
+                                         const FileAccess& access);
 
 } // namespace sunfleck::io

@@ -241,14 +241,21 @@ Result<ImportReport> guarded(const std::string& what, const Import& import) {
 
 Result<ImportReport> import_gltf(const fs::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
                                  scene::TextureStore& textures, const ImportOptions& options) {
-    return guarded("'" + path.string() + "'",
-                   [&] { return import_document(read_gltf_document(path), registry, meshes, textures, options); });
+    const fs::path folder = real_folder(path);
+    const FileAccess access{options.root.empty() ? folder : options.root, options.allow_outside, options.content_hash};
+    FileAccess named = access; // the user's choice, unless a scene file names it
+    named.allow_outside = options.root.empty() || options.allow_outside;
+    return guarded("'" + path.string() + "'", [&]() -> Result<ImportReport> {
+        SUNFLECK_ASSIGN(std::string bytes, named.read(path));
+        return import_document(parse_gltf_document(std::move(bytes), folder, access), registry, meshes, textures,
+                               options);
+    });
 }
 
 Result<ImportReport> import_gltf_bytes(std::string bytes, ecs::Registry& registry, scene::MeshStore& meshes,
                                        scene::TextureStore& textures, const ImportOptions& options) {
     return guarded("the file", [&] {
-        return import_document(parse_gltf_document(std::move(bytes), {}), registry, meshes, textures, options);
+        return import_document(parse_gltf_document(std::move(bytes), {}, {}), registry, meshes, textures, options);
     });
 }
 

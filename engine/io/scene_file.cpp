@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
+#include "engine/core/output.h"
 #include "engine/io/gltf_checks.h"
 #include "engine/io/image.h"
 #include "engine/io/scene_components.h"
@@ -50,24 +51,26 @@ Status check_file(const json& file) {
     return {};
 }
 
-Status check_gltf_file(const json& file, const std::filesystem::path& gltf) {
+Status check_gltf_file(const json& file, const std::filesystem::path& gltf, FileAccess access) {
+    SUNFLECK_TRY(access.check(gltf));
     const auto expected = file.find("gltf_checksum");
     if (expected == file.end())
         return {};
-    SUNFLECK_ASSIGN(const std::string bytes, read_file(gltf));
+    access.content_hash = nullptr; // the import reads it
+    SUNFLECK_ASSIGN(const std::string bytes, access.read(gltf));
     if (*expected != checksum_of(bytes))
         return Error{"'" + gltf.filename().string() +
                      "' is damaged, or was changed (then remove the line \"gltf_checksum\")"};
     return {};
 }
 
-Status load_environment_maps(const std::filesystem::path& folder, ecs::Registry& registry) {
+Status load_environment_maps(const std::filesystem::path& folder, const FileAccess& access, ecs::Registry& registry) {
     std::vector<ecs::Entity> entities;
     registry.view<scene::EnvironmentMap>().each(
         [&](ecs::Entity entity, const scene::EnvironmentMap&) { entities.push_back(entity); });
     for (const ecs::Entity entity : entities) {
         const std::string file = registry.get<scene::EnvironmentMap>(entity).file;
-        SUNFLECK_ASSIGN(auto image, load_environment_image(folder / file));
+        SUNFLECK_ASSIGN(auto image, load_environment_image(folder / file, access));
         registry.patch<scene::EnvironmentMap>(entity,
                                               [&](scene::EnvironmentMap& map) { map.image = std::move(image); });
     }
@@ -77,28 +80,33 @@ Status load_environment_maps(const std::filesystem::path& folder, ecs::Registry&
 Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Registry& registry,
                                      scene::MeshStore& meshes, scene::TextureStore& textures,
                                      const ImportOptions& options) {
-    SUNFLECK_ASSIGN(const std::string text, read_file(path, std::size_t(64) << 20));
+    const std::filesystem::path folder = real_folder(path);
+    const FileAccess access{folder, options.allow_outside, options.content_hash};
+    const FileAccess named{{}, true, options.content_hash}; // by the user
+    SUNFLECK_ASSIGN(const std::string text, named.read(path, std::size_t(64) << 20));
     const auto failure = [&](const std::string& why) { return Error{"cannot load '" + path.string() + "': " + why}; };
     if (!nesting_is_sane(text))
         return failure("its JSON is nested too deeply");
     const json file = json::parse(text, nullptr, false);
     if (const Status status = check_file(file); !status)
         return failure(status.error().message);
-    const std::filesystem::path gltf = path.parent_path() / file["gltf"].get<std::string>();
-    if (const Status status = check_gltf_file(file, gltf); !status)
+    const std::filesystem::path gltf = folder / file["gltf"].get<std::string>();
+    if (const Status status = check_gltf_file(file, gltf, access); !status)
         return failure(status.error().message);
     static const json nothing = json::object();
     const json& entities = file.contains("entities") ? file["entities"] : nothing;
     for (const auto& [name, components] : entities.items())
         if (const Status status = check_entity(name, components); !status)
             return failure(status.error().message);
-    auto report = import_gltf(gltf, registry, meshes, textures, options);
+    ImportOptions within = options;
+    within.root = folder;
+    auto report = import_gltf(gltf, registry, meshes, textures, within);
     if (!report)
         return failure(report.error().message);
     for (const auto& [name, components] : entities.items())
         if (const Status status = apply_entity(registry, name, components); !status)
             return failure(status.error().message);
-    if (const Status status = load_environment_maps(path.parent_path(), registry); !status)
+    if (const Status status = load_environment_maps(folder, access, registry); !status)
         return failure(status.error().message);
     const json& settings = file.contains("settings") ? file["settings"] : nothing;
     for (const auto& [name, value] : settings.items())
@@ -115,12 +123,17 @@ Status check_names(ecs::Registry& registry) {
     return {};
 }
 
+// Without its extensions.
+std::string stem_of(const std::filesystem::path& path) {
+    const std::string name = path.filename().string();
+    return name.substr(0, name.find('.'));
+}
+
 // Writes the .glb file beside the scene file at `path` and names it in `file`. Never overwrites the file `previous`
 // that the existing scene file refers to: until the new scene file is written, the old pair must stay valid.
 Status save_geometry(const std::filesystem::path& path, const std::string& previous, ecs::Registry& registry,
                      const scene::MeshStore& meshes, const scene::TextureStore& textures, json& file) {
-    const std::string name = path.filename().string();
-    const std::string stem = name.substr(0, name.find('.'));
+    const std::string stem = stem_of(path);
     file["gltf"] = previous == stem + ".glb" ? stem + ".2.glb" : stem + ".glb";
     const std::filesystem::path gltf = path.parent_path() / file["gltf"].get<std::string>();
     SUNFLECK_TRY(export_gltf(gltf, registry, meshes, textures));
@@ -152,31 +165,39 @@ Result<ImportReport> load_scene(const std::filesystem::path& path, ecs::Registry
     return report;
 }
 
-Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
+Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore& textures, const SaveOptions& options) {
-    const auto failure = [&](const std::string& why) { return Error{"cannot save '" + path.string() + "': " + why}; };
+    const auto failure = [&](const std::string& why) { return Error{"cannot save '" + named.string() + "': " + why}; };
+    SUNFLECK_ASSIGN(const OutputTarget target, find_output(named));
+    const std::filesystem::path path = target.path; // the .glb file lies beside the scene file itself, not its link
     if (const Status status = check_names(registry); !status)
         return failure(status.error().message);
     const std::string previous = named_gltf(path);
     json file = {{"sunfleck_scene", scene_file_version}};
-    if (!options.gltf_reference.empty())
+    if (!options.gltf_reference.empty()) {
+        const std::filesystem::path folder = real_folder(path);
+        if (const Status status = FileAccess{folder}.check(folder / options.gltf_reference); !status)
+            return failure(status.error().message);
         file["gltf"] = options.gltf_reference;
-    else
+    } else {
         SUNFLECK_TRY(save_geometry(path, previous, registry, meshes, textures, file));
+    }
     file["entities"] = entities_json(registry, !options.gltf_reference.empty());
     for (const auto& [setting, value] : options.settings)
         file["settings"][setting] = value;
     file["checksum"] = checksum_of(file.dump());
     SUNFLECK_TRY(write_file(path, file.dump(2) + "\n"));
+    // What an earlier save has written, and nothing that someone else may have.
     std::error_code code;
-    const bool ours = previous == file["gltf"] ? false : previous.ends_with(".glb") && options.gltf_reference.empty();
-    if (ours && previous.find('/') == std::string::npos)
+    const std::string stem = stem_of(path);
+    if (previous != file["gltf"] && (previous == stem + ".glb" || previous == stem + ".2.glb"))
         std::filesystem::remove(path.parent_path() / previous, code);
     return {};
 }
 
-Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path) {
-    SUNFLECK_ASSIGN(const std::string bytes, read_file(path));
+Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path,
+                                                                              const FileAccess& access) {
+    SUNFLECK_ASSIGN(const std::string bytes, access.read(path));
     const auto kind = sniff_picture(bytes);
     auto picture = decode_picture(bytes);
     if (!picture)

@@ -6,19 +6,22 @@
 //       "settings": { "lights": 600 } }
 #pragma once
 
+#include "engine/io/file_access.h"
 #include "engine/io/gltf.h"
 #include "engine/scene/environment_map.h"
 
 namespace sunfleck::io {
 
 // Loads a .gltf, .glb or .scene.json file into an empty registry and brings world transforms and deformed meshes up to
-// date. On failure nothing is added.
+// date. A scene file reaches what lies under its folder once links are resolved, by any spelling; more only with
+// ImportOptions::allow_outside. On failure nothing is added.
 Result<ImportReport> load_scene(const std::filesystem::path& path, ecs::Registry& registry, scene::MeshStore& meshes,
                                 scene::TextureStore& textures, const ImportOptions& options = {});
 
 struct SaveOptions {
-    // A glTF file (relative to the scene file) that holds the geometry and stays unchanged; transforms, materials,
-    // cameras and lights, which may differ from it, go into the scene file. Empty: a .glb file is written.
+    // A glTF file (relative to the scene file, under its folder) that holds the geometry and stays unchanged;
+    // transforms, materials, cameras and lights, which may differ from it, go into the scene file. Empty: a .glb file
+    // is written.
     std::string gltf_reference;
     std::map<std::string, std::string> settings; // lighting settings by name
 };
@@ -30,7 +33,8 @@ Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, co
                   const scene::TextureStore& textures, const SaveOptions& options = {});
 
 // Scene-linear for EXR and HDR; PNG and JPEG are assumed to be sRGB and linearised.
-Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path);
+Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path,
+                                                                              const FileAccess& access = {{}, true});
 
 // JSON schema of scene files, from the descriptions of components.
 std::string scene_file_schema();

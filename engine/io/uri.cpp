@@ -1,7 +1,5 @@
 #include "engine/io/uri.h"
 
-#include "engine/core/file.h"
-
 #include <algorithm>
 #include <array>
 
@@ -26,7 +24,7 @@ Result<std::string> percent_decoded(std::string_view text) {
         }
         const int high = i + 2 < text.size() ? hexadecimal(text[i + 1]) : -1;
         const int low = i + 2 < text.size() ? hexadecimal(text[i + 2]) : -1;
-        if (high < 0 || low < 0 || high + low == 0)
+        if (high < 0 || low < 0)
             return Error{"'" + shortened(text) + "' is not a valid URI"};
         result += char(high * 16 + low);
         i += 2;
@@ -72,28 +70,21 @@ std::string shortened(std::string_view uri) {
     return uri.size() > 80 ? text + "..." : text;
 }
 
-Result<std::string> read_uri(std::string_view uri, const fs::path& folder) {
+Result<std::string> read_uri(std::string_view uri, const fs::path& folder, const FileAccess& access) {
     if (uri.compare(0, 5, "data:") == 0) {
         const std::size_t comma = uri.find(',');
-        if (comma == std::string_view::npos || uri.substr(0, comma).find(";base64") == std::string_view::npos)
-            return Error{"data URI '" + shortened(uri) + "' is not base64"};
-        return base64_decoded(uri.substr(comma + 1));
+        if (comma == std::string_view::npos)
+            return Error{"data URI '" + shortened(uri) + "' has no data"};
+        const bool base64 = uri.substr(0, comma).ends_with(";base64");
+        return base64 ? base64_decoded(uri.substr(comma + 1)) : percent_decoded(uri.substr(comma + 1));
     }
     const std::size_t colon = uri.find(':');
     if (colon != std::string_view::npos && uri.find('/') > colon)
-        return Error{"'" + shortened(uri) + "' is not allowed: only relative paths and data URIs are"};
+        return Error{"'" + shortened(uri) + "' is not allowed: only paths and data URIs are"};
     SUNFLECK_ASSIGN(const std::string name, percent_decoded(uri));
-    if (folder.empty() || name.empty())
+    if (folder.empty() || name.empty() || name.find('\0') != std::string::npos)
         return Error{"'" + shortened(uri) + "' names no readable file"};
-    std::error_code code;
-    const fs::path base = fs::weakly_canonical(folder, code);
-    const fs::path target = code ? fs::path() : fs::weakly_canonical(folder / name, code);
-    if (code)
-        return Error{"'" + shortened(uri) + "' is not a path: " + code.message()};
-    const auto [end, unused] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
-    if (end != base.end() || fs::path(name).is_absolute())
-        return Error{"'" + shortened(uri) + "' is not allowed: it lies outside the folder of the glTF file"};
-    return read_file(target);
+    return access.read(folder / name);
 }
 
 } // namespace sunfleck::io

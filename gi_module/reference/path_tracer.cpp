@@ -181,10 +181,26 @@ void start(Accumulation& accumulation, const ReferenceSettings& settings) {
     accumulation.width = settings.width;
     accumulation.height = settings.height;
     accumulation.sums.assign(pixels * 3, 0.0);
+    accumulation.counts.assign(pixels, 0);
     accumulation.covered.assign(pixels, 0);
 }
 
 } // namespace
+
+// Sample by sample in double precision: the same sums however the samples are split over calls.
+std::uint64_t PathTracer::add_samples(Accumulation& accumulation, std::size_t pixel, std::uint32_t until,
+                                      const shared::CameraRow& camera, const ReferenceSettings& settings) const {
+    const glm::uvec2 place(pixel % settings.width, pixel / settings.width);
+    std::uint64_t rays = 0;
+    for (std::uint32_t& count = accumulation.counts[pixel]; count < until; ++count) {
+        const PixelSample sample = pixel_sample(place, count, camera, settings);
+        for (int c = 0; c < 3; ++c)
+            accumulation.sums[pixel * 3 + std::size_t(c)] += double(sample.value[c]);
+        accumulation.covered[pixel] = sample.covered ? 1 : 0;
+        rays += sample.rays;
+    }
+    return rays;
+}
 
 bool PathTracer::accumulate(Accumulation& accumulation, const scene::CameraView& camera,
                             const ReferenceSettings& settings, std::uint32_t count,
@@ -193,33 +209,25 @@ bool PathTracer::accumulate(Accumulation& accumulation, const scene::CameraView&
     if (accumulation.sums.empty())
         start(accumulation, settings);
     const std::size_t pixels = std::size_t(settings.width) * settings.height;
-    std::vector<double> sums(accumulation.sums);
-    std::vector<std::uint8_t> covered(pixels);
+    const std::uint32_t until = accumulation.samples + count;
     std::atomic<std::uint64_t> rays{0};
     std::atomic<bool> stop{false};
     parallel_for_chunks(pixels, 256, [&](std::size_t begin, std::size_t end) {
         std::uint64_t chunk_rays = 0;
         for (std::size_t i = begin; i < end && !stop; ++i) {
-            const glm::uvec2 pixel(i % settings.width, i / settings.width);
-            // Sample by sample in double precision: the same sums however the samples are split over calls.
-            for (std::uint32_t s = 0; s < count; ++s) {
-                const PixelSample sample = pixel_sample(pixel, accumulation.samples + s, row, settings);
-                for (int c = 0; c < 3; ++c)
-                    sums[i * 3 + std::size_t(c)] += double(sample.value[c]);
-                covered[i] = sample.covered ? 1 : 0;
-                chunk_rays += sample.rays;
-            }
+            if (accumulation.counts[i] >= until)
+                continue;
+            chunk_rays += add_samples(accumulation, i, until, row, settings);
+            if (cancelled && cancelled())
+                stop = true;
         }
         rays += chunk_rays;
-        if (cancelled && cancelled())
-            stop = true;
     });
-    if (stop)
-        return false;
-    accumulation.sums = std::move(sums);
-    accumulation.covered = std::move(covered);
-    accumulation.samples += count;
     accumulation.rays += rays;
+    const std::vector<std::uint32_t>& counts = accumulation.counts;
+    if (stop && *std::min_element(counts.begin(), counts.end()) < until)
+        return false;
+    accumulation.samples = until;
     return true;
 }
 

@@ -27,11 +27,13 @@ struct ReferenceSettings {
 };
 inline constexpr std::uint32_t unlimited_bounces = 0xffffffffu;
 
-// Running sums, so that rendering can stop, be saved, and resume with the same result as without the stop.
+// Running sums, so that rendering can stop, be saved (accumulation_file.h), and resume with the same result as without
+// the stop.
 struct Accumulation {
     std::uint32_t width = 0, height = 0;
-    std::uint32_t samples = 0;         // per pixel
+    std::uint32_t samples = 0;         // that every pixel has
     std::vector<double> sums;          // RGB per pixel, rows from the top
+    std::vector<std::uint32_t> counts; // samples of each pixel: more than `samples` where a stop came in between
     std::vector<std::uint8_t> covered; // 1: the pixel shows a surface other than an AreaLight's
     std::uint64_t rays = 0;
 };
@@ -42,8 +44,9 @@ public:
     // collect_backgrounds.
     PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters, std::vector<Emitter> backgrounds = {});
 
-    // Adds `count` samples to every pixel. The result depends on neither the number of threads nor on how the samples
-    // are split over calls. Returns false, with the accumulation unchanged, if `cancelled` returned true.
+    // Brings every pixel to `count` more samples than `samples`. The result depends on neither the number of threads
+    // nor on how the work is split over calls. Returns false if `cancelled` (called once a pixel, from any thread)
+    // returned true before all was done: some pixels then have more samples than others, and the same call goes on.
     bool accumulate(Accumulation& accumulation, const scene::CameraView& camera, const ReferenceSettings& settings,
                     std::uint32_t count, const std::function<bool()>& cancelled = {}) const;
 
@@ -89,6 +92,9 @@ private:
     bool survives(Path& path) const;
     PixelSample pixel_sample(glm::uvec2 pixel, std::uint32_t sample, const shared::CameraRow& camera,
                              const ReferenceSettings& settings) const;
+    // Returns the number of rays.
+    std::uint64_t add_samples(Accumulation& accumulation, std::size_t pixel, std::uint32_t until,
+                              const shared::CameraRow& camera, const ReferenceSettings& settings) const;
 
     const raytrace::RayScene& rays_;
     std::vector<Emitter> emitters_;        // those that next-event estimation samples
@@ -98,9 +104,5 @@ private:
     std::vector<std::size_t> environment_places_; // in emitters_, or none
     std::unordered_map<ecs::Entity, std::size_t> area_emitters_;
 };
-
-// Saves and loads an accumulation with a hash of its scene and settings. Loading a file with another hash is an error.
-Status save_accumulation(const std::string& path, const Accumulation& accumulation, std::uint64_t hash);
-Result<Accumulation> load_accumulation(const std::string& path, std::uint64_t hash);
 
 } // namespace sunfleck::gi::reference

@@ -16,7 +16,7 @@ demo::DemoSettings small_settings() {
 }
 
 TEST_F(LevelLoaderTest, WhatItHandsOverHasAllItsShadowMaps) {
-    demo::LevelLoader loader(device(), "four_pillars", small_settings(), 160, 90);
+    demo::LevelLoader loader(device(), {"four_pillars"}, small_settings(), 160, 90);
     float last = 0.0f;
     while (!loader.finished()) {
         EXPECT_GE(loader.share(), last);
@@ -32,13 +32,13 @@ TEST_F(LevelLoaderTest, WhatItHandsOverHasAllItsShadowMaps) {
 
 TEST_F(LevelLoaderTest, ItStopsWhereverItIs) {
     for (const auto wait : {0ms, 5ms, 60ms, 250ms}) {
-        demo::LevelLoader loader(device(), "four_pillars", small_settings(), 160, 90);
+        demo::LevelLoader loader(device(), {"four_pillars"}, small_settings(), 160, 90);
         std::this_thread::sleep_for(wait);
     }
 }
 
 TEST_F(LevelLoaderTest, WhatCanNotBeLoadedIsNamed) {
-    demo::LevelLoader loader(device(), "no_such_level", small_settings(), 160, 90);
+    demo::LevelLoader loader(device(), {"no_such_level"}, small_settings(), 160, 90);
     while (!loader.finished())
         std::this_thread::sleep_for(1ms);
     const auto level = loader.take();

@@ -1,4 +1,5 @@
 #include "assets/test_rooms.h"
+#include "gi_module/reference/accumulation_file.h"
 #include "gi_module/reference/bsdf.h"
 #include "gi_module/reference/path_tracer.h"
 
@@ -7,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
+#include <atomic>
 
 namespace sunfleck::gi::reference {
 namespace {
@@ -88,25 +89,36 @@ TEST(Reference, SameBitsForOneAndTwoThreadsAndForAnySplitOfTheWork) {
     ASSERT_TRUE(room.tracer->accumulate(two, room.camera, room.settings, 12));
     ASSERT_TRUE(room.tracer->accumulate(split, room.camera, room.settings, 5));
     const std::string file = testing::TempDir() + "/sunfleck_state";
-    ASSERT_TRUE(save_accumulation(file, split, 42));
-    EXPECT_FALSE(load_accumulation(file, 43));
-    auto resumed = load_accumulation(file, 42);
+    ASSERT_TRUE(SavedAccumulation(file, 42).save(split));
+    EXPECT_FALSE(SavedAccumulation(file, 43).load());
+    auto resumed = SavedAccumulation(file, 42).load();
     ASSERT_TRUE(resumed);
     ASSERT_TRUE(room.tracer->accumulate(*resumed, room.camera, room.settings, 7));
-    std::remove(file.c_str());
+    SavedAccumulation(file, 42).remove();
     EXPECT_EQ(one.sums, two.sums);
     EXPECT_EQ(one.sums, resumed->sums);
     EXPECT_EQ(one.rays, resumed->rays);
 }
 
-TEST(Reference, CancellingChangesNothing) {
+// Wherever it is stopped, all that was traced counts, and goes on to the same bits.
+TEST(Reference, StoppedAnywhereItGoesOnToTheSameBits) {
     const Room room;
-    Accumulation accumulation;
-    ASSERT_TRUE(room.tracer->accumulate(accumulation, room.camera, room.settings, 2));
-    const std::vector<double> before = accumulation.sums;
-    EXPECT_FALSE(room.tracer->accumulate(accumulation, room.camera, room.settings, 50, [] { return true; }));
-    EXPECT_EQ(accumulation.sums, before);
-    EXPECT_EQ(accumulation.samples, 2u);
+    Accumulation whole, stopped;
+    ASSERT_TRUE(room.tracer->accumulate(whole, room.camera, room.settings, 9));
+    ASSERT_TRUE(room.tracer->accumulate(stopped, room.camera, room.settings, 2));
+    const std::uint64_t before = stopped.rays;
+    EXPECT_FALSE(room.tracer->accumulate(stopped, room.camera, room.settings, 7, [] { return true; }));
+    EXPECT_GT(stopped.rays, before) << "what was traced is kept";
+    EXPECT_EQ(stopped.samples, 2u);
+    int stops = 0;
+    for (std::atomic<int> pixels{0}; stops < 1000; ++stops)
+        if (room.tracer->accumulate(stopped, room.camera, room.settings, 7, [&] { return ++pixels % 40 == 0; }))
+            break;
+    EXPECT_GT(stops, 5);
+    EXPECT_EQ(stopped.sums, whole.sums);
+    EXPECT_EQ(stopped.rays, whole.rays);
+    EXPECT_EQ(stopped.counts, whole.counts);
+    EXPECT_EQ(stopped.samples, 9u);
 }
 
 TEST(Reference, DirectAndIndirectAddUpToIrradiance) {

@@ -1,0 +1,19 @@
+// The signals that ask a program to end, as a flag that its work looks at: what is there can be saved first.
+#pragma once
+
+namespace sunfleck {
+
+// From now on SIGINT, SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP only set the flag;
+// SIGINT pressed again ends the program at once. Writes to closed pipes and beyond limits of file size become errors.
+void watch_stop_signals();
+
+// The number of the first signal that came; 0: none.
+int stop_signal();
+inline bool stop_requested() {
+    return stop_signal() != 0;
+}
+
+// "SIGTERM"
+const char* signal_name(int signal);
+
+} // namespace sunfleck

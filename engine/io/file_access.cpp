@@ -1,0 +1,49 @@
+#include "engine/io/file_access.h"
+
+#include "engine/core/hash.h"
+#include "engine/io/uri.h"
+
+#include <algorithm>
+
+namespace sunfleck::io {
+
+namespace fs = std::filesystem;
+
+Status FileAccess::check(const fs::path& path) const {
+    if (root.empty() && !allow_outside)
+        return Error{"'" + shortened(path.string()) + "' names no readable file"};
+    if (allow_outside)
+        return {};
+    std::error_code code;
+    const fs::path base = fs::canonical(root, code);
+    const fs::path target = code ? fs::path() : fs::weakly_canonical(path, code);
+    if (code)
+        return Error{"'" + shortened(path.string()) + "' is not a path: " + code.message()};
+    const auto [end, unused] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
+    if (end != base.end())
+        return Error{"'" + shortened(path.string()) + "' is not allowed: it lies outside the scene's folder '" +
+                     base.string() + "' (--allow-outside, for scenes that you trust)"};
+    return {};
+}
+
+Result<std::string> FileAccess::read(const fs::path& path, std::size_t size_limit) const {
+    SUNFLECK_TRY(check(path));
+    // By the name that was checked: a link that is changed in between leads nowhere else.
+    std::error_code code;
+    const fs::path resolved = fs::weakly_canonical(path, code);
+    SUNFLECK_ASSIGN(std::string bytes, read_file(code ? path : resolved, size_limit));
+    if (content_hash != nullptr) {
+        const std::uint64_t size = bytes.size(); // where one file ends and the next begins
+        *content_hash = hash_bytes(hash_bytes(*content_hash, &size, sizeof size), bytes.data(), bytes.size());
+    }
+    return bytes;
+}
+
+fs::path real_folder(const fs::path& file) {
+    std::error_code code;
+    const fs::path resolved = fs::weakly_canonical(file, code);
+    const fs::path folder = (code ? file : resolved).parent_path();
+    return folder.empty() ? fs::path(".") : folder;
+}
+
+} // namespace sunfleck::io

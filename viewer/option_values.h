@@ -1,0 +1,26 @@
+// What the text of an option stands for, read strictly: the whole text, finite, within a range that the message names.
+#pragma once
+
+#include "engine/core/result.h"
+
+#include <cstdint>
+#include <string>
+
+namespace sunfleck::viewer {
+
+// Decimal numbers without spaces, signs of plus, or anything after them.
+Result<double> real_value(const std::string& text, double minimum, double maximum);
+Result<std::int64_t> whole_value(const std::string& text, std::int64_t minimum, std::int64_t maximum);
+
+struct PictureSize {
+    std::uint32_t width = 0, height = 0;
+};
+inline constexpr std::uint32_t largest_picture_side = 16384;
+// "WIDTHxHEIGHT"
+Result<PictureSize> size_value(const std::string& text);
+
+// "NUMBER 0.5 to 60" and "INT 1 to 60"
+std::string range_text(double minimum, double maximum);
+std::string range_text(std::int64_t minimum, std::int64_t maximum);
+
+} // namespace sunfleck::viewer
