@@ -162,6 +162,7 @@ Status run_headless(const Options& options) {
     apply_preset(settings);
     settings.transfer = options.transfer.value_or(settings.transfer);
     SUNFLECK_ASSIGN(const auto level, Level::load(*device, source_of(options), settings, 2));
+    watch_stop_signals();
     Playback playback(options, settings, std::move(recorded));
     const Status played = playback.run(*level);
     if (!options.record.empty())

@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
         return program.exit(error) == 0 ? flushed(exit_done) : exit_usage;
     }
     translate(text, options);
-    watch_stop_signals();
+    watch_interrupts();
     const Status status = options.headless ? demo::run_headless(options) : demo::run_window(options);
     if (!status)
         log_error(status.error().message);

@@ -46,6 +46,7 @@ public:
     Status run() {
         SUNFLECK_TRY(check_files());
         SUNFLECK_TRY(start());
+        watch_stop_signals();
         const Status played = play();
         const Status finished = finish();
         return played ? finished : played;

@@ -43,7 +43,7 @@ std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
     viewer::add_name(*app, "-o,--output", options->output, "JSON file to write", "FILE");
     app->add_flag("--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
     return [options] {
-        watch_stop_signals();
+        watch_interrupts();
         return exit_status(bench_level(*options), int(gate::Outcome::error));
     };
 }
@@ -83,7 +83,7 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
                       "Of the self-test: builds of the same source with other bytes");
     viewer::add_name(*app, "--folder", self_test->folder, "Of the self-test: for builds and triples", "FOLDER");
     return [options, self_test, is_self_test] {
-        watch_stop_signals();
+        watch_interrupts();
         if (*is_self_test) {
             self_test->level = options->level;
             self_test->looks = options->looks;
@@ -111,7 +111,7 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
                      "Seconds that the program may take for an answer");
     add_level_options(*app, options->level);
     return [options] {
-        watch_stop_signals();
+        watch_interrupts();
         return outcome_status(bench_pictures(*options));
     };
 }

@@ -112,7 +112,7 @@ Command make_render_command(CLI::App& program) {
                      "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev", "FILE");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
-                watch_stop_signals();
+                watch_interrupts();
                 return exit_status(render(*options));
             }};
 }
@@ -140,7 +140,7 @@ Command make_reference_command(CLI::App& program) {
     viewer::add_real(*app, "--save-interval", options->save_interval, 0.05, 86400.0,
                      "Seconds between saves of what is there so far; more where they would take over 2 % of the time");
     return {app, [options] {
-                watch_stop_signals();
+                watch_interrupts();
                 return exit_status(reference(*options));
             }};
 }
@@ -190,7 +190,7 @@ Command make_bench_command(CLI::App& program) {
                     fail({"a SUITE, 'level' or 'compare' is needed (sunfleck bench --help)"});
                     return int(exit_usage);
                 }
-                watch_stop_signals();
+                watch_interrupts();
                 return exit_status(bench(*options));
             }};
 }

@@ -289,6 +289,7 @@ Status reference(const ReferenceOptions& options) {
     SavedAccumulation state(options.output + ".state", picture_key(options, settings, scene));
     Tracing tracing(options, scene, settings, state);
     SUNFLECK_TRY(tracing.resume());
+    watch_stop_signals();
     SUNFLECK_TRY(tracing.run());
     if (const Status status = write_results(options, scene, settings, tracing); !status) {
         const Status saved = tracing.save();

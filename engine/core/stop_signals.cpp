@@ -3,7 +3,7 @@
 #include "engine/core/exit_status.h"
 
 #include <csignal>
-#include <cstdlib>
+#include <initializer_list>
 #include <unistd.h>
 
 namespace sunfleck {
@@ -13,10 +13,17 @@ volatile std::sig_atomic_t first_signal = 0;
 
 // Calls that wait are interrupted: there is no SA_RESTART.
 void note_signal(int signal) {
-    if (signal == SIGINT && first_signal == SIGINT) // pressed again: at once
-        ::_exit(exit_stopped_by(SIGINT));
+    if (signal == first_signal) // pressed again: at once
+        ::_exit(exit_stopped_by(signal));
     if (first_signal == 0)
         first_signal = signal;
+}
+
+void watch(int signal) {
+    struct sigaction action {};
+    action.sa_handler = note_signal;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(signal, &action, nullptr);
 }
 
 bool is_ignored(int signal) {
@@ -26,15 +33,17 @@ bool is_ignored(int signal) {
 
 } // namespace
 
-void watch_stop_signals() {
-    struct sigaction action {};
-    action.sa_handler = note_signal;
-    sigemptyset(&action.sa_mask);
-    for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGXCPU, SIGHUP})
-        if (signal != SIGHUP || !is_ignored(signal))
-            ::sigaction(signal, &action, nullptr);
+void watch_interrupts() {
+    watch(SIGINT);
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
+}
+
+void watch_stop_signals() {
+    watch_interrupts();
+    for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU, SIGHUP})
+        if (signal != SIGHUP || !is_ignored(signal))
+            watch(signal);
 }
 
 int stop_signal() {

@@ -3,8 +3,11 @@
 
 namespace sunfleck {
 
-// From now on SIGINT, SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP only set the flag;
-// SIGINT pressed again ends the program at once. Writes to closed pipes and beyond limits of file size become errors.
+// From now on SIGINT only sets the flag; pressed again, it ends the program at once. Writes to closed pipes and beyond
+// limits of file size become errors.
+void watch_interrupts();
+// The same for SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP: for work that has something to
+// save and looks at the flag often. All else is better ended by them at once, since no file is ever half written.
 void watch_stop_signals();
 
 // The number of the first signal that came; 0: none.
