@@ -203,7 +203,7 @@ public:
 
     Status save() {
         const Stopwatch watch;
-        const Status status = state_.save(accumulation_);
+        Status status = state_.save(accumulation_);
         clock_.saved(watch.seconds());
         return status;
     }

@@ -270,7 +270,7 @@ TEST_F(RobustFiles, KilledWritersLeaveOldOrNew) {
             for (char letter = 'b';; letter = letter == 'z' ? 'b' : char(letter + 1))
                 if (!write_file(at("a"), std::string(60'000, letter)))
                     ::_exit(1);
-        ::usleep(useconds_t(pcg_hash(std::uint32_t(attempt)) % 6000));
+        ::usleep(useconds_t(pcg_hash(std::uint32_t(attempt)) % 20000));
         ::kill(child, SIGKILL);
         int status = 0;
         ::waitpid(child, &status, 0);
