@@ -52,7 +52,7 @@ std::vector<LightComposer::Part> LightComposer::parts_of(const LightPlan& plan, 
 
 Status LightComposer::add_part(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> all,
                                const Part& part, Services& services, LightTarget& target) {
-    std::vector<PixelLight> contributors;
+    std::vector<PixelLighting> contributors;
     LowResolutionFrame frame{target.g_buffer, target.camera, target.irradiance, services.input.serial,
                              services.input.completed_serial};
     frame.every_pixel = target.view != nullptr && target.view->every_pixel;

@@ -116,7 +116,7 @@ Result<const gpu::Pipeline*> LowResolution::pipeline(const char* shader, std::ve
     return pipelines_.compute(description);
 }
 
-Status LowResolution::light_stage(PixelStage stage, std::span<const PixelLight> contributors) const {
+Status LowResolution::light_stage(PixelStage stage, std::span<const PixelLighting> contributors) {
     for (std::size_t i = 0; i < contributors.size(); ++i) {
         stage.first = i == 0;
         stage.last = i + 1 == contributors.size();
@@ -126,7 +126,7 @@ Status LowResolution::light_stage(PixelStage stage, std::span<const PixelLight> 
 }
 
 Status LowResolution::add_passes(gpu::FrameGraph& graph, const LowResolutionSettings& settings,
-                                 const LowResolutionFrame& frame, std::span<const PixelLight> contributors,
+                                 const LowResolutionFrame& frame, std::span<const PixelLighting> contributors,
                                  gpu::FrameResources& resources) {
     const shared::LowResolutionConstants constants = make_constants(settings, frame);
     SUNFLECK_TRY(make_buffers(constants, resources));
@@ -138,8 +138,8 @@ Status LowResolution::add_passes(gpu::FrameGraph& graph, const LowResolutionSett
                                 picture_bytes <= device_.traits().max_storage_range;
     SUNFLECK_TRY(make_buffer(picture_, "reconstructed picture", through_buffer ? picture_bytes : 8,
                              VK_BUFFER_USAGE_TRANSFER_SRC_BIT, resources));
-    PixelStage stage{graph,         frame.g_buffer, frame.camera, constants, false,       true,        true,
-                     !reconstructs, pixels_,        sums_,        commands_, cell_masks_, frame.output};
+    PixelStage stage{*this, graph,         frame.g_buffer, frame.camera, constants, false,       true,
+                     true,  !reconstructs, pixels_,        sums_,        commands_, cell_masks_, frame.output};
     SUNFLECK_TRY(light_stage(stage, contributors));
     if (!reconstructs) {
         low_pixels_ = repaired_ = not_repaired_ = 0;

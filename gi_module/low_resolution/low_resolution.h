@@ -20,8 +20,11 @@
 
 namespace sunfleck::gi {
 
+class LowResolution;
+
 // What a contributor lights in a stage: the pixels of groups (low_resolution_shared.h).
 struct PixelStage {
+    LowResolution& low_resolution;
     gpu::FrameGraph& graph;
     const GBufferInput& g_buffer;
     const gpu::UploadSlice& camera; // a CameraRow
@@ -41,7 +44,7 @@ struct PixelStage {
     // (command_packed).
     void dispatch(gpu::ComputePass& pass, std::uint32_t command) const;
 };
-using PixelLight = std::function<Status(const PixelStage& stage)>;
+using PixelLighting = std::function<Status(const PixelStage& stage)>;
 
 struct LowResolutionFrame {
     const GBufferInput& g_buffer;
@@ -59,7 +62,7 @@ public:
     ~LowResolution();
 
     Status add_passes(gpu::FrameGraph& graph, const LowResolutionSettings& settings, const LowResolutionFrame& frame,
-                      std::span<const PixelLight> contributors, gpu::FrameResources& resources);
+                      std::span<const PixelLighting> contributors, gpu::FrameResources& resources);
 
     // For contributors without a kernel of their own for it: lists the stage's pixels and clears their sums; writes the
     // sums to the output.
@@ -80,7 +83,7 @@ private:
     Status make_buffer(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, VkBufferUsageFlags usage,
                        gpu::FrameResources& resources, VkFormat texel_format = VK_FORMAT_UNDEFINED);
     Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<std::uint32_t> specialization);
-    Status light_stage(PixelStage stage, std::span<const PixelLight> contributors) const;
+    Status light_stage(PixelStage stage, std::span<const PixelLighting> contributors);
     Status add_reconstruction(const PixelStage& stage, bool through_buffer);
     Status add_compaction(const PixelStage& stage);
     Status add_counters(const PixelStage& stage, const LowResolutionFrame& frame);

@@ -1,0 +1,94 @@
+#include "gi_module/light_sampling/reflective_shadow_map.h"
+
+#include "engine/core/jobs.h"
+#include "gi_module/light_sampling/light_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::gi {
+namespace {
+
+constexpr float least_cosine = 0.05f; // of incidence, for the area that a texel shows
+
+// Of the R2 sequence (M. Roberts): places on area lights and the sky's disc, which texels of a map share evenly.
+vec2 spread_place(std::uint32_t index) {
+    const double x = 0.5 + 0.7548776662466927 * index, y = 0.5 + 0.5698402909980532 * index;
+    return {float(x - std::floor(x)), float(y - std::floor(y))};
+}
+
+EmittedRay ray_of(const Emitter& emitter, std::uint32_t x, std::uint32_t y, std::uint32_t side) {
+    const vec2 texel((float(x) + 0.5f) / float(side), (float(y) + 0.5f) / float(side));
+    const vec2 spread = spread_place(y * side + x);
+    const bool parallel = emitter.kind == EmitterKind::directional;
+    const vec2 place = parallel ? texel : spread, direction = parallel ? spread : texel;
+    const float numbers[4] = {place.x, place.y, direction.x, direction.y};
+    return sample_emitter_ray(emitter, numbers);
+}
+
+// Area that a texel would show of a facing surface, m2.
+float facing_area(const Emitter& emitter, float distance, std::uint32_t texels) {
+    float all = 4.0f * pi * distance * distance;
+    if (emitter.kind == EmitterKind::directional)
+        all = pi * emitter.scene_radius * emitter.scene_radius;
+    else if (emitter.kind == EmitterKind::spot)
+        all *= 0.5f * (1.0f - emitter.outer_cosine);
+    else if (emitter.kind != EmitterKind::point && emitter.kind != EmitterKind::environment)
+        all = std::max(0.5f * all, 0.0f) + emitter.area;
+    return all / float(texels);
+}
+
+struct Tracer {
+    const Emitter& emitter;
+    const MapSurfaces& surfaces;
+    const raytrace::RayScene& rays;
+    const ecs::Registry& registry;
+    std::uint32_t side;
+
+    ReflectiveTexel texel(std::uint32_t x, std::uint32_t y) const {
+        ReflectiveTexel texel;
+        const EmittedRay emitted = ray_of(emitter, x, y, side);
+        const float offset = emitted.normal == vec3(0.0f) ? 0.0f : rays.ray_offset_anywhere();
+        const raytrace::Ray ray{emitted.origin + offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
+        const auto hit = rays.closest_hit(ray);
+        if (!hit)
+            return texel;
+        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        texel.on_mover = !scene::is_static(registry, point.entity);
+        if (point.entity == emitter.entity || !(texel.on_mover ? surfaces.movers : surfaces.fixed))
+            return texel;
+        const float lit_side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
+        texel.lit = true;
+        texel.position =
+            offset_from_surface(point.position, lit_side * point.geometric_normal, rays, raytrace::Scope::everything);
+        texel.normal = lit_side * point.shading_normal;
+        const float cosine = std::clamp(-glm::dot(texel.normal, ray.direction), 0.0f, 1.0f);
+        texel.mirror = glm::normalize(ray.direction + 2.0f * cosine * texel.normal);
+        const LobeReflectance lobes = lobe_reflectance(point.material, cosine);
+        const std::uint32_t texels = side * side;
+        const vec3 arriving = emitter.flux * emitted.weight * emitted.tint / float(texels);
+        texel.diffuse = arriving * lobes.diffuse;
+        texel.glossy = arriving * lobes.glossy;
+        texel.exponent = lobes.exponent;
+        texel.area = facing_area(emitter, hit->distance, texels) / std::max(cosine, least_cosine);
+        return texel;
+    }
+};
+
+} // namespace
+
+ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t side, const MapSurfaces& surfaces,
+                                         const raytrace::RayScene& rays, const ecs::Registry& registry) {
+    ReflectiveShadowMap map;
+    map.side = side;
+    map.texels.resize(std::size_t(side) * side);
+    const Tracer tracer{emitter, surfaces, rays, registry, side};
+    parallel_for_chunks(side, 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (std::uint32_t x = 0; x < side; ++x)
+                map.texels[y * side + x] = tracer.texel(x, std::uint32_t(y));
+    });
+    return map;
+}
+
+} // namespace sunfleck::gi

@@ -1,0 +1,44 @@
+// What a light sees of the scene and how that reflects its light: a reflective shadow map (C. Dachsbacher and M.
+// Stamminger, "Reflective Shadow Maps", I3D 2005), made by rays. Each texel stands for the same part of what the
+// emitter emits, but for its weight: equal solid angles of a point light or a spot's cone, equal areas of a sun's disc.
+// Of area lights and the sky, texels are directions, each from a place of its own.
+#pragma once
+
+#include "engine/raytrace/ray_scene.h"
+#include "gi_module/light_sampling/emitters.h"
+#include "gi_module/transport/pixel_light.h"
+
+namespace sunfleck::gi {
+
+struct ReflectiveTexel {
+    vec3 position{0.0f};
+    vec3 normal{0.0f};  // shading normal, on the lit side
+    vec3 mirror{0.0f};  // direction of mirror reflection
+    vec3 diffuse{0.0f}; // reflected flux, W
+    vec3 glossy{0.0f};  // of it, in a lobe about `mirror`
+    float exponent = 1.0f;
+    float area = 0.0f; // of the surface that the texel shows, m2
+    bool lit = false;  // there is a surface
+    bool on_mover = false;
+};
+
+struct ReflectiveShadowMap {
+    std::uint32_t side = 0;
+    std::vector<ReflectiveTexel> texels; // row after row
+
+    const ReflectiveTexel& at(vec2 place) const {
+        const auto index = [&](float x) { return std::min(std::uint32_t(x * float(side)), side - 1); };
+        return texels[std::size_t(index(place.y)) * side + index(place.x)];
+    }
+};
+
+// Which surfaces a map shows. None of them are the emitter's own.
+struct MapSurfaces {
+    bool fixed = true, movers = true;
+};
+
+// A pure function of emitter and scene. `side`: a power of two. `is_mover`: by entity.
+ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t side, const MapSurfaces& surfaces,
+                                         const raytrace::RayScene& rays, const ecs::Registry& registry);
+
+} // namespace sunfleck::gi
