@@ -35,11 +35,28 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr; // the program keeps its own settings
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard | ImGuiConfigFlags_NavEnableGamepad;
-    const std::pair<ImGuiKey, Key> keys[] = {
-        {ImGuiKey_Tab, key_tab},     {ImGuiKey_LeftArrow, key_left}, {ImGuiKey_RightArrow, key_right},
-        {ImGuiKey_UpArrow, key_up},  {ImGuiKey_DownArrow, key_down}, {ImGuiKey_Space, key_space},
-        {ImGuiKey_Enter, key_enter}, {ImGuiKey_Escape, key_escape},  {ImGuiKey_Backspace, 259},
-        {ImGuiKey_Delete, 261},      {ImGuiKey_Home, 268},           {ImGuiKey_End, 269}};
+    const std::pair<ImGuiKey, Key> keys[] = {{ImGuiKey_Tab, key_tab},
+                                             {ImGuiKey_LeftArrow, key_left},
+                                             {ImGuiKey_RightArrow, key_right},
+                                             {ImGuiKey_UpArrow, key_up},
+                                             {ImGuiKey_DownArrow, key_down},
+                                             {ImGuiKey_Space, key_space},
+                                             {ImGuiKey_Enter, key_enter},
+                                             {ImGuiKey_Escape, key_escape},
+                                             {ImGuiKey_Backspace, 259},
+                                             {ImGuiKey_Delete, 261},
+                                             {ImGuiKey_Home, 268},
+                                             {ImGuiKey_End, 269},
+                                             {ImGuiKey_PageUp, 266},
+                                             {ImGuiKey_PageDown, 267},
+                                             {ImGuiKey_Insert, 260},
+                                             {ImGuiKey_KeyPadEnter, 335},
+                                             {ImGuiKey_A, 'A'},
+                                             {ImGuiKey_C, 'C'},
+                                             {ImGuiKey_V, 'V'},
+                                             {ImGuiKey_X, 'X'},
+                                             {ImGuiKey_Y, 'Y'},
+                                             {ImGuiKey_Z, 'Z'}};
     for (const auto& [meaning, key] : keys)
         io.KeyMap[meaning] = key;
     SUNFLECK_TRY(gui->make_atlas(device));
@@ -101,8 +118,27 @@ void Gui::make_style(float scale) {
         bright;
     style.Colors[ImGuiCol_Header] = style.Colors[ImGuiCol_TabActive] = amber;
     style.Colors[ImGuiCol_NavHighlight] = bright;
+    if (change_style_)
+        change_style_(style);
     style.ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale / atlas_scale;
+}
+
+void Gui::set_style(std::function<void(ImGuiStyle&)> change) {
+    change_style_ = std::move(change);
+    scale_ = 0.0f; // made again at the next frame
+}
+
+void Gui::use_window(Window& window) {
+    window_ = &window;
+    ImGuiIO& io = ImGui::GetIO();
+    io.ClipboardUserData = this;
+    io.SetClipboardTextFn = [](void* gui, const char* text) { static_cast<Gui*>(gui)->window_->set_clipboard(text); };
+    io.GetClipboardTextFn = [](void* gui) {
+        Gui& self = *static_cast<Gui*>(gui);
+        self.pasted_ = self.window_->clipboard();
+        return self.pasted_.c_str();
+    };
 }
 
 void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_t height, double seconds, float scale) {
@@ -119,9 +155,11 @@ void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_
     for (const std::uint32_t letter : input.text)
         io.AddInputCharacter(letter);
     for (Key key = 0; key < first_mouse_button; ++key)
-        io.KeysDown[key] = !input.captured && seen(key) && key != key_escape; // the menu handles escape itself
-    io.KeyCtrl = input.down(key_left_control);
-    io.KeyShift = input.down(key_left_shift);
+        // Without a window of its own, the menu handles escape itself.
+        io.KeysDown[key] = !input.captured && seen(key) && (key != key_escape || window_ != nullptr);
+    io.KeyCtrl = input.down(key_left_control) || input.down(345);
+    io.KeyShift = input.down(key_left_shift) || input.down(344);
+    io.KeyAlt = input.down(342) || input.down(346);
     std::memset(io.NavInputs, 0, sizeof io.NavInputs);
     if (!input.captured) {
         io.NavInputs[ImGuiNavInput_Activate] = input.gamepad.pressed(0) || seen(key_enter);
@@ -136,6 +174,20 @@ void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_
 
 void Gui::end_frame() {
     ImGui::Render();
+    if (window_ == nullptr)
+        return;
+    switch (ImGui::GetMouseCursor()) {
+    case ImGuiMouseCursor_TextInput:
+        return window_->set_pointer(Pointer::text);
+    case ImGuiMouseCursor_Hand:
+        return window_->set_pointer(Pointer::hand);
+    case ImGuiMouseCursor_ResizeEW:
+        return window_->set_pointer(Pointer::horizontal);
+    case ImGuiMouseCursor_ResizeNS:
+        return window_->set_pointer(Pointer::vertical);
+    default:
+        return window_->set_pointer(Pointer::arrow);
+    }
 }
 
 struct Gui::Draw {

@@ -4,6 +4,7 @@
 #include "engine/app/window.h"
 #include "engine/gpu/pipeline.h"
 
+#include <functional>
 #include <imgui.h>
 
 namespace sunfleck::app {
@@ -26,6 +27,11 @@ public:
     // Draws the frame over `target`, which has the size given to begin_frame. Call after end_frame.
     Status add_pass(gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources);
 
+    // Clipboard and pointer shapes of this window, which must outlive the GUI; and Escape goes to the GUI.
+    void use_window(Window& window);
+    // Changes the style at scale 1, for programs other than games.
+    void set_style(std::function<void(ImGuiStyle&)> change);
+
     bool wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
 
 private:
@@ -41,6 +47,9 @@ private:
     std::uint32_t atlas_width_ = 0, atlas_height_ = 0;
     const gpu::Pipeline* pipeline_ = nullptr;
     float scale_ = 0.0f;
+    Window* window_ = nullptr;
+    std::string pasted_; // what ImGui reads from the clipboard
+    std::function<void(ImGuiStyle&)> change_style_;
 };
 
 } // namespace sunfleck::app

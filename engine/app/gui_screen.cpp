@@ -40,7 +40,36 @@ Status GuiScreen::make_picture() {
     return {};
 }
 
-Status GuiScreen::record(VkCommandBuffer commands) {
+void GuiScreen::add_backdrop(const Backdrop& backdrop, gpu::ResourceId target) {
+    const gpu::ResourceId source = graph_->import_image(*backdrop.image);
+    graph_->add_pass("backdrop")
+        .read(source, gpu::Usage::blit_source)
+        .write(target, gpu::Usage::blit_destination)
+        .execute([this, backdrop](gpu::PassContext& context) -> Status {
+            const gpu::ImageDescription& from = backdrop.image->description();
+            const VkExtent2D all = swapchain_.extent();
+            const VkRect2D& to = backdrop.place;
+            if (to.extent.width == 0 || to.extent.height == 0 || to.offset.x < 0 || to.offset.y < 0 ||
+                std::uint32_t(to.offset.x) + to.extent.width > all.width ||
+                std::uint32_t(to.offset.y) + to.extent.height > all.height)
+                return {};
+            VkImageBlit region{};
+            region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            region.srcOffsets[1] = {int(from.width), int(from.height), 1};
+            region.dstOffsets[0] = {to.offset.x, to.offset.y, 0};
+            region.dstOffsets[1] = {to.offset.x + int(to.extent.width), to.offset.y + int(to.extent.height), 1};
+            context.device.vk.vkCmdBlitImage(context.commands, backdrop.image->handle(),
+                                             VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture_.handle(),
+                                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+            return {};
+        });
+}
+
+Status GuiScreen::wait() {
+    return submission_->serial() > 1 ? submission_->wait(submission_->serial() - 1) : Status();
+}
+
+Status GuiScreen::record(VkCommandBuffer commands, std::span<const Backdrop> behind) {
     graph_->reset();
     const gpu::ResourceId target = graph_->import_image(picture_);
     graph_->add_pass("clear")
@@ -51,6 +80,8 @@ Status GuiScreen::record(VkCommandBuffer commands) {
                                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &dark, 1, &all);
             return {};
         });
+    for (const Backdrop& backdrop : behind)
+        add_backdrop(backdrop, target);
     SUNFLECK_TRY(gui_->add_pass(*graph_, target, *resources_));
     graph_->add_pass("hand over").read(target, gpu::Usage::transfer_source).keep();
     SUNFLECK_TRY(graph_->compile());
@@ -58,12 +89,12 @@ Status GuiScreen::record(VkCommandBuffer commands) {
     return swapchain_.record_blit(commands, *resources_, picture_);
 }
 
-Status GuiScreen::present() {
+Status GuiScreen::present(std::span<const Backdrop> behind) {
     SUNFLECK_ASSIGN(const VkCommandBuffer commands, submission_->begin());
     SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
     resources_->begin_frame(submission_->serial(), completed);
     SUNFLECK_TRY(make_picture());
-    SUNFLECK_TRY(record(commands));
+    SUNFLECK_TRY(record(commands, behind));
     SUNFLECK_TRY(submission_->submit(&swapchain_.semaphores()));
     return swapchain_.present();
 }

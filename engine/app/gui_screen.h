@@ -1,11 +1,17 @@
-// Draws only the GUI on a dark background, for loading screens. Has its own submission, so that another thread may use
-// the device meanwhile.
+// Draws only the GUI on a dark background, or over finished pictures: for loading screens and editors. Has its own
+// submission, so that another thread may use the device meanwhile.
 #pragma once
 
 #include "engine/app/gui.h"
 #include "engine/gpu/submission.h"
 
 namespace sunfleck::app {
+
+// A picture behind the GUI, in its transfer-source state, and where it goes, in pixels.
+struct Backdrop {
+    const gpu::Image* image = nullptr;
+    VkRect2D place{};
+};
 
 class GuiScreen {
 public:
@@ -17,13 +23,17 @@ public:
     Gui& gui() { return *gui_; }
     // Pass this serial when acquiring the swapchain's image.
     std::uint64_t serial() const { return submission_->serial(); }
-    // Renders the GUI's current frame to the swapchain's acquired image and presents it.
-    Status present();
+    // Renders the GUI's current frame to the swapchain's acquired image and presents it. The images are read on the
+    // device's queue until wait().
+    Status present(std::span<const Backdrop> behind = {});
+    // Until the GPU has finished what was presented.
+    Status wait();
 
 private:
     GuiScreen(gpu::Device& device, Swapchain& swapchain) : device_(device), swapchain_(swapchain) {}
     Status make_picture();
-    Status record(VkCommandBuffer commands);
+    Status record(VkCommandBuffer commands, std::span<const Backdrop> behind);
+    void add_backdrop(const Backdrop& backdrop, gpu::ResourceId target);
 
     gpu::Device& device_;
     Swapchain& swapchain_;

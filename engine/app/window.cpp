@@ -83,44 +83,85 @@ bool InputState::hit(Key key) const {
 
 // Callbacks of the window system.
 struct WindowEvents {
-    static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
-    static void set(Window& window, Key key, bool down) {
-        if (key < 0 || key >= key_count)
-            return;
-        window.pending_.keys[std::size_t(key)] = down;
-        if (down)
-            window.pending_.went_down.push_back(key);
+    using Kind = Window::Event::Kind;
+    static void add(GLFWwindow* handle, Window::Event event) {
+        static_cast<Window*>(glfwGetWindowUserPointer(handle))->events_.push_back(std::move(event));
     }
     static void key(GLFWwindow* handle, int key, int, int action, int) {
         if (action != GLFW_REPEAT)
-            set(of(handle), key, action == GLFW_PRESS);
+            add(handle, {Kind::key, key, action == GLFW_PRESS});
     }
-    static void letter(GLFWwindow* handle, unsigned int code) { of(handle).pending_.text.push_back(code); }
+    static void letter(GLFWwindow* handle, unsigned int code) { add(handle, {Kind::letter, int(code)}); }
     static void button(GLFWwindow* handle, int button, int action, int) {
-        set(of(handle), first_mouse_button + button, action == GLFW_PRESS);
-        if (button < 3)
-            of(handle).pending_.mouse_buttons[std::size_t(button)] = action == GLFW_PRESS;
+        add(handle, {Kind::button, button, action == GLFW_PRESS});
     }
-    static void pointer(GLFWwindow* handle, double x, double y) {
-        Window& window = of(handle);
-        const vec2 place{float(x), float(y)};
-        if (window.pending_.captured && !window.skip_motion_)
-            window.pending_.mouse_motion += place - window.last_mouse_;
-        window.skip_motion_ = false;
-        window.last_mouse_ = place;
-        window.pending_.mouse = place;
-    }
-    static void scroll(GLFWwindow* handle, double, double y) { of(handle).pending_.scroll += float(y); }
-    static void focus(GLFWwindow* handle, int focused) {
-        Window& window = of(handle);
-        window.pending_.focused = focused == GLFW_TRUE;
-        window.skip_motion_ = true;
-        if (!focused) { // key releases outside the window are not reported
-            window.pending_.keys.fill(false);
-            window.pending_.mouse_buttons.fill(false);
-        }
+    static void pointer(GLFWwindow* handle, double x, double y) { add(handle, {Kind::pointer, 0, false, x, y}); }
+    static void scroll(GLFWwindow* handle, double x, double y) { add(handle, {Kind::scroll, 0, false, x, y}); }
+    static void focus(GLFWwindow* handle, int focused) { add(handle, {Kind::focus, 0, focused == GLFW_TRUE}); }
+    static void drop(GLFWwindow* handle, int count, const char** paths) {
+        add(handle, {Kind::drop, 0, false, 0.0, 0.0, {paths, paths + count}});
     }
 };
+
+void Window::move_pointer(vec2 place) {
+    if (pending_.captured && !skip_motion_)
+        pending_.mouse_motion += place - last_mouse_;
+    skip_motion_ = false;
+    last_mouse_ = place;
+    pending_.mouse = place;
+}
+
+void Window::change_focus(bool focused) {
+    pending_.focused = focused;
+    skip_motion_ = true;
+    if (!focused) { // key releases outside the window are not reported
+        pending_.keys.fill(false);
+        pending_.mouse_buttons.fill(false);
+    }
+}
+
+void Window::take(const Event& event) {
+    const auto set = [&](Key key) {
+        if (key < 0 || key >= key_count)
+            return;
+        pending_.keys[std::size_t(key)] = event.down;
+        if (event.down)
+            pending_.went_down.push_back(key);
+    };
+    switch (event.kind) {
+    case Event::Kind::key:
+        return set(event.code);
+    case Event::Kind::letter:
+        return pending_.text.push_back(std::uint32_t(event.code));
+    case Event::Kind::button:
+        set(first_mouse_button + event.code);
+        if (event.code < 3)
+            pending_.mouse_buttons[std::size_t(event.code)] = event.down;
+        return;
+    case Event::Kind::pointer:
+        return move_pointer({float(event.x), float(event.y)});
+    case Event::Kind::scroll:
+        pending_.scroll += float(event.y);
+        return;
+    case Event::Kind::focus:
+        return change_focus(event.down);
+    case Event::Kind::drop:
+        pending_.dropped.insert(pending_.dropped.end(), event.files.begin(), event.files.end());
+        return;
+    }
+}
+
+void Window::take_events() {
+    bool changed = false;
+    while (!events_.empty()) {
+        const Event::Kind kind = events_.front().kind;
+        if (one_by_one_ && changed && kind != Event::Kind::letter && kind != Event::Kind::focus)
+            return;
+        changed = changed || kind == Event::Kind::key || kind == Event::Kind::button;
+        take(events_.front());
+        events_.pop_front();
+    }
+}
 
 Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::uint32_t width, std::uint32_t height) {
     if (!glfwInit())
@@ -141,11 +182,15 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
     glfwSetCursorPosCallback(handle, WindowEvents::pointer);
     glfwSetScrollCallback(handle, WindowEvents::scroll);
     glfwSetWindowFocusCallback(handle, WindowEvents::focus);
+    glfwSetDropCallback(handle, WindowEvents::drop);
     window->pending_.focused = true; // without a window manager, no focus event arrives
     return window;
 }
 
 Window::~Window() {
+    for (GLFWcursor* shape : pointers_)
+        if (shape != nullptr)
+            glfwDestroyCursor(shape);
     if (handle_ != nullptr)
         glfwDestroyWindow(handle_);
     glfwTerminate();
@@ -160,8 +205,10 @@ std::vector<const char*> Window::instance_extensions() const {
 const InputState& Window::poll() {
     glfwPollEvents();
     read_gamepad();
+    take_events();
     input_ = pending_;
     pending_.went_down.clear();
+    pending_.dropped.clear();
     pending_.text.clear();
     pending_.mouse_motion = vec2(0.0f);
     pending_.scroll = 0.0f;
@@ -192,6 +239,41 @@ void Window::wait(double seconds) {
     glfwWaitEventsTimeout(seconds);
 }
 
+void Window::wait() {
+    glfwWaitEvents();
+}
+
+void Window::wake() {
+    glfwPostEmptyEvent();
+}
+
+std::string Window::clipboard() const {
+    const char* text = glfwGetClipboardString(handle_);
+    return text != nullptr ? text : "";
+}
+
+void Window::set_clipboard(const std::string& text) {
+    glfwSetClipboardString(handle_, text.c_str());
+}
+
+void Window::set_pointer(Pointer pointer) {
+    if (pointer == pointer_)
+        return;
+    pointer_ = pointer;
+    constexpr int shapes[] = {GLFW_ARROW_CURSOR,   GLFW_IBEAM_CURSOR,   GLFW_HAND_CURSOR,
+                              GLFW_HRESIZE_CURSOR, GLFW_VRESIZE_CURSOR, GLFW_CROSSHAIR_CURSOR};
+    GLFWcursor*& shape = pointers_[std::size_t(pointer)];
+    if (shape == nullptr)
+        shape = glfwCreateStandardCursor(shapes[std::size_t(pointer)]);
+    glfwSetCursor(handle_, shape);
+}
+
+float Window::scale() const {
+    float x = 1.0f, y = 1.0f;
+    glfwGetWindowContentScale(handle_, &x, &y);
+    return std::max(x, 1.0f);
+}
+
 void Window::capture_pointer(bool capture) {
     if (capture == pending_.captured)
         return;
@@ -207,6 +289,9 @@ bool Window::should_close() const {
 }
 void Window::close() {
     glfwSetWindowShouldClose(handle_, GLFW_TRUE);
+}
+void Window::keep_open() {
+    glfwSetWindowShouldClose(handle_, GLFW_FALSE);
 }
 void Window::set_title(const std::string& title) {
     glfwSetWindowTitle(handle_, title.c_str());

@@ -6,11 +6,14 @@
 #include "engine/gpu/submission.h"
 
 #include <array>
+#include <deque>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 struct GLFWwindow;
+struct GLFWcursor;
 
 namespace sunfleck::app {
 
@@ -42,6 +45,7 @@ struct InputState {
     vec2 mouse_motion{0.0f}; // since the last poll, while captured
     std::array<bool, 3> mouse_buttons{};
     float scroll = 0.0f;
+    std::vector<std::filesystem::path> dropped; // files dropped on the window since the last poll
     bool focused = true;
     bool captured = false; // the pointer is hidden and controls the view
     Gamepad gamepad;
@@ -49,6 +53,8 @@ struct InputState {
     bool down(Key key) const { return key >= 0 && key < key_count && keys[std::size_t(key)]; }
     bool hit(Key key) const;
 };
+
+enum class Pointer { arrow, text, hand, horizontal, vertical, cross };
 
 class Window {
 public:
@@ -63,11 +69,27 @@ public:
     // Handles pending events. All keys count as released while the window is not focused.
     const InputState& poll();
     const InputState& input() const { return input_; }
+    // One thing after the other: from now on a poll ends before the next key, button or movement once a key or button
+    // changed, so that a click between two frames is seen where it happened. The rest comes with the next poll.
+    void one_by_one(bool on) { one_by_one_ = on; }
+    // Whether events are left for the next poll.
+    bool has_more() const { return !events_.empty(); }
     // Sleeps until an event arrives, at most this long; for minimised windows.
     void wait(double seconds);
+    // Sleeps until an event arrives or another thread calls wake.
+    void wait();
+    // From any thread, while the window exists.
+    static void wake();
+    std::string clipboard() const;
+    void set_clipboard(const std::string& text);
+    void set_pointer(Pointer pointer);
+    // Of text on the window's monitor: 1, or more on screens of high density.
+    float scale() const;
     void capture_pointer(bool capture);
     bool should_close() const;
     void close();
+    // Takes back a request to close.
+    void keep_open();
     void set_title(const std::string& title);
     // On the monitor that shows most of the window.
     void set_full_screen(bool full_screen);
@@ -79,8 +101,23 @@ public:
 private:
     friend struct WindowEvents;
     Window() = default;
+    struct Event {
+        enum class Kind { key, letter, button, pointer, scroll, focus, drop } kind;
+        int code = 0;
+        bool down = false;
+        double x = 0.0, y = 0.0;
+        std::vector<std::filesystem::path> files{};
+    };
+    void take(const Event& event);
+    void take_events();
+    void move_pointer(vec2 place);
+    void change_focus(bool focused);
     void read_gamepad();
     GLFWwindow* handle_ = nullptr;
+    std::array<GLFWcursor*, 6> pointers_{}; // by Pointer, made when first shown
+    Pointer pointer_ = Pointer::arrow;
+    std::deque<Event> events_;
+    bool one_by_one_ = false;
     int windowed_[4] = {};
     InputState input_, pending_;
     vec2 last_mouse_{0.0f};

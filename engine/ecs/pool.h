@@ -5,13 +5,24 @@
 
 #include <algorithm>
 #include <cassert>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace sunfleck::ecs {
 
 class Registry;
+
+// A component's value apart from any pool, of the type that its pool knows; null: no such component.
+using Value = std::shared_ptr<const void>;
+
+// A component that others are computed from anew: copies of a world and histories of edits leave it out.
+template <typename T>
+concept Derived = requires {
+    requires T::derived;
+};
 
 struct Removal {
     Entity entity;
@@ -82,6 +93,17 @@ public:
     virtual const void* address(std::size_t position) const = 0;
     virtual void* emplace_default(Entity entity, Tick tick) = 0;
 
+    // For histories and copies of a world, which handle components without knowing their types.
+    virtual bool is_derived() const = 0;
+    // Whether values can be copied; `copy` must not be called otherwise.
+    virtual bool is_copyable() const = 0;
+    // The element at that position, or any value of the type.
+    virtual Value copy(std::size_t position) const = 0;
+    virtual std::shared_ptr<void> copy_value(const void* value) const = 0;
+    virtual std::shared_ptr<void> default_value() const = 0;
+    virtual void assign(std::size_t position, const void* value) = 0;
+    virtual std::unique_ptr<PoolBase> make_empty() const = 0;
+
     void erase(Entity entity, Tick tick) {
         const std::uint32_t position = sparse_[entity.index];
         const std::uint32_t last = std::uint32_t(entities_.size() - 1);
@@ -121,6 +143,8 @@ public:
     Signal added, changed, removed;
     // Set by the group that owns this pool's order.
     void* owner = nullptr;
+    // Of the component type, the same in all registries of the process; set by the registry.
+    std::size_t type_index = 0;
 
 protected:
     void insert(Entity entity, Tick tick) {
@@ -167,6 +191,21 @@ public:
     }
     const void* address(std::size_t position) const override { return &values_[position]; }
     void* emplace_default(Entity entity, Tick tick) override { return &emplace(entity, T{}, tick); }
+    bool is_derived() const override { return Derived<T>; }
+    bool is_copyable() const override { return std::is_copy_constructible_v<T> && std::is_copy_assignable_v<T>; }
+    Value copy(std::size_t position) const override { return copy_value(&values_[position]); }
+    std::shared_ptr<void> copy_value(const void* value) const override {
+        if constexpr (std::is_copy_constructible_v<T>)
+            return std::make_shared<T>(*static_cast<const T*>(value));
+        else
+            return nullptr;
+    }
+    std::shared_ptr<void> default_value() const override { return std::make_shared<T>(); }
+    void assign(std::size_t position, const void* value) override {
+        if constexpr (std::is_copy_assignable_v<T>)
+            values_[position] = *static_cast<const T*>(value);
+    }
+    std::unique_ptr<PoolBase> make_empty() const override { return std::make_unique<Pool<T>>(); }
 
 private:
     void move_values_last_to(std::uint32_t position) override {

@@ -35,7 +35,13 @@ void Registry::destroy(Entity entity) {
             erase(*target, entity);
     ++generations_[entity.index];
     living_[entity.index] = 0;
-    free_.push_back(entity.index);
+    if (entity.index >= reserved_until_)
+        free_.push_back(entity.index);
+}
+
+std::size_t Registry::entity_count() const {
+    const auto reserved = living_.begin() + std::ptrdiff_t(reserved_until_);
+    return generations_.size() - free_.size() - std::size_t(std::count(living_.begin(), reserved, std::uint8_t(0)));
 }
 
 std::vector<Entity> Registry::entities() const {
@@ -91,6 +97,66 @@ std::vector<PoolBase*> Registry::described_pools() {
     std::sort(result.begin(), result.end(),
               [](const PoolBase* a, const PoolBase* b) { return a->description()->name < b->description()->name; });
     return result;
+}
+
+std::vector<PoolBase*> Registry::all_pools() {
+    std::vector<PoolBase*> result;
+    for (const auto& target : pools_)
+        if (target)
+            result.push_back(target.get());
+    return result;
+}
+
+PoolBase& Registry::counterpart(const PoolBase& other) {
+    if (other.type_index >= pools_.size())
+        pools_.resize(other.type_index + 1);
+    std::unique_ptr<PoolBase>& own = pools_[other.type_index];
+    if (!own) {
+        own = other.make_empty();
+        own->type_index = other.type_index;
+    }
+    return *own;
+}
+
+Value Registry::value(const PoolBase& source, Entity entity) const {
+    return source.contains(entity) ? source.copy(source.position_of(entity.index)) : Value();
+}
+
+void Registry::set_value(PoolBase& target, Entity entity, const void* value) {
+    assert(alive(entity) && target.is_copyable());
+    const bool has = target.contains(entity);
+    if (value == nullptr) {
+        assert(iterating_ == 0 && "defer structural changes while iterating");
+        if (has)
+            erase(target, entity);
+        return;
+    }
+    if (!has) {
+        assert(iterating_ == 0 && "defer structural changes while iterating");
+        target.emplace_default(entity, tick_);
+        target.assign(target.position_of(entity.index), value);
+        after_gain(target, entity);
+        return;
+    }
+    target.assign(target.position_of(entity.index), value);
+    target.stamp(entity, tick_);
+    if (!target.changed.empty())
+        target.changed.emit(*this, entity);
+}
+
+void Registry::reserve_handles(std::uint32_t until) {
+    while (generations_.size() < until) {
+        generations_.push_back(0);
+        living_.push_back(0);
+    }
+    std::erase_if(free_, [until](std::uint32_t index) { return index < until; });
+    reserved_until_ = std::max(reserved_until_, until);
+}
+
+void Registry::create_as(Entity entity) {
+    assert(entity.index < reserved_until_ && !living_[entity.index]);
+    generations_[entity.index] = entity.generation;
+    living_[entity.index] = 1;
 }
 
 void* Registry::emplace_default(PoolBase& target, Entity entity) {

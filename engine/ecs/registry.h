@@ -26,7 +26,7 @@ public:
         return entity.index < generations_.size() && generations_[entity.index] == entity.generation &&
                living_[entity.index];
     }
-    std::size_t entity_count() const { return generations_.size() - free_.size(); }
+    std::size_t entity_count() const;
     // Unlike that of any other registry of this process, one that was destroyed included.
     std::uint64_t id() const { return id_; }
     // Living entities in order of index.
@@ -189,6 +189,21 @@ public:
     void* emplace_default(PoolBase& target, Entity entity);
     void finish_default(PoolBase& target, Entity entity) { after_gain(target, entity); }
 
+    // --- For histories and copies: components without their types ------------------------------------------------
+    // Every pool that there is, in an order that depends on the process.
+    std::vector<PoolBase*> all_pools();
+    // This registry's pool of the same component type; made if there is none.
+    PoolBase& counterpart(const PoolBase& other);
+    // The component's value; null if the entity lacks it.
+    Value value(const PoolBase& source, Entity entity) const;
+    // emplace_or_replace, or, for null, remove if it is there. The value must be of the pool's type.
+    void set_value(PoolBase& target, Entity entity, const void* value);
+
+    // Keeps handles with a lower index than `until` for create_as: create() hands out others.
+    void reserve_handles(std::uint32_t until);
+    // Creates just this entity, which must have been reserved and not be alive.
+    void create_as(Entity entity);
+
 private:
     friend class IterationScope;
 
@@ -204,8 +219,10 @@ private:
         const std::size_t index = type_index<T>();
         if (index >= pools_.size())
             pools_.resize(index + 1);
-        if (!pools_[index])
+        if (!pools_[index]) {
             pools_[index] = std::make_unique<Pool<T>>();
+            pools_[index]->type_index = index;
+        }
         return static_cast<Pool<T>&>(*pools_[index]);
     }
     template <typename T>
@@ -227,6 +244,7 @@ private:
     std::vector<std::uint32_t> generations_;
     std::vector<std::uint8_t> living_;
     std::vector<std::uint32_t> free_;
+    std::uint32_t reserved_until_ = 0;
     std::vector<std::unique_ptr<PoolBase>> pools_;
     std::vector<std::unique_ptr<GroupBase>> groups_;
     std::vector<std::function<void(Registry&)>> deferred_;

@@ -32,6 +32,7 @@ struct Parent {
 
 // Derived by update_world_transforms; never edited or saved.
 struct WorldTransform {
+    static constexpr bool derived = true;
     mat4 matrix{1.0f};
     bool operator==(const WorldTransform&) const = default;
 };
@@ -175,6 +176,7 @@ struct Mover {
 
 // The mover's transform when the simulation began; set by the simulation.
 struct MoverOrigin {
+    static constexpr bool derived = true;
     Transform transform;
 };
 

@@ -49,6 +49,7 @@ struct Lantern {
 
 // Progress of an activated mover; set by the simulation.
 struct MoverState {
+    static constexpr bool derived = true;
     float progress = 0.0f; // 0 at rest, 1 at the far end
     bool open = false;     // direction: towards the far end
 };
