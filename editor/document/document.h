@@ -1,0 +1,152 @@
+// The scene that is edited: entities with distinct names, geometry, textures and lighting settings, the selection, and
+// the history of all edits. Knows no window and no GPU. Whatever shows the scene has a copy and is told of changes by
+// take_updates(), so that nothing which a renderer or a simulation adds or moves ever gets into the document.
+//
+// Use from one thread. Every change goes through a gesture:
+//
+//     document.begin("Move lamp");
+//     document.set(entity, pool, value);   // any number of times: a drag
+//     document.commit();                   // one entry of the history; cancel() restores everything and leaves none
+#pragma once
+
+#include "editor/document/history.h"
+#include "engine/io/scene_file.h"
+#include "gi_module/settings.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace sunfleck::editor {
+
+// For copies of the document: the newest value of a component, null where it is gone.
+struct Update {
+    Entity entity;
+    const ecs::PoolBase* pool = nullptr; // of the document; Registry::counterpart finds the copy's
+    ecs::Value value;
+};
+
+class Document {
+public:
+    // An empty scene.
+    Document();
+    Document(const Document&) = delete;
+    Document& operator=(const Document&) = delete;
+
+    // A .gltf, .glb or .scene.json file, as a document without history. `progress`: io::ImportOptions::progress.
+    static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
+                                                  const std::function<bool(float)>& progress = {});
+    // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace geometry
+    // that belongs to another scene.
+    Status save(const std::filesystem::path& path);
+
+    // To read; writing goes through set().
+    ecs::Registry& registry() { return registry_; }
+    const scene::MeshStore& meshes() const { return meshes_; }
+    const scene::TextureStore& textures() const { return textures_; }
+    const gi::Settings& settings() const { return settings_; }
+    // Adds geometry. It stays when the entity that uses it is undone, and is saved only where something uses it.
+    std::uint32_t add_mesh(scene::Mesh mesh) { return meshes_.add(std::move(mesh)); }
+    scene::TextureStore& texture_store() { return textures_; }
+    const std::filesystem::path& path() const { return path_; }
+    // What the import left out or changed.
+    const std::vector<std::string>& notes() const { return notes_; }
+    // True if there are edits that the file lacks.
+    bool unsaved() const { return history_.serial() != saved_serial_ || gesture_changed(); }
+    // Takes back what save or open said: the file was changed or removed by others.
+    void mark_unsaved() { saved_serial_ = ~std::uint64_t(0); }
+
+    // --- Gestures ------------------------------------------------------------------------------------------------
+    void begin(std::string name);
+    bool in_gesture() const { return gesture_.has_value(); }
+    // Sets, adds, or (null) removes a component. Null for any component of an entity that is all there is removes the
+    // entity. In a gesture only.
+    void set(Entity entity, ecs::PoolBase& pool, ecs::Value value);
+    Status set_setting(std::string_view name, std::string_view value);
+    // A handle without any component, which the gesture is to give some.
+    Entity create() { return registry_.create(); }
+    // True if something has changed and the history has an entry more.
+    bool commit();
+    void cancel();
+    // End a gesture by cancelling it first. False: there was nothing to undo or redo.
+    bool undo();
+    bool redo();
+    const History& history() const { return history_; }
+
+    // --- Entities ------------------------------------------------------------------------------------------------
+    // In the document: everything in it has a name.
+    bool exists(Entity entity) const;
+    const std::string& name(Entity entity) const;
+    // The entity of that name; null if there is none.
+    Entity find(const std::string& name) const;
+    // `wanted`, or with the lowest free number behind it. Line breaks and other control characters become spaces, long
+    // names are cut.
+    std::string free_name(const std::string& wanted) const;
+    // In order of creation.
+    const std::vector<Entity>& roots();
+    const std::vector<Entity>& children(Entity parent);
+    Entity parent(Entity entity) const;
+    // Whether `entity` is `ancestor` or below it.
+    bool is_below(Entity entity, Entity ancestor) const;
+    // The entity and all below it, parents first.
+    std::vector<Entity> family(Entity entity);
+    std::size_t entity_count() const { return by_name_.size(); }
+    // Raised with every change: of names and parents; of anything; of settings.
+    std::uint64_t structure_revision() const { return structure_revision_; }
+    std::uint64_t revision() const { return revision_; }
+    std::uint64_t settings_revision() const { return settings_revision_; }
+
+    // --- Selection, in the order in which it was made ------------------------------------------------------------
+    const std::vector<Entity>& selection() const { return selection_; }
+    bool selected(Entity entity) const { return selected_.count(entity) > 0; }
+    void select(std::vector<Entity> entities);
+    void toggle(Entity entity);
+
+    // --- For copies of the document ------------------------------------------------------------------------------
+    // What changed since the last call, by entity, then component; the order depends on the document alone.
+    std::vector<Update> take_updates();
+    // Everything.
+    std::vector<Update> all_updates();
+    // Handles of the document are below this.
+    std::uint32_t handle_count() const;
+
+private:
+    void apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value);
+    void apply(const HistoryEntry& entry, bool forward);
+    bool gesture_changed() const;
+    void settle_lamps();
+    void name_changed(Entity entity, const void* before, const void* after);
+    void name_everything();
+    void find_children();
+
+    ecs::Registry registry_;
+    scene::MeshStore meshes_;
+    scene::TextureStore textures_;
+    gi::Settings settings_;
+    ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr;
+    std::filesystem::path path_;
+    std::vector<std::string> notes_;
+
+    History history_;
+    std::uint64_t saved_serial_ = 0;
+    std::optional<HistoryEntry> gesture_;
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> in_gesture_; // by entity, indices of its changes
+
+    std::unordered_map<std::string, Entity> by_name_;
+    std::vector<Entity> roots_;
+    std::unordered_map<Entity, std::vector<Entity>> children_;
+    std::uint64_t structure_revision_ = 1, children_revision_ = 0, revision_ = 1, settings_revision_ = 1;
+    std::vector<Entity> selection_;
+    std::unordered_set<Entity> selected_;
+    std::map<std::pair<Entity, std::size_t>, Update> updates_;
+    std::uint32_t handles_ = 0;
+};
+
+// The document's pool of a described component; null if there is none of that name.
+ecs::PoolBase* find_component(Document& document, std::string_view name);
+// Whether both are null or have the same values in all described fields.
+bool same_value(const ecs::PoolBase& pool, const ecs::Value& a, const ecs::Value& b);
+
+} // namespace sunfleck::editor

@@ -1,0 +1,201 @@
+#include "editor/document/edits.h"
+
+#include <algorithm>
+
+namespace sunfleck::editor {
+namespace {
+
+template <typename T>
+void put(Document& document, Entity entity, T value) {
+    document.set(entity, pool_of<T>(document), std::make_shared<T>(std::move(value)));
+}
+
+// The nearest translation, rotation and scale.
+scene::Transform transform_of(const mat4& m) {
+    scene::Transform result;
+    result.position = vec3(m[3]);
+    result.scale = vec3(glm::length(vec3(m[0])), glm::length(vec3(m[1])), glm::length(vec3(m[2])));
+    if (glm::determinant(mat3(m)) < 0.0f)
+        result.scale.x = -result.scale.x;
+    mat3 turn(1.0f);
+    for (int i = 0; i < 3; ++i)
+        if (result.scale[i] != 0.0f)
+            turn[i] = vec3(m[i]) / result.scale[i];
+    const quat rotation = glm::quat_cast(turn);
+    const float length = glm::length(rotation);
+    result.rotation = length > 1e-6f ? rotation / length : quat(1.0f, 0.0f, 0.0f, 0.0f);
+    return result;
+}
+
+bool is_usable(const scene::Transform& transform) {
+    return static_cast<bool>(validate(scene::Transform::description(), &transform));
+}
+
+// Handles in described fields that point into `copies` point to the copies.
+void retarget(const ecs::PoolBase& pool, void* value, const std::unordered_map<Entity, Entity>& copies) {
+    if (pool.description() == nullptr)
+        return;
+    for (const Field& field : pool.description()->fields)
+        if (field.kind == FieldKind::entity) {
+            auto* target = reinterpret_cast<Entity*>(static_cast<char*>(value) + field.offset);
+            if (const auto found = copies.find(*target); found != copies.end())
+                *target = found->second;
+        }
+}
+
+} // namespace
+
+std::string what(const Document& document, const Entities& entities) {
+    return entities.size() == 1 ? document.name(entities[0]) : std::to_string(entities.size()) + " entities";
+}
+
+Entities topmost(const Document& document, const Entities& entities) {
+    const std::unordered_set<Entity> all(entities.begin(), entities.end());
+    Entities result;
+    for (const Entity entity : entities) {
+        std::size_t depth = 0;
+        Entity above = document.parent(entity);
+        while (!above.is_null() && all.count(above) == 0 && ++depth < document.entity_count())
+            above = document.parent(above);
+        if (above.is_null() || all.count(above) == 0)
+            result.push_back(entity);
+    }
+    return result;
+}
+
+void remove(Document& document, const Entities& entities) {
+    if (entities.empty())
+        return;
+    document.begin("Delete " + what(document, entities));
+    ecs::Registry& registry = document.registry();
+    for (const Entity top : topmost(document, entities)) {
+        const Entities all = document.family(top);
+        for (auto entity = all.rbegin(); entity != all.rend(); ++entity)
+            for (ecs::PoolBase* pool : registry.all_pools())
+                if (pool->contains(*entity) && pool->is_copyable() && !pool->is_derived())
+                    document.set(*entity, *pool, nullptr);
+    }
+    document.select({});
+    document.commit();
+}
+
+Entities duplicate(Document& document, const Entities& entities) {
+    if (entities.empty())
+        return {};
+    document.begin("Duplicate " + what(document, entities));
+    ecs::Registry& registry = document.registry();
+    std::unordered_map<Entity, Entity> copies;
+    Entities all, tops;
+    for (const Entity top : topmost(document, entities))
+        for (const Entity entity : document.family(top)) {
+            copies[entity] = document.create();
+            all.push_back(entity);
+            if (entity == top)
+                tops.push_back(copies[entity]);
+        }
+    for (const Entity entity : all)
+        for (ecs::PoolBase* pool : registry.all_pools()) {
+            if (!pool->contains(entity) || !pool->is_copyable() || pool->is_derived())
+                continue;
+            const std::shared_ptr<void> value = pool->copy_value(pool->address(pool->position_of(entity.index)));
+            if (pool == &pool_of<scene::Name>(document))
+                static_cast<scene::Name*>(value.get())->name = document.free_name(document.name(entity));
+            retarget(*pool, value.get(), copies);
+            document.set(copies[entity], *pool, value);
+        }
+    document.select(tops);
+    document.commit();
+    return tops;
+}
+
+void set_world(Document& document, Entity entity, const mat4& world) {
+    const Entity above = document.parent(entity);
+    const mat4 outer = above.is_null() ? mat4(1.0f) : world_of(document, above);
+    if (std::abs(glm::determinant(outer)) < 1e-30f || !document.registry().has<scene::Transform>(entity))
+        return;
+    const scene::Transform local = transform_of(glm::inverse(outer) * world);
+    if (is_usable(local))
+        put(document, entity, local);
+}
+
+Status reparent(Document& document, const Entities& entities, Entity parent) {
+    if (entities.empty())
+        return {};
+    for (const Entity entity : entities)
+        if (!parent.is_null() && document.is_below(parent, entity))
+            return Error{"'" + document.name(entity) + "' cannot go under '" + document.name(parent) +
+                         "', which is itself or below it"};
+    document.begin("Move " + what(document, entities) + " in the tree");
+    for (const Entity entity : topmost(document, entities)) {
+        const mat4 world = world_of(document, entity);
+        if (parent.is_null())
+            document.set(entity, pool_of<scene::Parent>(document), nullptr);
+        else
+            put(document, entity, scene::Parent{parent});
+        set_world(document, entity, world);
+    }
+    document.commit();
+    return {};
+}
+
+Entity group(Document& document, const Entities& entities) {
+    if (entities.empty())
+        return ecs::null_entity;
+    const Entities tops = topmost(document, entities);
+    document.begin("Group " + what(document, entities));
+    vec3 middle(0.0f);
+    for (const Entity entity : tops)
+        middle += vec3(world_of(document, entity)[3]) / float(tops.size());
+    const Entity result = document.create();
+    const Entity above = document.parent(tops[0]);
+    put(document, result, scene::Name{document.free_name("group")});
+    if (!above.is_null() &&
+        std::none_of(tops.begin(), tops.end(), [&](Entity e) { return document.is_below(above, e); }))
+        put(document, result, scene::Parent{above});
+    put(document, result, scene::Transform{});
+    set_world(document, result, glm::translate(mat4(1.0f), middle));
+    for (const Entity entity : tops) {
+        const mat4 world = world_of(document, entity);
+        put(document, entity, scene::Parent{result});
+        set_world(document, entity, world);
+    }
+    document.select({result});
+    document.commit();
+    return result;
+}
+
+Status rename(Document& document, Entity entity, const std::string& wanted) {
+    if (wanted.find_first_not_of(" \t\r\n") == std::string::npos)
+        return Error{"a name must not be empty"};
+    if (wanted == document.name(entity))
+        return {};
+    document.begin("Rename " + document.name(entity));
+    put(document, entity, scene::Name{""}); // its own name is free, too
+    put(document, entity, scene::Name{document.free_name(wanted)});
+    document.commit();
+    return {};
+}
+
+Entity add_from(Document& document, const scene::EntityTemplate& source, vec3 position, float size) {
+    document.begin("Add " + std::string(source.name));
+    ecs::Registry scratch;
+    scene::MeshStore meshes;
+    const Entity made = scratch.create();
+    source.make(scratch, made, meshes, size);
+    if (scene::MeshInstance const* instance = scratch.try_get<scene::MeshInstance>(made)) {
+        const std::uint32_t mesh = document.add_mesh(meshes[instance->mesh]);
+        scratch.patch<scene::MeshInstance>(made, [&](scene::MeshInstance& value) { value.mesh = mesh; });
+    }
+    scratch.patch<scene::Transform>(made, [&](scene::Transform& transform) { transform.position = position; });
+    const Entity entity = document.create();
+    std::string name(source.name);
+    name[0] = char(std::tolower(name[0]));
+    put(document, entity, scene::Name{document.free_name(name)});
+    for (const ecs::PoolBase* pool : scratch.all_pools())
+        document.set(entity, document.registry().counterpart(*pool), scratch.value(*pool, made));
+    document.select({entity});
+    document.commit();
+    return entity;
+}
+
+} // namespace sunfleck::editor
