@@ -164,18 +164,22 @@ double allowed_sum_error(const gi::Settings& settings) {
 }
 
 // Relative MSE of irradiance to the baseline, of the many-light system alone and with transfer for movers, as measured
-// before light was a sum of terms (60 samples, 96x72 pixels, maps of 128 texels; greatest of the steps), plus 2 %. That
-// of lantern_house with transfer was measured again when filtered shadows of lamps came nearer to those of finer maps.
+// before light was a sum of terms (60 samples, 96x72 pixels, maps of 128 texels; greatest of the steps), plus 2 %.
+// In the furnace the error of one set of samples is anywhere between 5e-5 and 8e-4, so the mean over 8 seeds is judged,
+// as measured with samples placed as they are now. (Rendered by the tool, the mean is 1.75e-4; before: 2.3e-4.)
+// What transfer cuts of near light in lantern_house depends on the samples as well: over 24 seeds 1.6e-4 (standard
+// error 0.15e-4) before, 1.9e-4 (0.15e-4) as they are placed now; that of its own seed was measured again.
 struct Scene {
     const char* name;
     void (*make)(assets::SceneBuilder&);
     std::vector<std::uint64_t> steps;
     double many_light, with_transfer;
+    std::uint32_t seeds; // whose errors' mean is compared
 };
-const Scene all_scenes[] = {{"furnace", assets::make_furnace, {0}, 1.52e-4, 1.52e-4},
-                            {"four_pillars", assets::make_four_pillars, {0, 20, 75}, 7.15e-5, 2.75e-3},
-                            {"arena", assets::make_arena, {0, 20, 75}, 1.36e-5, 1.73e-4},
-                            {"lantern_house", assets::make_lantern_house, {0, 20, 75}, 1.21e-4, 1.76e-4}};
+const Scene all_scenes[] = {{"furnace", assets::make_furnace, {0}, 2.28e-4, 2.28e-4, 8},
+                            {"four_pillars", assets::make_four_pillars, {0, 20, 75}, 7.15e-5, 2.75e-3, 1},
+                            {"arena", assets::make_arena, {0, 20, 75}, 1.36e-5, 1.73e-4, 1},
+                            {"lantern_house", assets::make_lantern_house, {0, 20, 75}, 1.21e-4, 2.27e-4, 1}};
 
 // With the light of two techniques a share of it is smoother than all is, so more of it is interpolated.
 double allowed_baseline_error(const Scene& scene, const Assignment& assignment, const gi::Settings& settings) {
@@ -187,6 +191,18 @@ double allowed_baseline_error(const Scene& scene, const Assignment& assignment, 
 
 class SumOfTermsOf : public SumOfTerms, public testing::WithParamInterface<std::size_t> {
 protected:
+    double baseline_error(const Scene& scene, gi::Settings settings, std::uint64_t step) {
+        if (scene.seeds == 1)
+            return error(picture(settings, step), picture(baseline(), step));
+        const std::uint32_t seeds = long_size() ? scene.seeds : 1;
+        gi::Settings reference = baseline();
+        double sum = 0.0;
+        for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
+            settings.seed = reference.seed = seed;
+            sum += error(picture(settings, step), picture(reference, step));
+        }
+        return sum / seeds;
+    }
     void check(const Scene& scene, const Assignment& assignment, std::uint64_t step) {
         const std::string what = std::string(scene.name) + " " + std::to_string(step) + ": " + assignment.name;
         const gi::Settings settings = settings_of(assignment);
@@ -201,7 +217,7 @@ protected:
             std::printf("\n");
             return;
         }
-        const double off = error(picture(settings, step), picture(baseline(), step));
+        const double off = baseline_error(scene, settings, step);
         EXPECT_LE(off, allowed_baseline_error(scene, assignment, settings)) << what;
         std::printf(", to the baseline %.1e\n", off);
     }
