@@ -164,8 +164,12 @@ void Window::take_events() {
 }
 
 Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::uint32_t width, std::uint32_t height) {
-    if (!glfwInit())
-        return Error{"no window system was found (is DISPLAY set?); run with --headless, or under xvfb-run"};
+    if (!glfwInit()) {
+        const char* why = nullptr;
+        glfwGetError(&why);
+        return Error{"no window system was found (is DISPLAY set?" + (why ? " " + std::string(why) : std::string()) +
+                     "); run with --headless, or under xvfb-run"};
+    }
     std::unique_ptr<Window> window(new Window());
     if (!glfwVulkanSupported())
         return Error{"the window system does not support Vulkan; run with --headless"};

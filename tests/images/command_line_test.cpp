@@ -350,6 +350,7 @@ TEST_F(CommandLine, TheDemosBadArgumentsGetOneMessage) {
 std::string window_script(const fs::path& folder) {
     return "cd " + folder.string() +
            "\nexport XDG_CONFIG_HOME=$PWD/config\n"
+           "for i in $(seq 50); do xdotool getdisplaygeometry >/dev/null 2>&1 && break; sleep 0.2; done\n"
            "if command -v openbox >/dev/null; then openbox & fi\n" SUNFLECK_DEMO " --validation --size 192x108 & P=$!\n"
            "for i in $(seq 400); do W=$(xdotool search --name 'Lantern House$' | head -1); [ -n \"$W\" ] && break; "
            "sleep "
@@ -379,8 +380,9 @@ TEST_F(CommandLine, TheDemoRunsInAWindow) {
     if (shell("command -v xvfb-run && command -v xdotool").status != 0)
         GTEST_SKIP() << "xvfb and xdotool are not installed";
     ASSERT_TRUE(write_file(folder / "drive.sh", window_script(folder)));
+    // Without -noreset the server starts anew whenever its last client leaves, and turns away who comes just then.
     const Outcome outcome =
-        shell("timeout 240 xvfb-run -a -s '-screen 0 800x600x24' bash " + (folder / "drive.sh").string());
+        shell("timeout 240 xvfb-run -a -s '-screen 0 800x600x24 -noreset' bash " + (folder / "drive.sh").string());
     EXPECT_EQ(outcome.status, 0) << outcome.output;
     EXPECT_TRUE(fs::exists(folder / "sunfleck_0001.png")) << outcome.output;
     EXPECT_TRUE(fs::exists(folder / "config/sunfleck/demo.json")) << outcome.output;

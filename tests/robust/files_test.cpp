@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <fstream>
@@ -261,7 +263,12 @@ TEST_F(RobustFiles, ManyThreadsWriteOneFile) {
 // Killed at random moments: old or new, and what they left goes with the next write.
 TEST_F(RobustFiles, KilledWritersLeaveOldOrNew) {
     const int kills = tests::by_size(60, 300);
-    ASSERT_TRUE(write_file(at("a"), std::string(60'000, 'a')));
+    // Kills come within some eight writes, however long this machine takes for one.
+    const auto start = std::chrono::steady_clock::now();
+    for (int i = 0; i < 8; ++i)
+        ASSERT_TRUE(write_file(at("a"), std::string(60'000, 'a')));
+    const auto writes = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
+    const std::uint32_t latest = std::uint32_t(std::clamp<long long>(writes.count(), 5'000, 400'000));
     int left = 0;
     std::set<char> seen;
     for (int attempt = 0; attempt < kills; ++attempt) {
@@ -270,7 +277,7 @@ TEST_F(RobustFiles, KilledWritersLeaveOldOrNew) {
             for (char letter = 'b';; letter = letter == 'z' ? 'b' : char(letter + 1))
                 if (!write_file(at("a"), std::string(60'000, letter)))
                     ::_exit(1);
-        ::usleep(useconds_t(pcg_hash(std::uint32_t(attempt)) % 20000));
+        ::usleep(useconds_t(pcg_hash(std::uint32_t(attempt)) % latest));
         ::kill(child, SIGKILL);
         int status = 0;
         ::waitpid(child, &status, 0);
