@@ -246,6 +246,7 @@ TEST_F(RobustFiles, AFullDiskKeepsTheOldContent) {
 
 TEST_F(RobustFiles, ManyThreadsWriteOneFile) {
     std::vector<std::thread> threads;
+    threads.reserve(4);
     std::atomic<int> failed{0};
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([&, t] {
