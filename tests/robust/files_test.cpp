@@ -15,6 +15,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <set>
+#include <sys/mman.h>
 #include <sys/mount.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -261,33 +262,47 @@ TEST_F(RobustFiles, ManyThreadsWriteOneFile) {
     EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
-// Killed at random moments: old or new, and what they left goes with the next write.
+// Writes without end; counts what it has written.
+[[noreturn]] void write_forever(const fs::path& file, std::atomic<int>& written) {
+    for (char letter = 'b';; letter = letter == 'z' ? 'b' : char(letter + 1)) {
+        if (!write_file(file, std::string(60'000, letter)))
+            ::_exit(1);
+        ++written;
+    }
+}
+
+// Killed at random moments, after none to four whole writes, however long this machine takes for one: old or new, and
+// what they left goes with the next write.
 TEST_F(RobustFiles, KilledWritersLeaveOldOrNew) {
     const int kills = tests::by_size(60, 300);
-    // Kills come within some eight writes, however long this machine takes for one.
+    void* shared = ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    std::atomic<int>& written = *new (shared) std::atomic<int>(0);
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < 8; ++i)
         ASSERT_TRUE(write_file(at("a"), std::string(60'000, 'a')));
     const auto writes = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
-    const std::uint32_t latest = std::uint32_t(std::clamp<long long>(writes.count(), 5'000, 400'000));
+    const std::uint32_t latest = std::uint32_t(std::max<long long>(writes.count() / 4, 1));
     int left = 0;
     std::set<char> seen;
     for (int attempt = 0; attempt < kills; ++attempt) {
+        written = 0;
         const pid_t child = ::fork();
         if (child == 0)
-            for (char letter = 'b';; letter = letter == 'z' ? 'b' : char(letter + 1))
-                if (!write_file(at("a"), std::string(60'000, letter)))
-                    ::_exit(1);
+            write_forever(at("a"), written);
+        while (written < attempt % 5 && ::waitpid(child, nullptr, WNOHANG) == 0)
+            ::usleep(20);
         ::usleep(useconds_t(pcg_hash(std::uint32_t(attempt)) % latest));
         ::kill(child, SIGKILL);
         int status = 0;
-        ::waitpid(child, &status, 0);
+        ASSERT_EQ(::waitpid(child, &status, 0), child) << "a write failed";
         EXPECT_TRUE(WIFSIGNALED(status)) << "a write failed";
         const std::string content = read_file(at("a")).value();
         ASSERT_EQ(content, std::string(60'000, content[0])) << "attempt " << attempt;
         seen.insert(content[0]);
         left += names().size() > 1;
     }
+    ::munmap(shared, sizeof(std::atomic<int>));
     EXPECT_GT(left, kills / 20) << "the kills came at the same harmless moment";
     EXPECT_GT(seen.size(), 3u);
     ASSERT_TRUE(write_file(at("a"), "end"));
