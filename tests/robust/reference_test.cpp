@@ -24,10 +24,11 @@ protected:
         return "cd '" + folder.path.string() + "' && " + command;
     }
     Outcome tool(const std::string& arguments) const { return shell(in_folder(SUNFLECK_TOOL " " + arguments)); }
-    // Runs until the shell's `wait_for` is true, then sends the signal; its output is in the file "log".
+    // Runs until the shell's `wait_for` is true, then sends the signal; its output is in the file "log", which no
+    // longer holds what an earlier run wrote.
     Outcome stopped(const std::string& arguments, const std::string& wait_for, int signal) const {
-        return shell(in_folder("{ " SUNFLECK_TOOL " " + arguments + " > log 2>&1 & P=$!; " + wait_for + "; kill -" +
-                               std::to_string(signal) + " $P; wait $P; S=$?; cat log; exit $S; }"));
+        return shell(in_folder("rm -f log; { " SUNFLECK_TOOL " " + arguments + " > log 2>&1 & P=$!; " + wait_for +
+                               "; kill -" + std::to_string(signal) + " $P; wait $P; S=$?; cat log; exit $S; }"));
     }
     std::string bytes(const std::string& name) const {
         const auto content = read_file(folder.path / name);
