@@ -31,6 +31,7 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     result.map_budget = preset.map_budget;
     result.bounces = quality <= Quality::low ? 3 : 5;
     result.shadow_map_resolution = quality <= Quality::low ? 128 : 256;
+    result.shadow_filter = true; // without it, maps draw their texels on the walls
     result.low_resolution = quality == Quality::ultra ? 1 : 2;
     result.patch_levels = 2; // houses have many small surfaces
     result.dynamic_share = 0.2f;

@@ -33,6 +33,7 @@ void set_view(const std::string& name, viewer::FrameRequest& request) {
 // The command line's options come before what the scene file says, that before their defaults.
 Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<std::string, std::string>& of_scene) {
     gi::Settings settings;
+    settings.shadow_filter = true; // a picture to look at: without it, maps draw their texels on the walls
     if (!options.statistics.empty() && gi::Settings::find("count_clamped") != nullptr)
         settings.with("count_clamped", "on");
     for (const auto& [name, value] : of_scene)
