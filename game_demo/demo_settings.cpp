@@ -73,7 +73,8 @@ std::filesystem::path settings_path() {
     if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder != nullptr && folder[0] == '/')
         return std::filesystem::path(folder) / "sunfleck/demo.json";
     const char* home = std::getenv("HOME");
-    return std::filesystem::path(home != nullptr ? home : "/tmp") / ".config/sunfleck/demo.json";
+    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".config/sunfleck/demo.json"
+                                             : std::filesystem::path();
 }
 
 namespace {
@@ -135,7 +136,7 @@ LoadedSettings load_settings(const std::filesystem::path& path) {
     return result;
 }
 
-Status save_settings(const std::filesystem::path& path, const DemoSettings& settings) {
+std::string settings_text(const DemoSettings& settings) {
     nlohmann::ordered_json file;
     for (const Field& field : DemoSettings::description().fields) {
         const std::string text = field_to_text(field, &settings);
@@ -146,9 +147,13 @@ Status save_settings(const std::filesystem::path& path, const DemoSettings& sett
     }
     for (std::size_t i = 0; i < action_count; ++i)
         file["bindings"][actions[i].name] = app::key_name(settings.bindings[i]);
+    return file.dump(2) + "\n";
+}
+
+Status save_settings(const std::filesystem::path& path, const DemoSettings& settings) {
     std::error_code code;
     std::filesystem::create_directories(path.parent_path(), code);
-    return write_file(path, file.dump(2) + "\n");
+    return write_file(path, settings_text(settings));
 }
 
 } // namespace sunfleck::demo

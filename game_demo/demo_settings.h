@@ -54,7 +54,8 @@ struct DemoSettings {
     static const TypeDescription& description();
 };
 
-// $XDG_CONFIG_HOME/sunfleck/demo.json, or the same under ~/.config.
+// $XDG_CONFIG_HOME/sunfleck/demo.json, or the same under ~/.config. Empty if neither variable is set: settings are kept
+// nowhere then, since any other place may be shared.
 std::filesystem::path settings_path();
 
 struct LoadedSettings {
@@ -62,6 +63,8 @@ struct LoadedSettings {
     bool found = false;
     std::string problem; // what was wrong with the file; a damaged file is renamed with ".damaged" appended
 };
+// The content of the file.
+std::string settings_text(const DemoSettings& settings);
 // Valid entries of the file are used; the rest keep their defaults.
 LoadedSettings load_settings(const std::filesystem::path& path);
 Status save_settings(const std::filesystem::path& path, const DemoSettings& settings);

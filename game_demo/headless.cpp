@@ -8,6 +8,7 @@
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
 #include "game_demo/walk_through.h"
+#include "viewer/progress.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -74,18 +75,16 @@ Status write_numbered(const std::string& folder, std::uint32_t frame, const io::
 // Plays a level from a recording, or else from the built-in walk.
 class Playback {
 public:
-    Playback(const Options& options, const DemoSettings& settings, std::vector<simulation::StepInput> recorded)
-        : options_(options), settings_(settings), recorded_(std::move(recorded)),
+    // `steps`: of the input, recorded or walked.
+    Playback(const Options& options, const DemoSettings& settings, std::vector<simulation::StepInput> recorded,
+             std::size_t steps)
+        : options_(options), settings_(settings), recorded_(std::move(recorded)), recording_(options.record),
           stride_(std::max(1u, options.steps_per_frame)) {
-        constexpr std::uint32_t unlimited = 100000, walk_frames = 1600; // about the length of the built-in walk
-        frames_ = options.frames > 0   ? options.frames
-                  : !recorded_.empty() ? std::uint32_t((recorded_.size() + stride_ - 1) / stride_)
-                                       : unlimited;
-        const std::uint32_t expected = options.frames > 0 || !recorded_.empty() ? frames_ : walk_frames;
-        interval_ = std::max(1u, expected / std::max(1u, options.pictures));
+        frames_ = options.frames > 0 ? options.frames : std::uint32_t((steps + stride_ - 1) / stride_);
     }
 
     Status run(Level& level) {
+        viewer::Progress progress("playing");
         for (std::uint32_t frame = 0; frame < frames_; ++frame) {
             for (std::uint32_t k = 0; k < stride_; ++k)
                 step(level);
@@ -95,41 +94,52 @@ public:
             if (stop_requested())
                 return Error{std::string("stopped by ") + signal_name(stop_signal())};
             times_.add(level.renderer().statistics());
-            const bool last = frame + 1 == frames_ || (options_.frames == 0 && recorded_.empty() && walk_.finished());
-            if (options_.pictures > 0 && (frame % interval_ == 0 || last)) {
+            recording_.save_if_due();
+            if (wants_picture(frame)) {
                 SUNFLECK_ASSIGN(const io::Picture picture, level.renderer().read_back());
                 SUNFLECK_TRY(write_numbered(options_.output, frame, picture));
+                ++pictures_;
             }
-            if (frame % 200 == 199)
-                log_information("frame " + std::to_string(frame + 1) +
-                                (options_.frames > 0 ? " of " + std::to_string(frames_) : ""));
-            if (last)
-                break;
+            progress.show(double(frame + 1) / double(frames_),
+                          std::to_string(frame + 1) + " of " + std::to_string(frames_) + " frames");
         }
         return {};
     }
 
+    // Writes what is left of the recording.
+    Status finish() { return recording_.finish(); }
     const Times& times() const { return times_; }
-    // The input of all steps so far.
-    const std::vector<simulation::StepInput>& played() const { return played_; }
+    std::uint32_t pictures() const { return pictures_; }
 
 private:
+    // As many as the options ask for, or every frame if there are fewer: the first frame, the last, and some between.
+    bool wants_picture(std::uint32_t frame) const {
+        if (options_.pictures == 0 || options_.pictures >= frames_)
+            return options_.pictures > 0;
+        if (options_.pictures == 1)
+            return frame + 1 == frames_;
+        const std::uint64_t gaps = options_.pictures - 1, frames = frames_ - 1;
+        const std::uint64_t nearest = (2 * frame * gaps + frames) / (2 * frames);
+        return frame == (2 * nearest * frames + gaps) / (2 * gaps);
+    }
+
     void step(Level& level) {
         simulation::StepInput input;
         if (recorded_.empty())
             input = walk_.next(level.simulation());
-        else if (played_.size() < recorded_.size())
-            input = recorded_[played_.size()];
+        else if (level.simulation().steps() < recorded_.size())
+            input = recorded_[level.simulation().steps()];
         level.step(input);
-        played_.push_back(input);
+        recording_.add(input);
     }
 
     const Options& options_;
     const DemoSettings& settings_;
-    std::vector<simulation::StepInput> recorded_, played_;
+    std::vector<simulation::StepInput> recorded_;
+    simulation::RecordingWriter recording_;
     WalkThrough walk_;
     Times times_;
-    std::uint32_t stride_, frames_ = 0, interval_ = 1;
+    std::uint32_t stride_, frames_ = 0, pictures_ = 0;
 };
 
 Result<std::vector<simulation::StepInput>> recorded_input(const Options& options) {
@@ -140,6 +150,27 @@ Result<std::vector<simulation::StepInput>> recorded_input(const Options& options
     if (recorded.empty())
         return Error{"'" + options.input + "' has no steps"};
     return recorded;
+}
+
+// Steps of the built-in walk, which depend on the world: it waits for lifts and stops at obstacles.
+Result<std::size_t> walk_length(const LevelSource& source) {
+    ecs::Registry registry;
+    scene::register_components(registry);
+    scene::MeshStore meshes;
+    scene::TextureStore textures;
+    SUNFLECK_TRY(load_world(source, registry, meshes, textures));
+    simulation::Simulation simulation(registry, meshes);
+    WalkThrough walk;
+    while (!walk.finished())
+        simulation.step(registry, walk.next(simulation));
+    return std::size_t(simulation.steps());
+}
+
+void print_result(const Playback& playback, const Options& options) {
+    const std::vector<double>& frames = playback.times().frames;
+    std::printf("%zu frames, %.1f ms in the median, 95 %% within %.1f ms; %u picture%s and stats.json in '%s'\n",
+                frames.size(), statistics::median(frames), statistics::percentile(frames, 0.95), playback.pictures(),
+                playback.pictures() == 1 ? "" : "s", options.output.c_str());
 }
 
 } // namespace
@@ -163,15 +194,19 @@ Status run_headless(const Options& options) {
     settings.transfer = options.transfer.value_or(settings.transfer);
     SUNFLECK_ASSIGN(const auto level, Level::load(*device, source_of(options), settings, 2));
     watch_stop_signals();
-    Playback playback(options, settings, std::move(recorded));
+    std::size_t steps = recorded.size();
+    if (options.frames == 0 && recorded.empty()) {
+        SUNFLECK_ASSIGN(steps, walk_length(source_of(options)));
+    }
+    Playback playback(options, settings, std::move(recorded), steps);
     const Status played = playback.run(*level);
-    if (!options.record.empty())
-        SUNFLECK_TRY(simulation::write_recording(options.record, playback.played()));
+    SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
     const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);
     SUNFLECK_TRY(write_file(statistics_file, statistics.dump(2) + "\n"));
     if (device->validation_messages() > 0)
         return Error{"validation printed messages (see above)"};
+    print_result(playback, options);
     return {};
 }
 

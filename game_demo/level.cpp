@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 #include "game_demo/presets.h"
+#include "viewer/built_in_scenes.h"
 #include "viewer/exposure.h"
 
 #include <algorithm>
@@ -14,25 +15,24 @@ constexpr double seconds_per_camera = 9.0;
 
 } // namespace
 
-std::filesystem::path built_in_scene(const std::string& name) {
-    std::error_code code;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
-    const std::string file = name + ".scene.json";
-    const std::filesystem::path installed = program.parent_path() / "../share/sunfleck/scenes" / file;
-    return std::filesystem::exists(installed, code) ? installed : program.parent_path() / "../scenes" / file;
+Result<io::ImportReport> load_world(const LevelSource& source, ecs::Registry& registry, scene::MeshStore& meshes,
+                                    scene::TextureStore& textures) {
+    SUNFLECK_ASSIGN(const std::filesystem::path path, viewer::find_scene(source.scene));
+    io::ImportOptions import;
+    import.allow_outside = source.allow_outside;
+    return io::load_scene(path, registry, meshes, textures, import);
 }
 
 Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSource& source, const DemoSettings& settings,
                                            std::uint32_t frames_in_flight, const std::function<bool(float)>& progress) {
     std::unique_ptr<Level> level(new Level());
     SUNFLECK_ASSIGN(level->renderer_, viewer::SceneRenderer::create(device, frames_in_flight));
-    const std::string& scene = source.scene;
-    const bool is_path = scene.find('/') != std::string::npos || scene.find('.') != std::string::npos;
+    SUNFLECK_ASSIGN(const std::filesystem::path path, viewer::find_scene(source.scene));
     io::ImportOptions import;
     import.progress = progress;
     import.allow_outside = source.allow_outside;
     level->renderer_->lighting().set_cache_folder(user_cache_folder());
-    SUNFLECK_TRY(level->renderer_->load(is_path ? std::filesystem::path(scene) : built_in_scene(scene), import));
+    SUNFLECK_TRY(level->renderer_->load(path, import));
     ecs::Registry& registry = level->renderer_->registry();
     level->ev100_ = viewer::scene_exposure(registry).value_or(viewer::default_exposure);
     registry.view<scene::Camera, scene::Name>().each(

@@ -7,14 +7,15 @@
 
 namespace sunfleck::demo {
 
-// The file of a built-in scene, installed or in the build folder.
-std::filesystem::path built_in_scene(const std::string& name);
-
 // A scene file, glTF file, or the name of a built-in scene.
 struct LevelSource {
     std::string scene;
     bool allow_outside = false; // io::ImportOptions::allow_outside
 };
+
+// Reads the scene of a level, without its light.
+Result<io::ImportReport> load_world(const LevelSource& source, ecs::Registry& registry, scene::MeshStore& meshes,
+                                    scene::TextureStore& textures);
 
 class Level {
 public:

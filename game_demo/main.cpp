@@ -28,9 +28,10 @@ void add_run_options(CLI::App& program, demo::Options& options) {
     viewer::add_name(program, "-o,--output", options.output, "Folder for images and stats.json", "FOLDER");
     viewer::add_name(program, "--input", options.input,
                      "Recorded input to replay when headless (default: the built-in walk)", "FILE");
-    viewer::add_name(program, "--record", options.record, "Record the input to this file", "FILE");
+    viewer::add_name(program, "--record", options.record,
+                     "Record the input to this file, which is written every second", "FILE");
     viewer::add_whole(program, "--pictures", options.pictures, 0, most_frames,
-                      "Number of images that a headless run writes");
+                      "Number of images that a headless run writes, evenly spaced from its first frame to its last");
     viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,
                       "Simulation steps of 1/60 s per frame of a headless run");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
@@ -56,6 +57,9 @@ void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
                        "Lighting of complex moving objects; prt: precomputed (default: set by the preset)");
     viewer::add_name(program, "--settings", options.settings_file,
                      "Settings file (default: sunfleck/demo.json in the configuration folder)", "FILE");
+    viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
+                     "FOLDER")
+        ->default_str("the current folder");
     program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");
 }
 
@@ -101,5 +105,5 @@ int main(int argc, char** argv) {
         log_error(status.error().message);
     if (stop_requested())
         return exit_stopped_by(stop_signal());
-    return status ? exit_done : exit_failed;
+    return status ? flushed(exit_done) : exit_failed;
 }

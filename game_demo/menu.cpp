@@ -1,27 +1,12 @@
 #include "game_demo/menu.h"
 
+#include "game_demo/gui_parts.h"
 #include "game_demo/presets.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <imgui.h>
 
 namespace sunfleck::demo {
 namespace {
-
-constexpr ImGuiWindowFlags plain = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
-constexpr ImGuiWindowFlags behind =
-    plain | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing;
-
-void place_next(float x, float y, float pivot_x, float pivot_y) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos(ImVec2(x * size.x, y * size.y), ImGuiCond_Always, ImVec2(pivot_x, pivot_y));
-}
-
-float unit() {
-    return ImGui::GetFontSize();
-}
 
 bool wide_button(const char* label) {
     return ImGui::Button(label, ImVec2(13.0f * unit(), 0.0f));
@@ -31,22 +16,6 @@ void heading(const char* text, float scale) {
     ImGui::SetWindowFontScale(scale);
     ImGui::TextUnformatted(text);
     ImGui::SetWindowFontScale(1.0f);
-}
-
-const char* verb(simulation::Interaction interaction) {
-    switch (interaction) {
-    case simulation::Interaction::open:
-        return "open the door";
-    case simulation::Interaction::close:
-        return "close the door";
-    case simulation::Interaction::switch_lamps:
-        return "switch the lamp";
-    case simulation::Interaction::take:
-        return "take the lantern";
-    case simulation::Interaction::none:
-        break;
-    }
-    return "";
 }
 
 bool choice_box(const Field& field, const char* label, std::uint32_t& value) {
@@ -73,8 +42,12 @@ bool slider(const Field& field, const char* label, char* place) {
                               ("%.2f " + unit_text).c_str(), ImGuiSliderFlags_AlwaysClamp);
 }
 
-std::string key_of(const DemoSettings& settings, Action action) {
-    return app::key_name(settings.bindings[std::size_t(action)]);
+// One size for all tabs, so that they stay under the pointer: room for the longest one, which otherwise scrolls.
+ImVec2 settings_size() {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    constexpr float rows = 13.0f; // heading, tabs, two sliders, seven rows of keys, gamepad, buttons
+    const float height = rows * ImGui::GetFrameHeightWithSpacing() + 2.0f * unit();
+    return {std::min(36.0f * unit(), 0.96f * screen.x), std::min(height, 0.96f * screen.y)};
 }
 
 } // namespace
@@ -82,6 +55,14 @@ std::string key_of(const DemoSettings& settings, Action action) {
 void Menu::say(std::string message, double seconds) {
     message_ = std::move(message);
     message_seconds_ = seconds;
+}
+
+void Menu::show(Screen screen) {
+    const bool leads_back = screen == Screen::settings || screen == Screen::help;
+    const bool from_main = screen_ != Screen::settings && screen_ != Screen::help;
+    if (leads_back && from_main)
+        came_from_ = screen_;
+    screen_ = screen;
 }
 
 void Menu::back() {
@@ -134,13 +115,10 @@ Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::
 }
 
 void Menu::settings_and_help_buttons() {
-    const Screen from = screen_;
     if (wide_button("Settings"))
-        screen_ = Screen::settings;
+        show(Screen::settings);
     if (wide_button("Help"))
-        screen_ = Screen::help;
-    if (screen_ != from)
-        came_from_ = from;
+        show(Screen::help);
 }
 
 // Drawn without a window: ImGui needs a frame to find a window's size, and this may be the only frame.
@@ -232,30 +210,42 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
 void Menu::display_tab(DemoSettings& settings, bool& changed) {
     for (const auto& [name, label] :
          {std::pair("full_screen", "Full screen"), std::pair("vertical_sync", "Vertical sync"),
-          std::pair("frame_cap", "Frame limit"), std::pair("show_times", "Frame times"),
-          std::pair("ui_scale", "Text size")})
+          std::pair("frame_cap", "Frame limit"), std::pair("show_times", "Frame times")})
         changed |= field(settings, name, label);
+    DemoSettings dragged = settings;
+    dragged.ui_scale = dragged_scale_.value_or(settings.ui_scale);
+    if (field(dragged, "ui_scale", "Text size"))
+        dragged_scale_ = dragged.ui_scale;
+    if (dragged_scale_ && !ImGui::IsItemActive()) {
+        settings.ui_scale = *dragged_scale_;
+        dragged_scale_.reset();
+        changed = true;
+    }
+}
+
+void Menu::settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed) {
+    if (!ImGui::BeginTabBar("tabs"))
+        return;
+    const auto tab = [](const char* label, const auto& content) {
+        if (!ImGui::BeginTabItem(label))
+            return;
+        ImGui::BeginChild(label, ImVec2(0.0f, -ImGui::GetFrameHeightWithSpacing()));
+        content();
+        ImGui::EndChild();
+        ImGui::EndTabItem();
+    };
+    tab("Image", [&] { image_tab(settings, changed); });
+    tab("Display", [&] { display_tab(settings, changed); });
+    tab("Controls", [&] { bindings_tab(settings, input, changed); });
+    ImGui::EndTabBar();
 }
 
 void Menu::settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed) {
     place_next(0.5f, 0.5f, 0.5f, 0.5f);
-    ImGui::Begin("settings", nullptr, plain);
+    ImGui::SetNextWindowSize(settings_size());
+    ImGui::Begin("settings", nullptr, plain & ~ImGuiWindowFlags_AlwaysAutoResize);
     heading("Settings", 1.4f);
-    if (ImGui::BeginTabBar("tabs")) {
-        if (ImGui::BeginTabItem("Image")) {
-            image_tab(settings, changed);
-            ImGui::EndTabItem();
-        }
-        if (ImGui::BeginTabItem("Display")) {
-            display_tab(settings, changed);
-            ImGui::EndTabItem();
-        }
-        if (ImGui::BeginTabItem("Controls")) {
-            bindings_tab(settings, input, changed);
-            ImGui::EndTabItem();
-        }
-        ImGui::EndTabBar();
-    }
+    settings_tabs(settings, input, changed);
     if (wide_button("Back"))
         back();
     ImGui::SameLine();
@@ -319,66 +309,6 @@ void Menu::help_screen(const DemoSettings& settings) {
     if (wide_button("Back"))
         back();
     ImGui::SetItemDefaultFocus();
-    ImGui::End();
-}
-
-void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    ImDrawList* list = ImGui::GetForegroundDrawList();
-    const bool target = data.interaction != simulation::Interaction::none;
-    list->AddCircleFilled(ImVec2(0.5f * size.x, 0.5f * size.y), target ? 0.22f * unit() : 0.12f * unit(),
-                          target ? IM_COL32(255, 196, 110, 220) : IM_COL32(255, 255, 255, 130));
-    std::string text;
-    if (target)
-        text = key_of(settings, Action::use) + "  " + verb(data.interaction);
-    else if (data.carries_lantern)
-        text = key_of(settings, Action::put_down) + "  put down the lantern";
-    if (text.empty())
-        return;
-    place_next(0.5f, 0.94f, 0.5f, 1.0f);
-    ImGui::SetNextWindowBgAlpha(0.45f);
-    ImGui::Begin("prompt", nullptr, behind);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::End();
-}
-
-void Menu::times(const OverlayData& data) {
-    place_next(0.99f, 0.02f, 1.0f, 0.0f);
-    ImGui::SetNextWindowBgAlpha(0.6f);
-    ImGui::Begin("times", nullptr, behind);
-    ImGui::Text("%.0f ms, %.1f frames per second", data.frame_ms, data.frame_ms > 0.0 ? 1000.0 / data.frame_ms : 0.0);
-    ImGui::Text("%u x %u, %llu light samples", data.rendered_width, data.rendered_height,
-                static_cast<unsigned long long>(data.light_samples));
-    ImGui::TextDisabled("%s", data.device.c_str());
-    double longest = 1e-6;
-    for (const auto* group : {&data.gpu_ms, &data.cpu_ms})
-        for (const auto& [name, time] : *group)
-            longest = std::max(longest, time);
-    const auto rows = [&](const char* title, const std::map<std::string, double>& group) {
-        ImGui::TextDisabled("%s, ms", title);
-        for (const auto& [name, time] : group) {
-            if (time < 0.05)
-                continue;
-            char number[32];
-            std::snprintf(number, sizeof number, "%.1f", time);
-            ImGui::ProgressBar(float(time / longest), ImVec2(7.0f * unit(), 0.9f * unit()), number);
-            ImGui::SameLine();
-            ImGui::TextUnformatted(name.c_str());
-        }
-    };
-    rows("GPU passes", data.gpu_ms);
-    rows("CPU stages", data.cpu_ms);
-    ImGui::End();
-}
-
-void Menu::message() {
-    if (message_seconds_ <= 0.0)
-        return;
-    message_seconds_ -= double(ImGui::GetIO().DeltaTime);
-    place_next(0.5f, 0.05f, 0.5f, 0.0f);
-    ImGui::SetNextWindowBgAlpha(0.6f);
-    ImGui::Begin("message", nullptr, behind);
-    ImGui::TextUnformatted(message_.c_str());
     ImGui::End();
 }
 

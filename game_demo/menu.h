@@ -6,6 +6,7 @@
 #include "game_demo/demo_settings.h"
 
 #include <map>
+#include <optional>
 
 namespace sunfleck::demo {
 
@@ -26,7 +27,8 @@ struct OverlayData {
 class Menu {
 public:
     Screen screen() const { return screen_; }
-    void show(Screen screen) { screen_ = screen; }
+    // Settings and help lead back to the screen that they were opened from.
+    void show(Screen screen);
     // Escape or the gamepad's start button.
     void back();
     // Draws and applies changes to `settings` immediately. `changed`: at least one setting changed.
@@ -41,6 +43,7 @@ private:
     Decision pause_screen(bool enter);
     void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
+    void settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed);
     void help_screen(const DemoSettings& settings);
     void prompts(const DemoSettings& settings, const OverlayData& data);
     void times(const OverlayData& data);
@@ -51,7 +54,8 @@ private:
     void bindings_tab(DemoSettings& settings, const app::InputState& input, bool& changed);
 
     Screen screen_ = Screen::title, came_from_ = Screen::title;
-    int rebinding_ = -1; // action that is waiting for a key
+    int rebinding_ = -1;                 // action that is waiting for a key
+    std::optional<float> dragged_scale_; // of text, while its slider is held: the slider must not move meanwhile
     std::string message_;
     double message_seconds_ = 0.0;
 };

@@ -10,14 +10,15 @@ namespace sunfleck::demo {
 struct Options {
     bool headless = false, validation = false;
     std::uint32_t frames = 0;          // 0: until the window is closed, or the input ends
-    std::uint32_t pictures = 8;        // written by a headless run, evenly spaced
+    std::uint32_t pictures = 8;        // written by a headless run, evenly spaced from the first frame to the last
     std::uint32_t steps_per_frame = 2; // of a headless run
     std::string output, device, scene = "lantern_house", input, record;
     std::optional<Preset> preset;
     std::optional<bool> transfer; // overrides the preset
     std::uint32_t width = 1280, height = 720;
     bool indirect = true;
-    std::string settings_file; // empty: the default one
+    std::string settings_file;     // empty: the default one
+    std::string screenshots = "."; // folder
     bool allow_outside = false;
 };
 

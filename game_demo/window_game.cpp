@@ -26,21 +26,22 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The first unused name in the current folder.
-std::filesystem::path free_screenshot_name() {
+// The first unused name in the folder, as a whole path, so that the message says where the picture is.
+std::filesystem::path free_screenshot_name(const std::filesystem::path& folder) {
     std::error_code code;
+    const std::filesystem::path place = std::filesystem::absolute(folder, code).lexically_normal();
     for (int number = 1; number < 10000; ++number) {
         char name[40];
         std::snprintf(name, sizeof name, "sunfleck_%04d.png", number);
-        if (!std::filesystem::exists(name, code))
-            return name;
+        if (!std::filesystem::exists(place / name, code))
+            return place / name;
     }
-    return "sunfleck.png";
+    return place / "sunfleck.png";
 }
 
 class Game {
 public:
-    explicit Game(const Options& options) : options_(options) {}
+    explicit Game(const Options& options) : options_(options), recording_(options.record) {}
 
     // However it ends, settings and recording are written.
     Status run() {
@@ -85,7 +86,10 @@ private:
     Status start() {
         settings_path_ =
             options_.settings_file.empty() ? settings_path() : std::filesystem::path(options_.settings_file);
-        LoadedSettings loaded = load_settings(settings_path_);
+        LoadedSettings loaded = settings_path_.empty() ? LoadedSettings() : load_settings(settings_path_);
+        if (settings_path_.empty())
+            loaded.problem = "Settings are not kept: neither HOME nor XDG_CONFIG_HOME is set (--settings FILE names a "
+                             "file)";
         settings_ = loaded.settings;
         SUNFLECK_ASSIGN(window_, app::Window::create("Lantern House", options_.width, options_.height));
         SUNFLECK_ASSIGN(device_,
@@ -98,6 +102,8 @@ private:
             settings_.transfer = *options_.transfer;
             settings_.preset = Preset::custom;
         }
+        first_settings_ = settings_text(settings_);
+        saved_settings_ = loaded.found ? first_settings_ : std::string();
         SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
         start_loading();
         window_->set_full_screen(settings_.full_screen);
@@ -130,7 +136,7 @@ private:
             SUNFLECK_TRY(device_->wait_idle());
             blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
             accumulator_ = 0.0;
-            inputs_.clear();
+            recording_.clear();
             window_->set_title("Lantern House");
             last_ = Clock::now();
             return {};
@@ -217,9 +223,10 @@ private:
             accumulator_ -= simulation::step_seconds;
             const simulation::StepInput step = controls_.next_step();
             level_->step(step);
-            if (started_ && !options_.record.empty())
-                inputs_.push_back(step);
+            if (started_)
+                recording_.add(step);
         }
+        recording_.save_if_due();
     }
 
     Status show(const app::InputState& input, double seconds) {
@@ -246,7 +253,8 @@ private:
         if (changed) {
             SUNFLECK_TRY(level_->apply(settings_));
             window_->set_full_screen(settings_.full_screen);
-            store_settings();
+            if (const Status status = store_settings(); !status)
+                menu_.say(status.error().message, 6.0);
         }
         decide(decision);
         return {};
@@ -296,7 +304,7 @@ private:
     // A failure to save is reported, and the game continues.
     void save_screenshot() {
         wants_screenshot_ = false;
-        const std::filesystem::path path = free_screenshot_name();
+        const std::filesystem::path path = free_screenshot_name(options_.screenshots);
         Status status = Status();
         if (auto picture = level_->renderer().read_back())
             status = io::write_picture(path, *picture);
@@ -305,17 +313,24 @@ private:
         menu_.say(status ? "Saved " + path.string() : status.error().message);
     }
 
-    void store_settings() {
+    // Where the file says something else.
+    Status store_settings() {
+        std::string text = settings_text(settings_);
+        if (settings_path_.empty() || text == saved_settings_)
+            return {};
         if (const Status status = save_settings(settings_path_, settings_); !status)
-            menu_.say("Cannot save the settings: " + status.error().message, 6.0);
+            return Error{"the settings are not saved: " + status.error().message};
+        saved_settings_ = std::move(text);
+        return {};
     }
 
     Status finish() {
         loader_.reset();
-        store_settings();
-        if (!options_.record.empty())
-            SUNFLECK_TRY(simulation::write_recording(options_.record, inputs_));
+        const Status stored = store_settings(), recorded = recording_.finish();
         SUNFLECK_TRY(device_->wait_idle());
+        if (settings_text(settings_) != first_settings_) // else nothing is lost
+            SUNFLECK_TRY(stored);
+        SUNFLECK_TRY(recorded);
         if (device_->validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};
@@ -337,7 +352,8 @@ private:
     double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
     bool started_ = false, indirect_ = true, wants_screenshot_ = false, start_before_ = false;
     float fade_ = 1.0f;
-    std::vector<simulation::StepInput> inputs_;
+    simulation::RecordingWriter recording_;
+    std::string first_settings_, saved_settings_; // as text: at the start, and in the file
 };
 
 } // namespace

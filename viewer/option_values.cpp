@@ -1,7 +1,9 @@
 #include "viewer/option_values.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <vector>
 
 namespace sunfleck::viewer {
 namespace {
@@ -14,6 +16,23 @@ bool parse(const std::string& text, T& value) {
     return code == std::errc() && rest == end;
 }
 
+// Edits that make `a` of `b`: a letter put in, left out, replaced, or swapped with the next one.
+std::size_t edits_between(const std::string& a, const std::string& b) {
+    std::vector<std::vector<std::size_t>> edits(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i)
+        for (std::size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                edits[i][j] = i + j;
+                continue;
+            }
+            const std::size_t replaced = edits[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            edits[i][j] = std::min({edits[i - 1][j] + 1, edits[i][j - 1] + 1, replaced});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                edits[i][j] = std::min(edits[i][j], edits[i - 2][j - 2] + 1);
+        }
+    return edits[a.size()][b.size()];
+}
+
 std::string shown(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.12g", value);
@@ -21,6 +40,26 @@ std::string shown(double value) {
 }
 
 } // namespace
+
+std::string closest_word(const std::string& text, std::span<const std::string> words) {
+    std::string closest;
+    std::size_t fewest = text.size();
+    for (const std::string& word : words) {
+        if (word.size() > 2 * text.size() + 2) // far too long
+            continue;
+        const std::size_t edits = edits_between(text, word);
+        if (edits < fewest && edits <= std::max<std::size_t>(2, text.size() / 3)) {
+            fewest = edits;
+            closest = word;
+        }
+    }
+    return closest;
+}
+
+std::string suggestion(const std::string& text, std::span<const std::string> words) {
+    const std::string word = closest_word(text, words);
+    return word.empty() ? std::string() : "; did you mean '" + word + "'?";
+}
 
 std::string range_text(double minimum, double maximum) {
     return "NUMBER " + shown(minimum) + " to " + shown(maximum);

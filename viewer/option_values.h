@@ -4,6 +4,7 @@
 #include "engine/core/result.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace sunfleck::viewer {
@@ -18,6 +19,12 @@ struct PictureSize {
 inline constexpr std::uint32_t largest_picture_side = 16384;
 // "WIDTHxHEIGHT"
 Result<PictureSize> size_value(const std::string& text);
+
+// The one of `words` that `text` was most likely meant to be: at most two letters, or a third of them, are missing, too
+// many, wrong or swapped. Empty if there is none.
+std::string closest_word(const std::string& text, std::span<const std::string> words);
+// "; did you mean 'render'?", or nothing.
+std::string suggestion(const std::string& text, std::span<const std::string> words);
 
 // "NUMBER 0.5 to 60" and "INT 1 to 60"
 std::string range_text(double minimum, double maximum);

@@ -61,8 +61,9 @@ inline CLI::Option* add_choice(CLI::App& app, const std::string& name, std::stri
     for (const std::string& choice : choices)
         list += (list.empty() ? "" : " | ") + choice;
     return app.add_option(name, target, text)->type_name(list)->check([=](const std::string& given) {
-        return std::find(choices.begin(), choices.end(), given) != choices.end() ? std::string()
-                                                                                 : "'" + given + "' is none of " + list;
+        if (std::find(choices.begin(), choices.end(), given) != choices.end())
+            return std::string();
+        return "'" + given + "' is none of " + list + suggestion(given, choices);
     });
 }
 

@@ -5,31 +5,12 @@
 
 #include "gi_module/technique.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 namespace sunfleck::command_line {
-namespace {
-
-// Built-in scenes lie beside the program: ../scenes in a build, ../share/sunfleck/scenes when installed.
-std::filesystem::path scene_folder() {
-    if (const char* environment = std::getenv("SUNFLECK_SCENES"))
-        return environment;
-    std::error_code code;
-    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", code);
-    for (const char* place : {"../scenes", "../share/sunfleck/scenes"}) {
-        std::filesystem::path folder = program.parent_path() / place;
-        if (std::filesystem::is_directory(folder, code))
-            return folder;
-    }
-    return program.parent_path() / "../scenes";
-}
-
-} // namespace
 
 Status apply_environment(const SceneOptions& options, ecs::Registry& registry, std::uint64_t* content_hash) {
     if (options.environment.empty())
@@ -57,36 +38,6 @@ io::ImportOptions import_options(const SceneOptions& options) {
         return !interrupted();
     };
     return result;
-}
-
-std::vector<std::string> built_in_scene_names() {
-    std::vector<std::string> names;
-    std::error_code code;
-    for (const auto& entry : std::filesystem::directory_iterator(scene_folder(), code)) {
-        const std::string file = entry.path().filename().string();
-        if (const std::size_t end = file.find(".scene.json"); end != std::string::npos)
-            names.push_back(file.substr(0, end));
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
-Result<std::filesystem::path> find_scene(const std::string& scene) {
-    std::error_code code;
-    if (scene.find('/') == std::string::npos && scene.find('.') == std::string::npos) {
-        const std::filesystem::path built_in = scene_folder() / (scene + ".scene.json");
-        if (std::filesystem::exists(built_in, code))
-            return built_in;
-        std::string names;
-        for (const std::string& name : built_in_scene_names())
-            names += (names.empty() ? "" : ", ") + name;
-        if (!std::filesystem::exists(scene, code))
-            return Error{"no built-in scene is called '" + scene + "' (there are: " + names +
-                         "), and no such file exists"};
-    }
-    if (!std::filesystem::exists(scene, code))
-        return Error{"scene file '" + scene + "' does not exist"};
-    return std::filesystem::path(scene);
 }
 
 scene::CameraView camera_of_frame(const scene::CameraView& start, const SceneOptions& options, std::uint32_t frame) {
@@ -177,24 +128,6 @@ int exit_status(const Status& status, int on_error) {
         return exit_done;
     fail(status.error());
     return stop_requested() ? exit_stopped_by(stop_signal()) : on_error;
-}
-
-Progress::~Progress() {
-    if (drawn_ && ::isatty(2))
-        std::fputc('\n', stderr);
-}
-
-void Progress::show(double share, const std::string& detail) {
-    const int tenth = int(share * 10.0);
-    if (::isatty(2)) {
-        const int filled = int(share * 30.0);
-        std::fprintf(stderr, "\r%s [%-30.*s] %3.0f %%  %s   ", what_.c_str(), filled, "##############################",
-                     share * 100.0, detail.c_str());
-        drawn_ = true;
-    } else if (tenth != last_tenth_) {
-        std::fprintf(stderr, "%s: %d %%  %s\n", what_.c_str(), tenth * 10, detail.c_str());
-    }
-    last_tenth_ = tenth;
 }
 
 bool interrupted() {

@@ -5,8 +5,10 @@
 #include "engine/core/exit_status.h"
 #include "engine/statistics/summary.h"
 #include "gi_module/settings.h"
+#include "viewer/built_in_scenes.h"
 #include "viewer/exposure.h"
 #include "viewer/option_values.h"
+#include "viewer/progress.h"
 #include "viewer/scene_renderer.h"
 
 #include <functional>
@@ -44,9 +46,8 @@ io::ImportOptions import_options(const SceneOptions& options);
 // What the command line or the scene says; none: the picture decides (viewer::automatic_exposure).
 std::optional<float> exposure_of(const SceneOptions& options, ecs::Registry& registry);
 
-// A path as it is, or the file of a built-in scene of that name.
-Result<std::filesystem::path> find_scene(const std::string& scene);
-std::vector<std::string> built_in_scene_names();
+using viewer::built_in_scene_names;
+using viewer::find_scene;
 
 // The camera of frame `frame` (counted from the first warm-up frame).
 scene::CameraView camera_of_frame(const scene::CameraView& start, const SceneOptions& options, std::uint32_t frame);
@@ -80,19 +81,7 @@ int fail(const Error& error);
 // exit_done, or the message and `on_error`; where a signal ended the work, exit_stopped_by it.
 int exit_status(const Status& status, int on_error = exit_failed);
 
-// A line on standard error that shows how far the work is; silent where standard error is no terminal, but for a line
-// every ten percent.
-class Progress {
-public:
-    explicit Progress(std::string what) : what_(std::move(what)) {}
-    ~Progress();
-    void show(double share, const std::string& detail);
-
-private:
-    std::string what_;
-    int last_tenth_ = -1;
-    bool drawn_ = false;
-};
+using viewer::Progress;
 
 // True once the user pressed Ctrl-C, or the program was asked to end by another signal (engine/core/stop_signals.h).
 bool interrupted();

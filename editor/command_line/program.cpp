@@ -241,6 +241,11 @@ public:
 
     // The exit status where there is nothing to run: help was asked for, or the command line is wrong.
     std::optional<int> parse(int argc, const char* const* argv, std::ostream& out, std::ostream& errors) {
+        if (argc > 1 && argv[1][0] != '-' && argv[1][0] != '\0' && !is_command(argv[1])) {
+            errors << "error: there is no command '" << argv[1] << "'" << suggestion_of(argv[1])
+                   << " (sunfleck --help lists them)\n";
+            return exit_usage;
+        }
         try {
             app_.parse(argc, argv);
         } catch (const CLI::ParseError& error) {
@@ -257,6 +262,18 @@ public:
     }
 
 private:
+    bool is_command(const std::string& name) const {
+        return std::any_of(commands_.begin(), commands_.end(),
+                           [&](const Command& command) { return command.app->get_name() == name; });
+    }
+    std::string suggestion_of(const std::string& name) const {
+        std::vector<std::string> names;
+        names.reserve(commands_.size());
+        for (const Command& command : commands_)
+            names.push_back(command.app->get_name());
+        return viewer::suggestion(name, names);
+    }
+
     CLI::App app_{"Sunfleck: real-time global illumination with hundreds of shadowed light samples."};
     std::vector<Command> commands_;
 };

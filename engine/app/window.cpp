@@ -98,6 +98,9 @@ struct WindowEvents {
     static void pointer(GLFWwindow* handle, double x, double y) { add(handle, {Kind::pointer, 0, false, x, y}); }
     static void scroll(GLFWwindow* handle, double x, double y) { add(handle, {Kind::scroll, 0, false, x, y}); }
     static void focus(GLFWwindow* handle, int focused) { add(handle, {Kind::focus, 0, focused == GLFW_TRUE}); }
+    // The window went elsewhere or took another size, or the pointer came in: its next place is no motion.
+    static void jump(GLFWwindow* handle, int, int) { add(handle, {Kind::jump}); }
+    static void enter(GLFWwindow* handle, int) { add(handle, {Kind::jump}); }
     static void drop(GLFWwindow* handle, int count, const char** paths) {
         add(handle, {Kind::drop, 0, false, 0.0, 0.0, {paths, paths + count}});
     }
@@ -140,6 +143,9 @@ void Window::take(const Event& event) {
         return;
     case Event::Kind::pointer:
         return move_pointer({float(event.x), float(event.y)});
+    case Event::Kind::jump:
+        skip_motion_ = true;
+        return;
     case Event::Kind::scroll:
         pending_.scroll += float(event.y);
         return;
@@ -184,6 +190,9 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
     glfwSetCharCallback(handle, WindowEvents::letter);
     glfwSetMouseButtonCallback(handle, WindowEvents::button);
     glfwSetCursorPosCallback(handle, WindowEvents::pointer);
+    glfwSetCursorEnterCallback(handle, WindowEvents::enter);
+    glfwSetWindowSizeCallback(handle, WindowEvents::jump);
+    glfwSetWindowPosCallback(handle, WindowEvents::jump);
     glfwSetScrollCallback(handle, WindowEvents::scroll);
     glfwSetWindowFocusCallback(handle, WindowEvents::focus);
     glfwSetDropCallback(handle, WindowEvents::drop);

@@ -102,7 +102,7 @@ private:
     friend struct WindowEvents;
     Window() = default;
     struct Event {
-        enum class Kind { key, letter, button, pointer, scroll, focus, drop } kind;
+        enum class Kind { key, letter, button, pointer, jump, scroll, focus, drop } kind;
         int code = 0;
         bool down = false;
         double x = 0.0, y = 0.0;

@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
@@ -42,7 +43,9 @@ Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path)
     return steps;
 }
 
-Status write_recording(const std::filesystem::path& path, const std::vector<StepInput>& steps) {
+namespace {
+
+std::string recording_text(const std::vector<StepInput>& steps) {
     std::ostringstream text;
     text << first_line << "\n# count forward right turn look_up buttons\n";
     for (std::size_t i = 0; i < steps.size();) {
@@ -54,7 +57,61 @@ Status write_recording(const std::filesystem::path& path, const std::vector<Step
              << '\n';
         i = end;
     }
-    return write_file(path, text.str());
+    return text.str();
+}
+
+} // namespace
+
+Status write_recording(const std::filesystem::path& path, const std::vector<StepInput>& steps) {
+    return write_file(path, recording_text(steps));
+}
+
+RecordingWriter::~RecordingWriter() {
+    if (writing_.valid())
+        writing_.wait();
+}
+
+void RecordingWriter::add(const StepInput& step) {
+    if (path_.empty())
+        return;
+    steps_.push_back(step);
+    changed_ = true;
+}
+
+void RecordingWriter::clear() {
+    steps_.clear();
+    changed_ = false;
+}
+
+void RecordingWriter::start_writing() {
+    writing_ = std::async(std::launch::async, [path = path_, steps = steps_] {
+        const Clock::time_point begin = Clock::now();
+        Status status = write_recording(path, steps);
+        return std::pair(std::move(status), Clock::now() - begin);
+    });
+    changed_ = false;
+}
+
+void RecordingWriter::save_if_due() {
+    using namespace std::chrono_literals;
+    if (writing_.valid()) {
+        if (writing_.wait_for(0s) != std::future_status::ready)
+            return;
+        const auto [status, took] = writing_.get();
+        due_ = Clock::now() + std::max<Clock::duration>(1s, 50 * took);
+        changed_ = changed_ || !status;
+    }
+    if (changed_ && Clock::now() >= due_)
+        start_writing();
+}
+
+Status RecordingWriter::finish() {
+    if (writing_.valid())
+        writing_.wait();
+    if (path_.empty())
+        return {};
+    changed_ = false;
+    return write_recording(path_, steps_);
 }
 
 } // namespace sunfleck::simulation

@@ -3,8 +3,10 @@
 
 #include "engine/core/result.h"
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <vector>
 
 namespace sunfleck::simulation {
@@ -24,5 +26,35 @@ inline constexpr float look_unit = 1e-4f; // rad
 // of the same input. Lines that begin with # are ignored.
 Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path);
 Status write_recording(const std::filesystem::path& path, const std::vector<StepInput>& steps);
+
+// A recording that is kept on disk while it grows: what a kill loses is the last second or, of recordings that take
+// long to write, fifty times what the last write took. For one thread; writing is done on another, so that no frame
+// waits for the disk.
+class RecordingWriter {
+public:
+    // An empty path: nothing is recorded.
+    explicit RecordingWriter(std::filesystem::path path) : path_(std::move(path)) {}
+    ~RecordingWriter();
+    RecordingWriter(const RecordingWriter&) = delete;
+    RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+    void add(const StepInput& step);
+    // Starts over: another world.
+    void clear();
+    // Once a frame: writes if it is due.
+    void save_if_due();
+    // Writes everything and waits for it. The error is of this write; one before may have failed for a passing reason.
+    Status finish();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void start_writing();
+
+    const std::filesystem::path path_;
+    std::vector<StepInput> steps_;
+    bool changed_ = false;
+    Clock::time_point due_ = Clock::now();
+    std::future<std::pair<Status, Clock::duration>> writing_; // the result, and how long it took
+};
 
 } // namespace sunfleck::simulation

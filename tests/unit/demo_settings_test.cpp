@@ -1,11 +1,15 @@
 // What the player chooses: kept whole, and damage does no harm.
 #include "engine/core/file.h"
 #include "game_demo/controls.h"
+#include "game_demo/menu.h"
 #include "game_demo/presets.h"
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <optional>
+#include <thread>
 
 namespace sunfleck::demo {
 namespace {
@@ -84,6 +88,72 @@ TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
         EXPECT_TRUE(settings.transfer || !before.transfer);
         before = settings;
     }
+}
+
+TEST_F(DemoSettingsTest, HaveNoPlaceWithoutAHome) {
+    const auto value_of = [](const char* name) {
+        const char* value = std::getenv(name);
+        return value != nullptr ? std::optional<std::string>(value) : std::nullopt;
+    };
+    const auto put_back = [](const char* name, const std::optional<std::string>& value) {
+        value ? setenv(name, value->c_str(), 1) : unsetenv(name);
+    };
+    const auto home = value_of("HOME"), config = value_of("XDG_CONFIG_HOME");
+    unsetenv("XDG_CONFIG_HOME");
+    setenv("HOME", "/home/someone", 1);
+    EXPECT_EQ(settings_path(), "/home/someone/.config/sunfleck/demo.json");
+    for (const char* nowhere : {"", "relative"}) {
+        setenv("HOME", nowhere, 1);
+        EXPECT_TRUE(settings_path().empty()) << nowhere;
+    }
+    unsetenv("HOME");
+    EXPECT_TRUE(settings_path().empty());
+    setenv("XDG_CONFIG_HOME", "/elsewhere", 1);
+    EXPECT_EQ(settings_path(), "/elsewhere/sunfleck/demo.json");
+    put_back("HOME", home);
+    put_back("XDG_CONFIG_HOME", config);
+}
+
+TEST(Menu, SettingsAndHelpLeadBackToWhereTheyWereOpened) {
+    for (const Screen from : {Screen::title, Screen::playing, Screen::paused})
+        for (const Screen to : {Screen::help, Screen::settings}) {
+            Menu menu;
+            menu.show(from);
+            menu.show(to);
+            EXPECT_EQ(menu.screen(), to);
+            menu.back();
+            EXPECT_EQ(menu.screen(), from);
+        }
+}
+
+TEST(RecordingWriter, KeepsTheFileUpToDate) {
+    const fs::path path = fs::path(testing::TempDir()) / ("sunfleck_recording_" + std::to_string(getpid()));
+    const auto steps_in_file = [&] {
+        const auto steps = simulation::read_recording(path);
+        return steps ? steps->size() : 0;
+    };
+    std::vector<simulation::StepInput> given;
+    {
+        simulation::RecordingWriter writer(path);
+        for (std::int32_t i = 0; i < 100; ++i) {
+            given.push_back({100, 0, i, 0, 0});
+            writer.add(given.back());
+        }
+        writer.save_if_due(); // the first write is due at once
+        for (int i = 0; i < 500 && steps_in_file() == 0; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        EXPECT_EQ(steps_in_file(), 100u) << "before finish";
+        given.push_back({});
+        writer.add(given.back());
+        ASSERT_TRUE(writer.finish());
+        EXPECT_EQ(simulation::read_recording(path).value(), given);
+        writer.clear();
+        ASSERT_TRUE(writer.finish());
+        EXPECT_EQ(steps_in_file(), 0u);
+    }
+    EXPECT_FALSE(simulation::RecordingWriter("/no/such/folder/walk.txt").finish());
+    EXPECT_TRUE(simulation::RecordingWriter("").finish()) << "nothing is recorded";
+    fs::remove(path);
 }
 
 TEST(KeyNames, GoBothWays) {

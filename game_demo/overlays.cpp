@@ -1,0 +1,112 @@
+// What is drawn over the game: prompts, frame times, messages.
+#include "game_demo/gui_parts.h"
+#include "game_demo/menu.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace sunfleck::demo {
+namespace {
+
+const char* verb(simulation::Interaction interaction) {
+    switch (interaction) {
+    case simulation::Interaction::open:
+        return "open the door";
+    case simulation::Interaction::close:
+        return "close the door";
+    case simulation::Interaction::switch_lamps:
+        return "switch the lamp";
+    case simulation::Interaction::take:
+        return "take the lantern";
+    case simulation::Interaction::none:
+        break;
+    }
+    return "";
+}
+
+// Bars for at most `limit` parts of a frame, the longest ones, in the order of their names.
+void time_rows(const char* title, const std::map<std::string, double>& group, double longest, std::size_t limit) {
+    std::vector<std::pair<std::string, double>> rows;
+    rows.reserve(group.size());
+    for (const auto& [name, time] : group)
+        if (time >= 0.05)
+            rows.emplace_back(name, time);
+    double others = 0.0;
+    while (rows.size() > limit) {
+        const auto shortest = std::min_element(rows.begin(), rows.end(),
+                                               [](const auto& a, const auto& b) { return a.second < b.second; });
+        others += shortest->second;
+        rows.erase(shortest);
+    }
+    if (others > 0.0)
+        rows.emplace_back("others", others);
+    ImGui::BeginGroup();
+    ImGui::TextDisabled("%s, ms", title);
+    for (const auto& [name, time] : rows) {
+        char number[32];
+        std::snprintf(number, sizeof number, "%.1f", time);
+        ImGui::ProgressBar(float(std::min(time / longest, 1.0)), ImVec2(7.0f * unit(), 0.9f * unit()), number);
+        ImGui::SameLine();
+        ImGui::TextUnformatted(name.c_str());
+    }
+    ImGui::EndGroup();
+}
+
+} // namespace
+
+void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImDrawList* list = ImGui::GetForegroundDrawList();
+    const bool target = data.interaction != simulation::Interaction::none;
+    list->AddCircleFilled(ImVec2(0.5f * size.x, 0.5f * size.y), target ? 0.22f * unit() : 0.12f * unit(),
+                          target ? IM_COL32(255, 196, 110, 220) : IM_COL32(255, 255, 255, 130));
+    std::string text;
+    if (target)
+        text = key_of(settings, Action::use) + "  " + verb(data.interaction);
+    else if (data.carries_lantern)
+        text = key_of(settings, Action::put_down) + "  put down the lantern";
+    if (text.empty())
+        return;
+    place_next(0.5f, 0.94f, 0.5f, 1.0f);
+    ImGui::SetNextWindowBgAlpha(0.45f);
+    ImGui::Begin("prompt", nullptr, behind);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::End();
+}
+
+void Menu::times(const OverlayData& data) {
+    place_next(0.99f, 0.02f, 1.0f, 0.0f);
+    ImGui::SetNextWindowBgAlpha(0.6f);
+    ImGui::Begin("times", nullptr, behind);
+    ImGui::Text("%.0f ms, %.1f frames per second", data.frame_ms, data.frame_ms > 0.0 ? 1000.0 / data.frame_ms : 0.0);
+    ImGui::Text("%u x %u, %llu light samples", data.rendered_width, data.rendered_height,
+                static_cast<unsigned long long>(data.light_samples));
+    ImGui::TextDisabled("%s", data.device.c_str());
+    // Both columns fit below the text above: what is left out of one is its row "others".
+    const float row = ImGui::GetTextLineHeightWithSpacing();
+    const float room = 0.96f * ImGui::GetIO().DisplaySize.y - ImGui::GetCursorPosY();
+    const bool wide = row * float(data.gpu_ms.size() + data.cpu_ms.size() + 4) > room;
+    const std::size_t rows = std::max<std::size_t>(std::size_t(std::max(room / row, 0.0f)), 4) - 3;
+    double longest = 1e-6;
+    for (const auto* group : {&data.gpu_ms, &data.cpu_ms})
+        for (const auto& [name, time] : *group)
+            longest = std::max(longest, time);
+    time_rows("GPU passes", data.gpu_ms, longest, rows);
+    if (wide)
+        ImGui::SameLine(0.0f, unit());
+    time_rows("CPU stages", data.cpu_ms, longest, rows);
+    ImGui::End();
+}
+
+void Menu::message() {
+    if (message_seconds_ <= 0.0)
+        return;
+    message_seconds_ -= double(ImGui::GetIO().DeltaTime);
+    place_next(0.5f, 0.05f, 0.5f, 0.0f);
+    ImGui::SetNextWindowBgAlpha(0.6f);
+    ImGui::Begin("message", nullptr, behind);
+    ImGui::TextUnformatted(message_.c_str());
+    ImGui::End();
+}
+
+} // namespace sunfleck::demo
