@@ -62,6 +62,8 @@ Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles) {
 
 Status Context::set(std::string_view name, std::string_view value) {
     Implementation& self = *implementation_;
+    if (const Field* field = gi::SensorSettings::description().find(name))
+        return self.set_for_sensors(*field, value);
     gi::Settings changed = self.settings;
     SUNFLECK_TRY(changed.set(name, value));
     SUNFLECK_TRY(self.system->set_settings(changed));

@@ -5,6 +5,7 @@
 
 #include "engine/scene/camera_projection.h"
 #include "gi_module/g_buffer/conversion.h"
+#include "gi_module/light_sensors/light_sensors.h"
 #include "gi_module/system.h"
 #include "sunfleck/host.h"
 
@@ -37,7 +38,9 @@ struct Context::Implementation {
     std::unique_ptr<raytrace::RayScene> rays;
     std::unique_ptr<gi::System> system;
     std::unique_ptr<gi::GBufferConversion> conversion;
+    std::unique_ptr<gi::LightSensors> sensors; // null until there is one
     gi::Settings settings;
+    gi::SensorSettings sensor_settings;
     ecs::Registry registry;
     scene::MeshStore meshes;
     scene::ChangeTracker change_tracker{scene::ChangeTracker::Space::of_scene};
@@ -45,6 +48,7 @@ struct Context::Implementation {
     scene::TextureStore textures;
     std::vector<SharedMaterial> materials;
     std::vector<ecs::Entity> instances, lights;    // null: removed
+    std::vector<ecs::Entity> sensor_entities;      // the same
     std::vector<std::uint32_t> instance_materials; // no_material: a surface of its own
     std::vector<std::uint32_t> surface_ids;        // by instance
     std::optional<mat4> view_projection;           // of the last frame recorded
@@ -64,6 +68,7 @@ struct Context::Implementation {
     void set_light(ecs::Entity entity, const LightData& data);
     Result<SharedMaterial> make_material(const MaterialData& data, const SharedMaterial* before);
     void set_surface(ecs::Entity entity, const SharedMaterial& surface);
+    Status set_for_sensors(const Field& field, std::string_view value);
     void forget_lost_commands();
     Status record(VkCommandBuffer commands, const scene::ProjectedCamera& camera, const FrameImages& images);
     Status record_passes(VkCommandBuffer commands, const gpu::UploadSlice& row, const scene::DepthMapping& mapping,

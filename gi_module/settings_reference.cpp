@@ -1,6 +1,7 @@
 #include "gi_module/settings_reference.h"
 
 #include "gi_module/light_sampling/sample_source.h"
+#include "gi_module/light_sensors/light_sensors.h"
 #include "gi_module/technique.h"
 
 namespace sunfleck::gi {
@@ -103,6 +104,9 @@ std::string settings_reference() {
     const Settings defaults;
     for (const Settings::ConstPart& part : defaults.parts())
         text += settings_section(part);
+    // Not among the Settings of a System: sensors follow the fixed step, not frames.
+    const SensorSettings sensors;
+    text += settings_section({&SensorSettings::description(), &sensors});
     return text + techniques_section() + sources_section() + counters_section() + views_section();
 }
 

@@ -37,7 +37,8 @@ const std::vector<ComponentAccess>& saved_components() {
         access<scene::AreaLight>(),     access<scene::Mover>(),          access<scene::Exposure>(),
         access<scene::Environment>(),   access<scene::SurfacePattern>(), access<scene::SplinePath>(),
         access<scene::RigidBody>(),     access<scene::LightSwitch>(),    access<scene::PlayerStart>(),
-        access<scene::ShadowCasting>(), access<scene::Lantern>(),        access<scene::EnvironmentMap>()};
+        access<scene::ShadowCasting>(), access<scene::Lantern>(),        access<scene::EnvironmentMap>(),
+        access<scene::LightSensor>(),   access<scene::GameArea>()};
     return list;
 }
 

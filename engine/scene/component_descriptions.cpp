@@ -158,8 +158,10 @@ const TypeDescription& Mover::description() {
          SUNFLECK_FIELD(Mover, spin_period, "s", 0, 1e4,
                         "Time of one revolution about its own vertical axis; 0: no spin"),
          SUNFLECK_CHOICE(Mover, easing, "Line and hinge: easing of the motion", "sine", "linear", "dwell"),
-         SUNFLECK_CHOICE(Mover, activation, "Moves always, while a person is near, or when used", "clock", "near",
-                         "use"),
+         SUNFLECK_CHOICE(
+             Mover, activation,
+             "Moves always, while a person is near, when used, or while light sensors that name it are open", "clock",
+             "near", "use", "sensor"),
          SUNFLECK_FIELD(Mover, reach, "m", 0, 100, "Distance at which a person activates it")}};
     return type;
 }

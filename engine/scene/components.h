@@ -155,7 +155,8 @@ enum class MoverPath : std::uint32_t { none, line, circle, spin, hinge, spline }
 // ends.
 enum class MoverEasing : std::uint32_t { sine, linear, dwell };
 // clock: always. near: moves to its far end while a person is within `reach`, then back. use: when a person uses it.
-enum class MoverActivation : std::uint32_t { clock, near, use };
+// sensor: to its far end while every LightSensor that names it is open, then back.
+enum class MoverActivation : std::uint32_t { clock, near, use, sensor };
 
 // A moving entity. On the clock, its pose is a function of the simulation step alone, relative to its initial
 // transform; when activated, it moves from there to the end of its line or hinge in half a period, and back.

@@ -25,6 +25,23 @@ Character::Character(vec3 foot, float yaw, float standing_height)
     capsule_.height = standing_height;
 }
 
+CharacterState Character::state() const {
+    return {capsule_.foot, velocity_, safe_, capsule_.height, yaw_, pitch_, falling_, eye_lag_, grounded_};
+}
+
+void Character::restore(const CharacterState& state) {
+    capsule_.foot = state.foot;
+    capsule_.height = state.height;
+    velocity_ = state.velocity;
+    safe_ = state.safe;
+    yaw_ = state.yaw;
+    pitch_ = state.pitch;
+    falling_ = state.falling;
+    eye_lag_ = state.eye_lag;
+    grounded_ = state.grounded;
+    ground_ = ecs::null_entity;
+}
+
 vec3 Character::eye() const {
     return capsule_.foot + vec3(0.0f, capsule_.height - 0.12f - eye_lag_, 0.0f);
 }

@@ -11,6 +11,13 @@ struct CharacterInput {
     bool run = false, crouch = false;
 };
 
+// All that a Character goes on from, but for what it stands on, which the next step finds.
+struct CharacterState {
+    vec3 foot{0.0f}, velocity{0.0f}, safe{0.0f};
+    float height = 0.0f, yaw = 0.0f, pitch = 0.0f, falling = 0.0f, eye_lag = 0.0f;
+    bool grounded = false;
+};
+
 class Character {
 public:
     Character() = default;
@@ -20,9 +27,13 @@ public:
     // One fixed step, after that of the physics world.
     void step(PhysicsWorld& world, const CharacterInput& input, ecs::Entity ignored = ecs::null_entity);
 
+    CharacterState state() const;
+    void restore(const CharacterState& state);
+
     const Capsule& capsule() const { return capsule_; }
     vec3 eye() const;
     vec3 forward() const; // view direction
+    float standing_height() const { return standing_height_; }
     float yaw() const { return yaw_; }
     float pitch() const { return pitch_; }
     vec3 velocity() const { return velocity_; }

@@ -11,8 +11,14 @@
 
 namespace sunfleck::simulation {
 
-enum Button : std::uint32_t { button_run = 1, button_crouch = 2, button_use = 4, button_put_down = 8 };
-inline constexpr std::uint32_t all_buttons = 15;
+enum Button : std::uint32_t {
+    button_run = 1,
+    button_crouch = 2,
+    button_use = 4,
+    button_put_down = 8,
+    button_reset = 16
+};
+inline constexpr std::uint32_t all_buttons = 31;
 
 struct StepInput {
     std::int32_t forward = 0, right = 0; // -100 to 100: per cent of full speed

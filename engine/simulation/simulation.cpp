@@ -18,17 +18,6 @@ struct LampMemory {
     vec3 area{0.0f}, emission{0.0f}, point{0.0f}, spot{0.0f};
 };
 
-std::vector<std::string> split_names(const std::string& list) {
-    std::vector<std::string> names;
-    for (std::size_t begin = 0; begin < list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        if (end > begin)
-            names.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return names;
-}
-
 // The entity itself or the nearest ancestor that has the component.
 template <typename T>
 ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
@@ -41,6 +30,14 @@ ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
         entity = parent->parent;
     }
     return ecs::null_entity;
+}
+
+std::vector<ecs::Entity> sensors_in_order(ecs::Registry& registry) {
+    std::vector<ecs::Entity> sensors;
+    registry.view<scene::SensorReading>().each(
+        [&](ecs::Entity entity, const scene::SensorReading&) { sensors.push_back(entity); });
+    std::sort(sensors.begin(), sensors.end());
+    return sensors;
 }
 
 ecs::Registry& prepared(ecs::Registry& registry) {
@@ -65,7 +62,7 @@ ecs::Registry& prepared(ecs::Registry& registry) {
 } // namespace
 
 void apply_switch(ecs::Registry& registry, const scene::LightSwitch& state) {
-    for (const std::string& name : split_names(state.lamps)) {
+    for (const std::string& name : scene::split_names(state.lamps)) {
         const ecs::Entity lamp = scene::find_by_name(registry, name);
         if (lamp.is_null())
             continue;
@@ -101,8 +98,43 @@ Simulation::Simulation(ecs::Registry& registry, const scene::MeshStore& meshes)
         if (lantern.carried && carried_.is_null())
             carried_ = entity;
     });
+    link_sensors(registry);
     carry(registry);
     scene::update_world_transforms(registry);
+}
+
+void Simulation::link_sensors(ecs::Registry& registry) {
+    registry.view<scene::LightSensor>().each([&](ecs::Entity entity, const scene::LightSensor& sensor) {
+        for (const std::string& name : scene::split_names(sensor.opens))
+            sensor_opens_.emplace_back(entity, scene::find_by_name(registry, name));
+        for (const std::string& name : scene::split_names(sensor.shows))
+            sensor_shows_.emplace_back(entity, scene::find_by_name(registry, name));
+    });
+}
+
+// Gauges follow the readings at once.
+void Simulation::show_readings(ecs::Registry& registry) const {
+    for (const auto& [sensor, gauge] : sensor_shows_) {
+        const scene::SensorReading* reading = registry.try_get<scene::SensorReading>(sensor);
+        if (reading == nullptr || !registry.alive(gauge) || !registry.has<scene::MoverState>(gauge))
+            continue;
+        const float progress = std::min(reading->share / scene::sensor_gauge_end, 1.0f);
+        registry.update<scene::MoverState>(gauge, {progress, false});
+    }
+}
+
+// Whether all sensors that name the mover, and at least one, are open.
+bool Simulation::sensors_open(const ecs::Registry& registry, ecs::Entity mover) const {
+    bool named = false;
+    for (const auto& [sensor, opens] : sensor_opens_) {
+        if (opens != mover)
+            continue;
+        const scene::SensorReading* reading = registry.try_get<scene::SensorReading>(sensor);
+        if (reading == nullptr || !reading->open)
+            return false;
+        named = true;
+    }
+    return named;
 }
 
 Character Simulation::find_start(ecs::Registry& registry, const Bounds& bounds) {
@@ -130,6 +162,7 @@ void Simulation::step(ecs::Registry& registry, const StepInput& input) {
     const std::uint32_t pressed = input.buttons & ~held_buttons_;
     held_buttons_ = input.buttons;
     advance_movers(registry, false);
+    show_readings(registry);
     set_movers_to_step(registry, steps_);
     physics_.step(registry);
     CharacterInput person;
@@ -160,6 +193,8 @@ void Simulation::advance_movers(ecs::Registry& registry, bool back) {
             const scene::MoverOrigin* origin = registry.try_get<scene::MoverOrigin>(entity);
             if (mover.activation == scene::MoverActivation::near && origin != nullptr)
                 next.open = glm::length(origin->transform.position - person) < mover.reach;
+            if (mover.activation == scene::MoverActivation::sensor)
+                next.open = sensors_open(registry, entity);
             float by = float(step_seconds) / (0.5f * mover.period) * (next.open ? 1.0f : -1.0f);
             if (back)
                 by = -2.0f * by;
@@ -238,12 +273,56 @@ void Simulation::put_down(ecs::Registry& registry) {
     if (!ground)
         return;
     const vec3 place = ground->point;
-    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = false; });
     scene::Transform transform = registry.get<scene::Transform>(carried_);
     transform.position = place;
     transform.rotation = glm::angleAxis(player_.yaw(), vec3(0.0f, 1.0f, 0.0f));
+    let_go(registry, transform);
+}
+
+void Simulation::let_go(ecs::Registry& registry, const scene::Transform& transform) {
+    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = false; });
     physics_.place(registry, carried_, transform);
     carried_ = ecs::null_entity;
+}
+
+void Simulation::restore(ecs::Registry& registry, const SimulationState& state) {
+    steps_ = state.steps;
+    held_buttons_ = state.held_buttons;
+    player_.restore(state.person);
+    carried_ = state.carried;
+    std::vector<scene::LightSwitch> switches;
+    registry.view<scene::LightSwitch>().each(
+        [&](ecs::Entity, const scene::LightSwitch& lamps) { switches.push_back(lamps); });
+    for (const scene::LightSwitch& lamps : switches)
+        apply_switch(registry, lamps);
+    std::vector<std::pair<ecs::Entity, scene::Transform>> moved;
+    registry.view<scene::Mover, scene::Transform>().each(
+        [&](ecs::Entity entity, const scene::Mover&, const scene::Transform& transform) {
+            moved.emplace_back(entity, transform);
+        });
+    for (const auto& [entity, transform] : moved)
+        physics_.place(registry, entity, transform);
+    scene::update_world_transforms(registry);
+}
+
+void Simulation::place_player(vec3 foot, vec3 ahead) {
+    player_ = Character(foot, std::atan2(-ahead.x, -ahead.z), player_.standing_height());
+}
+
+void Simulation::hand_lantern(ecs::Registry& registry, ecs::Entity lantern) {
+    if (carried_ == lantern)
+        return;
+    if (!carried_.is_null())
+        let_go(registry, scene::Transform(registry.get<scene::Transform>(carried_)));
+    carried_ = lantern;
+    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& state) { state.carried = true; });
+}
+
+void Simulation::put_lantern(ecs::Registry& registry, ecs::Entity lantern, const scene::Transform& transform) {
+    if (carried_ == lantern)
+        let_go(registry, transform);
+    else
+        physics_.place(registry, lantern, transform);
 }
 
 // In the hand it hangs upright, lags slightly behind the view, and stays out of walls.
@@ -288,6 +367,12 @@ std::uint64_t Simulation::world_hash(ecs::Registry& registry) const {
         }
         if (const auto* lamps = registry.try_get<scene::LightSwitch>(entity))
             add(lamps->on);
+    }
+    for (const ecs::Entity entity : sensors_in_order(registry)) {
+        const auto& reading = registry.get<scene::SensorReading>(entity);
+        add(entity.index);
+        add_vector(reading.irradiance);
+        add(reading.open);
     }
     add_vector(player_.capsule().foot);
     add_vector(player_.velocity());

@@ -11,6 +11,14 @@ namespace sunfleck::simulation {
 // What a person can do with the object in front of them.
 enum class Interaction { none, open, close, switch_lamps, take };
 
+// What a simulation goes on from, beside the components of the registry.
+struct SimulationState {
+    std::uint64_t steps = 0;
+    std::uint32_t held_buttons = 0;
+    CharacterState person;
+    ecs::Entity carried; // lantern, or null
+};
+
 class Simulation {
 public:
     // The registry holds the freshly loaded level. The person starts at its PlayerStart (or the camera "view", or the
@@ -27,7 +35,19 @@ public:
     Interaction possible_interaction(ecs::Registry& registry) const;
     bool carries_lantern() const { return !carried_.is_null(); }
 
-    // Hash of everything that moves, of switches and lamps and the person: equal worlds have equal hashes.
+    // For the rules of a game: the person stands there, at rest, and looks that way.
+    void place_player(vec3 foot, vec3 ahead);
+    // Into the person's hand, or to a place. Entities with a Lantern only.
+    void hand_lantern(ecs::Registry& registry, ecs::Entity lantern);
+    void put_lantern(ecs::Registry& registry, ecs::Entity lantern, const scene::Transform& transform);
+
+    SimulationState state() const { return {steps_, held_buttons_, player_.state(), carried_}; }
+    // After Transform, MoverState and LightSwitch components were set to what they were in that state: world_hash is
+    // then what it was. Bodies are at rest.
+    void restore(ecs::Registry& registry, const SimulationState& state);
+
+    // Hash of everything that moves, of switches and lamps, of what sensors read, and of the person: equal worlds have
+    // equal hashes.
     std::uint64_t world_hash(ecs::Registry& registry) const;
 
 private:
@@ -39,12 +59,18 @@ private:
     Target find_target(ecs::Registry& registry) const;
     void use(ecs::Registry& registry);
     void put_down(ecs::Registry& registry);
+    void let_go(ecs::Registry& registry, const scene::Transform& transform);
     void carry(ecs::Registry& registry);
     void advance_movers(ecs::Registry& registry, bool back);
+    void link_sensors(ecs::Registry& registry);
+    bool sensors_open(const ecs::Registry& registry, ecs::Entity mover) const;
+    void show_readings(ecs::Registry& registry) const;
 
     PhysicsWorld physics_;
     Character player_;
     ecs::Entity carried_;
+    using SensorLinks = std::vector<std::pair<ecs::Entity, ecs::Entity>>; // sensor, mover
+    SensorLinks sensor_opens_, sensor_shows_;
     std::uint32_t held_buttons_ = 0;
     std::uint64_t steps_ = 0;
 };

@@ -44,12 +44,13 @@ const Layers& allowed() {
         {"gi_module/charts", with(foundation, {"gi_module/transport", "gi_module/visibility"})},
         {"gi_module/harmonics", foundation},
         {"gi_module/light_sum", with(foundation, {"gi_module/transport"})},
+        {"gi_module/light_sensors", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
-        {"gi_module",
-         with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling", "gi_module/shadows",
-                           "gi_module/visibility", "gi_module/low_resolution", "gi_module/light_sum",
-                           "gi_module/g_buffer", "gi_module/charts", "gi_module/harmonics"})},
+        {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
+                                        "gi_module/shadows", "gi_module/visibility", "gi_module/low_resolution",
+                                        "gi_module/light_sum", "gi_module/g_buffer", "gi_module/charts",
+                                        "gi_module/harmonics", "gi_module/light_sensors"})},
     };
     return layers;
 }

@@ -1,0 +1,177 @@
+#include "gi_module/light_sensors/sensor_path.h"
+
+#include "engine/core/random.h"
+#include "gi_module/transport/reflectance.h"
+
+#include <algorithm>
+
+namespace sunfleck::gi {
+namespace {
+
+// Emitters that may add less than this share of the sensor's scale are sampled by chance (Russian roulette), in
+// proportion to what they may add.
+constexpr float certain_share = 0.1f;
+constexpr std::uint32_t roulette_start = 1;        // reflections after which paths may end
+constexpr std::uint32_t dimensions_per_vertex = 8; // direction: 2, roulette: 1, choice of area: 1, place on it: 2
+constexpr int most_layers = 64;                    // of surfaces without shadow, one behind another
+
+float largest(vec3 colour) {
+    return std::max({colour.x, colour.y, colour.z});
+}
+
+struct Vertex {
+    vec3 position{0.0f}, normal{0.0f};
+    float offset = 0.0f; // of ray origins from the surface
+};
+
+// True if nothing is between the vertex and the light.
+bool sees(const raytrace::RayScene& rays, const Vertex& vertex, const ArrivingLight& light) {
+    const vec3 origin = vertex.position + vertex.offset * vertex.normal;
+    const vec3 way = light.distant ? light.to_light : vertex.position + light.to_light - origin;
+    // Up to the emitter's own surface, as closely as floats know where it is.
+    const float left_out = light.distant ? 0.0f : rays.ray_offset_anywhere() / glm::length(way);
+    return !rays.occluded(raytrace::Ray{origin, way, 0.0f, 1.0f - std::max(left_out, 0x1p-20f)});
+}
+
+class Walk {
+public:
+    Walk(const SensorScene& scene, const SensorPlace& place, std::uint32_t index)
+        : scene_(scene), place_(place), index_(index), random_(SequenceKind::sobol, place.seed, index) {}
+
+    SensorPath follow(bool reflected) {
+        Vertex vertex{place_.position, place_.normal, scene_.rays->ray_offset_anywhere()};
+        for (std::uint32_t reflections = 0;; ++reflections) {
+            visit(vertex.position);
+            path_.vertices.add(vertex.position);
+            random_.seek(reflections * dimensions_per_vertex);
+            const float u = random_.next(), v = random_.next(), survival = random_.next();
+            if (reflections > 0)
+                add_points(vertex, reflections);
+            add_area(vertex);
+            if (reflections == sensor_bounces || !advance(vertex, sample_cosine_direction(vertex.normal, u, v)))
+                break;
+            if (!reflected || !survives(reflections, survival))
+                break;
+        }
+        return path_;
+    }
+
+private:
+    void visit(vec3 point) { path_.extent.add(point); }
+
+    bool survives(std::uint32_t reflections, float number) {
+        if (reflections < roulette_start)
+            return true;
+        const float chance = std::clamp(largest(albedo_), 0.05f, 0.98f);
+        throughput_ /= chance;
+        return number < chance;
+    }
+
+    // Adds light, W/m2 at the vertex with its cosine, that an emitter sends if it is seen.
+    void add(const Vertex& vertex, const ArrivingLight& light, float weight, float number) {
+        const float length = glm::length(light.to_light);
+        const float cosine = length > 0.0f ? glm::dot(light.to_light, vertex.normal) / length : 0.0f;
+        const vec3 most = throughput_ * light.irradiance * (weight * std::max(cosine, 0.0f));
+        const float share = largest(most) / (certain_share * place_.scale), chance = std::min(share, 1.0f);
+        if (number >= chance)
+            return;
+        ++path_.rays;
+        visit(vertex.position + light.to_light);
+        if (sees(*scene_.rays, vertex, light))
+            path_.light += most / chance;
+    }
+
+    void add_points(const Vertex& vertex, std::uint32_t reflections) {
+        for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+            const Emitter& emitter = scene_.points[i];
+            const std::uint32_t bits = hash_combine(hash_combine(place_.seed, index_),
+                                                    hash_combine(reflections, std::uint32_t(emitter.entity.index)));
+            add(vertex, light_from(emitter, sample_emitter_point(emitter, 0.0f, 0.0f), vertex.position), 1.0f,
+                to_unit_float(bits));
+        }
+    }
+
+    // About the irradiance that the emitter gives to a place, were nothing in its way.
+    static float importance(const Emitter& emitter, vec3 receiver) {
+        const vec3 centre = emitter.corners.empty() ? vec3(emitter.matrix[3]) : emitter.corners.front();
+        const vec3 away = centre - receiver;
+        return luminance(emitter.radiance) * emitter.area / (glm::dot(away, away) + emitter.area);
+    }
+
+    void add_area(const Vertex& vertex) {
+        if (scene_.areas.empty())
+            return;
+        float total = 0.0f;
+        for (const Emitter& emitter : scene_.areas)
+            total += importance(emitter, vertex.position);
+        float number = random_.next() * total, chance = 0.0f;
+        std::size_t chosen = 0;
+        for (;; ++chosen) {
+            chance = importance(scene_.areas[chosen], vertex.position);
+            if (number < chance || chosen + 1 == scene_.areas.size())
+                break;
+            number -= chance;
+        }
+        if (chance <= 0.0f)
+            return;
+        const Emitter& emitter = scene_.areas[chosen];
+        const float u = random_.next(), v = random_.next();
+        // What is left of the number that chose is as good as a new one.
+        add(vertex, light_from(emitter, sample_emitter_point(emitter, u, v), vertex.position), total / chance,
+            std::min(number / chance, 0x1.fffffep-1f));
+    }
+
+    // To the surface in this direction; false if there is none, or it ends the path.
+    bool advance(Vertex& vertex, vec3 direction) {
+        raytrace::Ray ray{vertex.position + vertex.offset * vertex.normal, direction, 0.0f, 1e30f, index_};
+        for (int layer = 0; layer < most_layers; ++layer) {
+            ++path_.rays;
+            const auto hit = scene_.rays->closest_hit(ray);
+            if (!hit) {
+                for (const Emitter& sky : scene_.skies)
+                    path_.light += throughput_ * pi * sky.environment_radiance(direction);
+                path_.extent.add(vertex.position + 1e6f * direction);
+                return false;
+            }
+            const raytrace::SurfacePoint point = scene_.rays->surface(ray, *hit);
+            const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
+            const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
+            if (point.casts_shadow) {
+                albedo_ = mean_reflectance(point.material);
+                throughput_ *= albedo_;
+                vertex = {point.on_triangle, normal, point.offset};
+                return largest(albedo_) > 0.0f;
+            }
+            ray.origin = point.on_triangle - point.offset * normal; // light passes
+        }
+        return false;
+    }
+
+    const SensorScene& scene_;
+    const SensorPlace& place_;
+    std::uint32_t index_;
+    RandomSequence random_;
+    vec3 throughput_{1.0f}, albedo_{1.0f};
+    SensorPath path_;
+};
+
+} // namespace
+
+SensorPath follow_sensor_path(const SensorScene& scene, const SensorPlace& place, std::uint32_t index, bool reflected) {
+    return Walk(scene, place, index).follow(reflected);
+}
+
+vec3 light_of_points(const SensorScene& scene, const SensorPlace& place) {
+    const Vertex vertex{place.position, place.normal, scene.rays->ray_offset_anywhere()};
+    vec3 sum(0.0f);
+    for (const Emitter& emitter : scene.points) {
+        const ArrivingLight light = light_from(emitter, sample_emitter_point(emitter, 0.0f, 0.0f), vertex.position);
+        const float length = glm::length(light.to_light);
+        const float cosine = length > 0.0f ? glm::dot(light.to_light, vertex.normal) / length : 0.0f;
+        if (cosine > 0.0f && largest(light.irradiance) > 0.0f && sees(*scene.rays, vertex, light))
+            sum += light.irradiance * cosine;
+    }
+    return sum;
+}
+
+} // namespace sunfleck::gi
