@@ -50,6 +50,39 @@ float filtered_visibility(uint slot, float scale, vec3 place, vec3 normal, float
     return count_votes(lit, vote, position - floor(position));
 }
 
+// The stored values of four texels: corner + (i & 1, i >> 1).
+vec4 map_values(uint slot, ivec2 corner) {
+    return vec4(map_value(slot, corner), map_value(slot, corner + ivec2(1, 0)), map_value(slot, corner + ivec2(0, 1)),
+                map_value(slot, corner + ivec2(1, 1)));
+}
+
+// The same on a hemisphere's map, which nearly all samples have: the plane's value at a texel centre, -k n.c with c =
+// (x, y, 1 - |x| - |y|), is a function of x plus one of y, and the four centres have three x and three y between them.
+// The rules are those of texel_vote and count_votes, for four texels at once.
+float filtered_hemisphere_visibility(uint slot, vec3 place, vec3 normal, float plane_distance, float bias, float reach,
+                                     float lag) {
+    const float side = map_side(), texel = 1.0 / side; // in x and y; twice that in u and v
+    const vec2 position = map_texel(place.xy) - 0.5;
+    const vec2 corner = clamp(floor(position), vec2(0.0), vec2(side - 2.0));
+    const vec2 uv = (corner + 0.5) * (2.0 * texel) - 1.0;
+    const vec3 x = 0.5 * (uv.x + uv.y) + vec3(0.0, texel, 2.0 * texel);
+    const vec3 y = 0.5 * (uv.x - uv.y) + vec3(-texel, 0.0, texel);
+    const vec3 n = normal * (shadow_near / max(plane_distance, 1e-9));
+    const vec3 of_x = n.z * abs(x) - n.x * x, of_y = n.z * abs(y) - n.y * y - n.z;
+    const vec4 on_plane = min(of_x.xyyz + of_y.yzxy, 1.0);
+    const float step = depth_step(map_bits) + lag, slack = shadow_filter_slack * reach;
+    const float window = shadow_filter_window * bias;
+    const vec4 held = min(clamp(on_plane, place.z - window, place.z + window), 1.0) + step;
+    const vec4 stored = map_values(slot, ivec2(corner));
+    const vec2 within = clamp(position - corner, 0.0, 1.0);
+    const vec4 weight = vec4(1.0 - within.x, within.x, 1.0 - within.x, within.x) *
+                        vec4(1.0 - within.yy, within.yy);
+    // Texels that are neither have no vote.
+    const float lit = dot(weight, vec4(lessThanEqual(stored, held)) * vec4(greaterThanEqual(stored, on_plane - slack - step)));
+    const float dark = dot(weight, vec4(greaterThan(stored, held + slack)));
+    return lit + dark > 0.0 ? lit / (lit + dark) : 1.0;
+}
+
 // Extra bias for a receiver on a mover in a stale map: the mover's old image in the map may be nearer to the light by
 // as much as the mover has moved since, and would shadow its whole lit side. 1/w changes by the change of w over w
 // squared, and w, the sum of three coordinates, by at most sqrt(3) times the distance.
@@ -128,6 +161,9 @@ float map_visibility(LightRow light, Pixel pixel) {
                                    : sphere_texel_reach(map_side());
     const float bias = perspective_bias(reach, plane_distance, place.z);
     const float receiver = shadow_near * place.z;
+    if (hemisphere)
+        return filtered_hemisphere_visibility(slot, vec3(place.xy, receiver), normal, plane_distance, bias,
+                                              reach * receiver, lag);
     return filtered_visibility(slot, scale, vec3(place.xy, receiver), normal, plane_distance, bias, reach * receiver, lag);
 }
 
