@@ -181,9 +181,14 @@ Settings& Settings::with(std::string_view name, std::string_view value) {
 
 Result<LightPlan> Settings::light_plan() const {
     std::vector<PlannedTechnique> known;
-    for (const TechniqueEntry& technique : techniques())
+    std::vector<TakenCells> taken;
+    for (const TechniqueEntry& technique : techniques()) {
+        if (technique.takes != nullptr)
+            taken.push_back({std::int32_t(known.size()), technique.takes(*this)});
         known.push_back({technique.name, technique.can_light, technique.supports != nullptr});
+    }
     TermOwners owners;
+    owners.taken = taken;
     owners.direct = technique_of("direct", direct);
     owners.punctual =
         punctual == punctual_automatic ? automatic_owner(owners.direct) : technique_of("punctual", punctual);

@@ -107,6 +107,8 @@ struct TechniqueEntry {
     // lit by whoever would light them without it.
     bool (*supports)(const scene::DrawItem& mover, const ecs::Registry& registry,
                      const scene::MeshStore& meshes) = nullptr;
+    // Cells that it takes from their owners by a setting of its own (TermOwners::taken); null: none.
+    CellSet (*takes)(const Settings& settings) = nullptr;
     bool wants_visibility = false;
     // Its shadow test does not allow for movers that maps show simplified: while it is in use, none are
     // (ShadowSettings::map_detail).

@@ -28,6 +28,8 @@ public:
 
     std::uint32_t levels() const { return std::uint32_t(levels_.size()) - 1; }
     float total() const { return levels_.empty() ? 0.0f : levels_.front().front(); }
+    // Those that it was made of.
+    std::span<const float> values() const { return levels_.back(); }
     // Sum of the values in a cell of 2^level x 2^level.
     float sum(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
         return levels_[level][(std::size_t(y) << level) + x];

@@ -26,10 +26,12 @@ struct ReflectiveShadowMap {
     std::uint32_t side = 0;
     std::vector<ReflectiveTexel> texels; // row after row
 
-    const ReflectiveTexel& at(vec2 place) const {
-        const auto index = [&](float x) { return std::min(std::uint32_t(x * float(side)), side - 1); };
-        return texels[std::size_t(index(place.y)) * side + index(place.x)];
+    // Of the texel at a place in [0, 1)^2.
+    std::size_t index(vec2 place) const {
+        const auto along = [&](float x) { return std::min(std::uint32_t(x * float(side)), side - 1); };
+        return std::size_t(along(place.y)) * side + along(place.x);
     }
+    const ReflectiveTexel& at(vec2 place) const { return texels[index(place)]; }
 };
 
 // Which surfaces a map shows. None of them are the emitter's own.

@@ -60,6 +60,10 @@ public:
     // The bound that clamps the geometry term, 1/m2 (transport/clamping.h); single samples may have lower ones.
     float geometry_bound() const { return bound_; }
 
+    // Of the last update: those that stay as they are, and those that move or vary.
+    std::span<const Emitter> fixed_emitters() const { return emitters_; }
+    std::span<const Emitter> dynamic_emitters() const { return dynamic_emitters_; }
+
     static std::span<const Counter> counters();
     void report(Report& report) const;
 

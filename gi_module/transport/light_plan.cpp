@@ -144,15 +144,22 @@ Status LightPlan::check(std::int32_t index, const PlannedTechnique& technique) c
     return {};
 }
 
-Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const PlannedTechnique> techniques) {
-    LightPlan plan;
+void LightPlan::give_terms(const TermOwners& terms, std::span<const PlannedTechnique> techniques) {
     for (std::size_t i = 0; i < light_cell_count; ++i) {
         const LightCell cell = LightCell::at(i);
-        plan.give(i, owner_by_term(terms, cell), techniques);
+        give(i, owner_by_term(terms, cell), techniques);
+        for (const TakenCells& taken : terms.taken)
+            if (taken.cells[i] && owner_[i] != nobody)
+                give(i, taken.technique, techniques);
         // The movers' own technique replaces other owners; cells without one stay unlit.
-        if (terms.movers != nobody && cell.on_mover && !cell.specular && plan.owner_[i] != nobody)
-            plan.give(i, terms.movers, techniques);
+        if (terms.movers != nobody && cell.on_mover && !cell.specular && owner_[i] != nobody)
+            give(i, terms.movers, techniques);
     }
+}
+
+Result<LightPlan> LightPlan::make(const TermOwners& terms, std::span<const PlannedTechnique> techniques) {
+    LightPlan plan;
+    plan.give_terms(terms, techniques);
     SUNFLECK_TRY(plan.apply_exceptions(terms.exceptions, techniques));
     for (std::size_t t = 0; t < techniques.size(); ++t)
         SUNFLECK_TRY(plan.check(std::int32_t(t), techniques[t]));

@@ -80,6 +80,12 @@ struct PlannedTechnique {
 
 inline constexpr std::int32_t nobody = -1;
 
+// Cells that a technique takes, by a setting of its own, from whoever owns them by the terms; those of nobody stay so.
+struct TakenCells {
+    std::int32_t technique = nobody;
+    CellSet cells;
+};
+
 // Owners by term, as indices into the list of techniques, or nobody.
 struct TermOwners {
     std::int32_t punctual = nobody;
@@ -91,6 +97,7 @@ struct TermOwners {
     // joined by dots: punctual, direct, first_bounce, later_bounces, indirect; fixed, dynamic; on_fixed, on_mover;
     // diffuse, specular. Example: "first_bounce.dynamic=brute_force,specular=none". Naming a cell twice is an error.
     std::string_view exceptions{};
+    std::span<const TakenCells> taken{}; // from the owners of terms, but for movers; of two takers the later one has it
 };
 
 class LightPlan {
@@ -115,6 +122,7 @@ public:
 
 private:
     void give(std::size_t cell, std::int32_t technique, std::span<const PlannedTechnique> techniques);
+    void give_terms(const TermOwners& terms, std::span<const PlannedTechnique> techniques);
     Status apply_exceptions(std::string_view text, std::span<const PlannedTechnique> techniques);
     Status check(std::int32_t index, const PlannedTechnique& technique) const;
     bool shares_movers(std::int32_t technique) const;

@@ -35,10 +35,10 @@ void set_bound(shared::PixelLightRow& row, float norm, float least) {
             const float angle = widest * float(k) / float(arc_steps);
             const vec2 place = distance / size * vec2(std::cos(angle), std::sin(angle));
             larger = std::max(larger, widening_margin * glm::length((place - vec2(shape.centre, 0.0f)) /
-                                                                    vec2(shape.length, shape.width)));
+                                                                    vec2(shape.along, shape.across)));
         }
     }
-    row.extent = vec4(reach, size * shape.centre, larger * size * shape.length, larger * size * shape.width);
+    row.extent = vec4(reach, size * shape.centre, larger * size * shape.along, larger * size * shape.across);
 }
 
 } // namespace

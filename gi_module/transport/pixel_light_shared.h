@@ -85,16 +85,16 @@ SHARED_FUNCTION float bound_profile(float place, float exponent) {
 
 struct LobeBound {
     float centre; // place on the axis
-    float length; // half axis along it
-    float width;  // half axes across
+    float along;  // half axis along it
+    float across; // half axes across
 };
 
 // Eq. 8, whose power the paper prints as a factor.
 SHARED_FUNCTION LobeBound lobe_bound(float exponent) {
     LobeBound bound;
     bound.centre = pow(exponent / (exponent + 2.0f), 0.25f * (exponent + 2.0f));
-    bound.length = max(bound.centre, 1.0f - bound.centre);
-    bound.width = bound_profile(bound.centre, exponent);
+    bound.along = max(bound.centre, 1.0f - bound.centre);
+    bound.across = bound_profile(bound.centre, exponent);
     return bound;
 }
 

@@ -100,6 +100,26 @@ TEST(LightPlan, ExceptionsAndRefusals) {
               std::string::npos);
 }
 
+// A technique's own setting comes after the terms, and before movers' techniques and exceptions.
+TEST(LightPlan, CellsThatAreTaken) {
+    const CellSet dynamic = cells_where(
+        [](LightCell cell) { return cell.path == PathPart::first_bounce && cell.dynamic && !cell.specular; });
+    const std::vector<TakenCells> taken = {{brute, dynamic}};
+    TermOwners terms{many_light, many_light, many_light, nobody, nobody, "", taken};
+    const LightCell cell{PathPart::first_bounce, true, false, false},
+        on_mover{PathPart::first_bounce, true, true, false};
+    EXPECT_EQ(plan_of(terms).lit_by(brute), dynamic);
+    terms.exceptions = "first_bounce.dynamic=none";
+    EXPECT_FALSE(plan_of(terms).uses(brute));
+    terms.exceptions = "";
+    terms.movers = prt;
+    EXPECT_EQ(plan_of(terms).owner(cell), brute);
+    EXPECT_EQ(plan_of(terms).owner(on_mover), prt);
+    EXPECT_EQ(plan_of(terms).fallback(on_mover), brute);
+    terms.indirect = nobody;
+    EXPECT_EQ(plan_of(terms).owner(cell), nobody);
+}
+
 // Exhaustive over three owners for six groups of cells: a plan is either refused or gives each cell to one owner, and
 // no technique lights what it cannot.
 TEST(LightPlan, EveryAssignmentHasOneOwnerACell) {

@@ -1,0 +1,38 @@
+// Runs splat_lists.comp and splat_light.comp: adds the light of pixel lights to the sums of a stage's pixels.
+#pragma once
+
+#include "gi_module/low_resolution/low_resolution.h"
+#include "gi_module/splatting/splatting_shared.h"
+
+#include <memory>
+#include <span>
+
+namespace sunfleck::gi {
+
+class SplatKernel {
+public:
+    static Result<std::unique_ptr<SplatKernel>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
+    ~SplatKernel();
+
+    // For each stage of a frame. The rows last as long as the call.
+    Status add_passes(const PixelStage& stage, std::span<const shared::PixelLightRow> lights,
+                      gpu::FrameResources& resources);
+    // Its memory for a group of pixels.
+    static constexpr std::uint64_t bytes_per_group = shared::splat_mask_words * 4;
+    std::uint64_t memory_bytes() const { return masks_.size(); }
+
+private:
+    SplatKernel(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
+    Status make_masks(const PixelStage& stage, gpu::FrameResources& resources);
+    Status add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
+                     const shared::SplattingConstants& constants);
+    Status add_light(const PixelStage& stage, const gpu::UploadSlice& rows, const shared::SplattingConstants& constants,
+                     bool to_image);
+
+    gpu::Device& device_;
+    gpu::PipelineStore& pipelines_;
+    VkSampler sampler_ = VK_NULL_HANDLE;
+    gpu::Buffer masks_;
+};
+
+} // namespace sunfleck::gi

@@ -1,0 +1,74 @@
+// The pixel lights of a frame: texels of the emitters' reflective shadow maps, chosen by importance warping. Paper,
+// sec. 3.1 and 3.5; the maps are made by rays (sec. 3.7).
+#pragma once
+
+#include "gi_module/light_sampling/reflective_shadow_map.h"
+#include "gi_module/light_sampling/sample_set.h"
+#include "gi_module/splatting/splatting_settings.h"
+
+#include <map>
+#include <span>
+#include <vector>
+
+namespace sunfleck::gi {
+
+// Whose pixel lights. fixed: emitters that stay, reflected by surfaces that stay. dynamic: all else.
+struct SplatParts {
+    bool fixed = false, dynamic = false;
+    bool any() const { return fixed || dynamic; }
+};
+
+struct SplatRequest {
+    SplatParts sampled; // the budget is divided among these
+    SplatParts lit;     // and of them, these are wanted
+    bool movers_are_static = false;
+    std::uint32_t seed = 1;
+    SplattingSettings settings;
+};
+
+class SplatLights {
+public:
+    // Follows the scene; once a frame. Lights whose flux is zero are left out.
+    void update(const SceneView& scene, const SampleSet& samples, const SplatRequest& request);
+
+    std::span<const PixelLight> lights() const { return lights_; }
+    // W/m2, of all lights together, in the mean over the static surface of the scene if all of it were to arrive there.
+    float mean_irradiance() const { return mean_irradiance_; }
+    // Reflective shadow maps in use, and rays traced for them in the last update.
+    std::size_t maps() const { return maps_.size(); }
+    std::uint64_t rays() const { return rays_; }
+    std::uint64_t memory_bytes() const;
+
+private:
+    // What one emitter sees.
+    struct Map {
+        ReflectiveShadowMap texels;
+        std::uint64_t emitter_hash = 0, geometry = 0;
+        std::uint32_t side = 0;
+        bool used = false;
+    };
+    // A part of a map's texels, among which pixel lights are chosen.
+    struct Source {
+        const Map* map = nullptr;
+        std::uint32_t random = 0; // seed
+        bool dynamic = false;
+        ImportanceMap importance;
+        double share = 0.0;      // of the budget, in lights
+        std::uint32_t count = 0; // of lights
+    };
+
+    void follow(const Emitter& emitter, bool dynamic, std::uint32_t side, const SceneView& scene,
+                const SplatRequest& request);
+    void add_source(const Map& map, bool dynamic, bool texels_of_movers, bool texels_of_fixed, std::uint32_t random,
+                    const SplatRequest& request);
+    void divide(std::uint32_t count);
+    void place(const Source& source, const SplatRequest& request);
+
+    std::map<std::pair<std::uint64_t, int>, Map> maps_; // by emitter's entity and kind
+    std::vector<Source> sources_;
+    std::vector<PixelLight> lights_;
+    float mean_irradiance_ = 0.0f;
+    std::uint64_t rays_ = 0;
+};
+
+} // namespace sunfleck::gi

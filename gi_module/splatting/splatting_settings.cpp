@@ -1,0 +1,30 @@
+#include "gi_module/splatting/splatting_settings.h"
+
+namespace sunfleck::gi {
+
+const TypeDescription& SplattingSettings::description() {
+    using S = SplattingSettings;
+    static const TypeDescription type{
+        "SplattingSettings",
+        1,
+        "Splatted indirect light.",
+        {SUNFLECK_CHOICE(S, splat_lights,
+                         "Whose first bounce is splatted: nobody's; that of emitters that move or vary and of what "
+                         "movers reflect (first_bounce.dynamic in the plan); or everybody's",
+                         "none", "moving", "all"),
+         SUNFLECK_FIELD(S, splats, "", 0, 65536, "Pixel lights of all emitters together; more is smoother and slower"),
+         SUNFLECK_FIELD(S, splat_rays, "rays", 16, 1048576,
+                        "Texels of all reflective shadow maps together, each a ray"),
+         SUNFLECK_CHOICE(S, splat_importance, "What decides where pixel lights are: chance, or reflected flux", "none",
+                         "flux"),
+         SUNFLECK_CHOICE(S, splat_warp,
+                         "Importance warping: with rows weighed on their own, or all alike, which is faster", "a", "b"),
+         SUNFLECK_FIELD(S, splat_warp_levels, "levels", 0, 10,
+                        "Levels of the importance warping, at most those of the map"),
+         SUNFLECK_FIELD(S, splat_cutoff, "", 0, 1,
+                        "A pixel light ends where its irradiance falls below this share of the mean irradiance of all "
+                        "pixel lights together on the scene's surface; 0: nowhere")}};
+    return type;
+}
+
+} // namespace sunfleck::gi

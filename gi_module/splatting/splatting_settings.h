@@ -1,0 +1,27 @@
+// Settings of splatted indirect light.
+#pragma once
+
+#include "engine/core/description.h"
+#include "gi_module/light_sampling/importance_warping.h"
+
+namespace sunfleck::gi {
+
+// Whose first bounce is splatted: a short way to fill cells of the light plan. moving: emitters that move or vary, and
+// what movers reflect (first_bounce.dynamic); all: every first bounce.
+enum class SplatChoice : std::uint32_t { none, moving, all };
+// What pixel lights are chosen by.
+enum class SplatImportance : std::uint32_t { none, flux };
+
+struct SplattingSettings {
+    SplatChoice splat_lights = SplatChoice::none;
+    std::uint32_t splats = 256;
+    std::uint32_t splat_rays = 4096;
+    SplatImportance splat_importance = SplatImportance::flux;
+    WarpMethod splat_warp = WarpMethod::a;
+    std::uint32_t splat_warp_levels = 6;
+    float splat_cutoff = 0.0f; // of the mean irradiance
+
+    static const TypeDescription& description();
+};
+
+} // namespace sunfleck::gi

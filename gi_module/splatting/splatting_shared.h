@@ -1,0 +1,25 @@
+// Constants and structs that the kernels of splatted light share with the CPU.
+#ifndef SUNFLECK_GI_SPLATTING_SPLATTING_SHARED_H
+#define SUNFLECK_GI_SPLATTING_SPLATTING_SHARED_H
+#include "gi_module/low_resolution/low_resolution_shared.h"
+#include "gi_module/transport/pixel_light_shared.h"
+SHARED_BEGIN
+
+// Pixel lights of a dispatch: 28 KiB of rows, within the uniform buffer range of every supported device. Which of them
+// reach a pixel group is a mask of a bit each.
+SHARED_CONSTANT uint splats_per_batch = 256u;
+SHARED_CONSTANT uint splat_mask_words = 8u;
+
+struct SplattingConstants {
+    uint width; // of the picture
+    uint height;
+    uint group_count; // pixel groups of the low-resolution picture
+    uint light_count; // in this batch
+};
+
+SHARED_END
+#ifdef __cplusplus
+static_assert(sizeof(sunfleck::shared::SplattingConstants) == 16);
+static_assert(sunfleck::shared::splats_per_batch == 32 * sunfleck::shared::splat_mask_words);
+#endif
+#endif

@@ -1,0 +1,267 @@
+// Splatted light: each pixel gets what all pixel lights give it, cells of the light plan add up to the picture, and
+// whatever emitters there are, there is a picture.
+#include "editor/command_line/metrics.h"
+#include "gi_module/splatting/splatting_technique.h"
+#include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
+#include "tests/support/test_size.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sunfleck::tests {
+namespace {
+
+class SplatTechnique : public GpuTest {
+protected:
+    static gi::Settings splatted(const char* lights, int count) {
+        gi::Settings settings;
+        settings.lights = 60;
+        settings.shadow_map_resolution = 64;
+        settings.map_budget = 65536;
+        settings.low_resolution = 1;
+        settings.with("splat_lights", lights).with("splats", std::to_string(count));
+        set_if_known(settings, "baked_light", "off");
+        return settings;
+    }
+    // Nothing but the first bounce.
+    static gi::Settings alone(int count) {
+        return splatted("all", count)
+            .with("direct", "none")
+            .with("punctual", "none")
+            .with("plan", "later_bounces=none");
+    }
+    static const gi::SplatLights& lights(GpuWorld& world) {
+        return dynamic_cast<gi::SplattingTechnique*>(world.renderer->lighting().technique("splatting"))->lights();
+    }
+};
+
+TEST_F(SplatTechnique, ItsSettingFillsCellsOfThePlan) {
+    const auto owner = [](const gi::Settings& settings, gi::LightCell cell) {
+        const std::int32_t index = settings.light_plan().value().owner(cell);
+        return index == gi::nobody ? "none" : std::string(gi::techniques()[std::size_t(index)].name);
+    };
+    const gi::LightCell moving{gi::PathPart::first_bounce, true, false, false},
+        fixed{gi::PathPart::first_bounce, false, false, false}, later{gi::PathPart::later_bounces, true, false, false};
+    EXPECT_NE(owner(gi::Settings(), moving), "splatting");
+    gi::Settings settings = gi::Settings().with("splat_lights", "moving");
+    EXPECT_EQ(owner(settings, moving), "splatting");
+    EXPECT_NE(owner(settings, fixed), "splatting");
+    settings.with("splat_lights", "all");
+    EXPECT_EQ(owner(settings, fixed), "splatting");
+    EXPECT_NE(owner(settings, later), "splatting");
+    // What is nobody's stays nobody's, and exceptions have the last word.
+    EXPECT_EQ(owner(gi::Settings(settings).with("indirect", "none"), moving), "none");
+    EXPECT_EQ(owner(gi::Settings(settings).with("plan", "first_bounce.dynamic=none"), moving), "none");
+    if (has_technique("prt")) {
+        settings.with("movers", "prt");
+        EXPECT_EQ(owner(settings, {gi::PathPart::first_bounce, true, true, false}), "prt");
+        EXPECT_TRUE(settings.validate());
+    }
+}
+
+// Eq. 2, summed by a program of its own from rays through the pixels' centres. Pixels whose centre lies on an edge may
+// show another surface.
+std::vector<vec3> summed_light(GpuWorld& world, std::span<const gi::PixelLight> lights, float clamp_scale) {
+    const viewer::FrameRequest& request = world.request;
+    const shared::CameraRow camera =
+        scene::make_camera_row(world.renderer->space().view(request.camera), request.width, request.height);
+    std::vector<vec3> sums(std::size_t(request.width) * request.height, vec3(0.0f));
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const vec2 centre(float(i % request.width) + 0.5f, float(i / request.width) + 0.5f);
+        const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
+        const auto hit = world.renderer->rays().closest_hit(ray);
+        if (!hit)
+            continue;
+        const raytrace::SurfacePoint point = world.renderer->rays().surface(ray, *hit);
+        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
+        for (const gi::PixelLight& light : lights) {
+            const vec3 way = light.position - point.position;
+            const float squared = glm::dot(way, way), distance = std::sqrt(squared);
+            const float leaving = -glm::dot(light.normal, way) / distance,
+                        arriving = glm::dot(side * point.shading_normal, way) / distance;
+            if (leaving > 0.0f && arriving > 0.0f && side * glm::dot(point.geometric_normal, way) > 0.0f)
+                sums[i] += light.flux / pi * std::min(leaving * arriving / squared, clamp_scale * pi / light.area);
+        }
+    }
+    return sums;
+}
+
+double share_of_equal_pixels(const io::Picture& picture, const std::vector<vec3>& expected) {
+    std::size_t equal = 0, all = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (picture.pixels[i].w <= 0.0f)
+            continue;
+        ++all;
+        equal += glm::length(vec3(picture.pixels[i]) - expected[i]) <= 0.005f * glm::length(expected[i]) + 1e-5f;
+    }
+    return double(equal) / double(all);
+}
+
+// 300: two batches. Pictures have 16 bits a channel, 0.1 %.
+TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllPixelLights) {
+    GpuWorld world(assets::make_cornell, "view");
+    gi::Settings settings = alone(300);
+    world.set(settings);
+    const io::Picture picture = world.picture();
+    ASSERT_GT(lights(world).lights().size(), 260u);
+    EXPECT_GE(share_of_equal_pixels(picture, summed_light(world, lights(world).lights(), settings.clamp_scale)), 0.99);
+    // With a bound, what is left out is below the threshold: at most that of each light.
+    settings.with("splat_cutoff", "0.02");
+    world.set(settings);
+    const io::Picture cut = world.picture();
+    const float most = 0.02f * lights(world).mean_irradiance() * float(lights(world).lights().size());
+    double removed = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < cut.pixels.size(); ++i) {
+        const vec3 less = vec3(picture.pixels[i]) - vec3(cut.pixels[i]);
+        EXPECT_LE(std::max({less.x, less.y, less.z}), most + 0.002f * luminance(vec3(picture.pixels[i])));
+        EXPECT_GE(std::min({less.x, less.y, less.z}), -0.002f * luminance(vec3(picture.pixels[i])) - 1e-5f);
+        removed += double(luminance(less));
+        all += double(luminance(vec3(picture.pixels[i])));
+    }
+    EXPECT_GT(removed, 0.001 * all) << "the threshold cuts nothing";
+    EXPECT_LT(removed, 0.3 * all);
+}
+
+// At a quarter of the resolution, with repair, in one set of sums with light samples.
+TEST_F(SplatTechnique, LowResolutionStaysNearFull) {
+    GpuWorld world(assets::make_arena, "view");
+    world.request.width = 160;
+    world.request.height = 90;
+    world.request.step = 10;
+    gi::Settings settings = splatted("moving", 128);
+    world.set(settings);
+    const io::Picture full = world.picture();
+    settings.low_resolution = 4;
+    world.set(settings);
+    const auto metrics = command_line::compare_pictures(world.picture(), full, true);
+    EXPECT_LT(metrics.relative_mean_square_error, 0.01);
+    EXPECT_GT(world.renderer->lighting().counters()["splats"], 100.0);
+}
+
+// A room in whose middle nothing is lets all light through: the path tracer's first bounce has a closed form for its
+// sum over the walls. All of a white room's light arrives again: flux over area, albedo once.
+TEST_F(SplatTechnique, InAnEmptyRoomTheFirstBounceHasItsClosedFormMean) {
+    GpuWorld world;
+    assets::SceneBuilder scene(world.renderer->registry(), world.renderer->meshes());
+    const vec3 albedo(0.6f, 0.5f, 0.4f);
+    scene.room(vec3(-2), vec3(2), albedo, albedo, {albedo, albedo, albedo, albedo});
+    scene.point_light("bulb", vec3(0.0f), vec3(3.0f));
+    scene.camera("view", vec3(0.0f), vec3(0.0f, 0.0f, -1.0f), 90.0f);
+    world.finish("view");
+    world.request.width = world.request.height = 64;
+    world.set(alone(16384).with("splat_rays", "65536"));
+    const io::Picture picture = world.picture();
+    // The camera stands in the middle, so one wall fills the picture, each of whose points has an area of 1 / cos^3 of
+    // a pixel's solid angle: in the mean over the wall's area, each pixel counts alike. All six walls are the same.
+    vec3 sum(0.0f);
+    for (const vec4& pixel : picture.pixels)
+        sum += vec3(pixel);
+    const vec3 mean = sum / float(picture.pixels.size()), expected = 4.0f * pi * 3.0f * albedo / 96.0f;
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(mean[c], expected[c], 0.01f * expected[c]); // what the clamp takes in the edges
+}
+
+// Each pair of path and motion alone, with the samples of the whole.
+TEST_F(SplatTechnique, CellsAddUpToThePicture) {
+    GpuWorld world(assets::make_arena, "view");
+    world.request.width = 96;
+    world.request.height = 72;
+    const auto picture = [&](const gi::Settings& settings) {
+        world.set(settings);
+        world.request.step = 74;
+        world.render();
+        world.request.step = 75;
+        return world.picture();
+    };
+    for (const char* choice : {"moving", "all"}) {
+        gi::Settings settings = splatted(choice, 200);
+        settings.with("sampled_light", "all").with("punctual", "light_samples");
+        const io::Picture whole = picture(settings);
+        io::Picture sum = whole;
+        for (vec4& pixel : sum.pixels)
+            pixel *= vec4(0.0f, 0.0f, 0.0f, 1.0f);
+        for (const char* path : {"punctual", "direct", "first_bounce", "later_bounces"})
+            for (const char* motion : {"fixed", "dynamic"}) {
+                gi::Settings one = settings;
+                for (const char* other : {"punctual", "direct", "first_bounce", "later_bounces"})
+                    for (const char* kind : {"fixed", "dynamic"})
+                        if (std::string(path) != other || std::string(motion) != kind)
+                            one.plan += (one.plan.empty() ? "" : ",") + std::string(other) + "." + kind + "=none";
+                const io::Picture part = picture(one);
+                for (std::size_t i = 0; i < sum.pixels.size(); ++i)
+                    sum.pixels[i] += vec4(vec3(part.pixels[i]), 0.0f);
+            }
+        const double error = command_line::compare_pictures(sum, whole, true).relative_mean_square_error;
+        std::printf("%s: %.1e\n", choice, error);
+        EXPECT_LT(error, 1e-6) << choice;
+    }
+}
+
+void expect_finite(const io::Picture& picture) {
+    for (const vec4& pixel : picture.pixels)
+        ASSERT_TRUE(is_finite(vec3(pixel))) << "a pixel is not a number";
+}
+
+// Numbers of splats at the limits, and emitters that are none.
+TEST_F(SplatTechnique, EveryNumberOfPixelLightsGivesAPicture) {
+    GpuWorld world(assets::make_cornell, "view");
+    for (const int count : {0, 1, 255, 257, 65536}) {
+        world.set(alone(count));
+        const io::Picture picture = world.picture();
+        expect_finite(picture);
+        EXPECT_LE(world.renderer->lighting().counters()["splats"], double(count));
+        const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
+                                       [](const vec4& pixel) { return luminance(vec3(pixel)) > 0.0f; });
+        EXPECT_EQ(lit > 0, count > 0) << count;
+    }
+}
+
+TEST_F(SplatTechnique, DefectiveEmittersAreDark) {
+    for (const float bad :
+         {0.0f, -1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        GpuWorld world;
+        assets::SceneBuilder scene(world.renderer->registry(), world.renderer->meshes());
+        const vec3 albedo(0.6f);
+        scene.room(vec3(-2), vec3(2), albedo, albedo, {albedo, albedo, albedo, albedo});
+        scene.point_light("bad", vec3(0.5f), vec3(bad));
+        scene.point_light("in a wall", vec3(0.0f, 2.5f, 0.0f), vec3(5.0f)); // outside: sees nothing
+        scene.camera("view", vec3(1.5f, 0.0f, 0.0f), vec3(0.0f, 0.0f, -1.0f), 70.0f);
+        world.finish("view");
+        world.set(alone(64));
+        const io::Picture picture = world.picture();
+        expect_finite(picture);
+        for (const vec4& pixel : picture.pixels)
+            EXPECT_LE(luminance(vec3(pixel)), 0.0f);
+    }
+}
+
+// Lamps that move, more than there are pixel lights: those that have one stand for the others.
+TEST_F(SplatTechnique, AThousandLampsShareOneBudget) {
+    GpuWorld world;
+    assets::SceneBuilder scene(world.renderer->registry(), world.renderer->meshes());
+    const vec3 albedo(0.6f);
+    scene.room(vec3(-2), vec3(2), albedo, albedo, {albedo, albedo, albedo, albedo});
+    const int lamps = by_size(128, 1024);
+    for (int i = 0; i < lamps; ++i)
+        scene.mover(scene.point_light("lamp", vec3(0.03f * float(i % 32) - 0.5f, 0.0f, 0.03f * float(i / 32) - 0.5f),
+                                      vec3(4.0f / float(lamps))),
+                    {});
+    scene.camera("view", vec3(0.0f), vec3(0.0f, 0.0f, -1.0f), 90.0f);
+    world.finish("view");
+    gi::Settings settings = alone(64);
+    settings.lights = 2 * std::uint32_t(lamps);
+    world.set(settings);
+    const io::Picture picture = world.picture();
+    expect_finite(picture);
+    EXPECT_EQ(world.renderer->lighting().counters()["splats"], 64.0);
+    EXPECT_EQ(world.renderer->lighting().counters()["reflective_maps"], double(lamps));
+    double flux = 0.0; // of a scene whose unit is not 1 m, in other units
+    for (const gi::PixelLight& light : lights(world).lights())
+        flux += double(light.flux.x) * std::pow(double(world.renderer->space().unit), 2.0);
+    const double expected = 4.0 * 4.0 * 3.14159265 * 0.6;
+    EXPECT_NEAR(flux, expected, 0.02 * expected);
+}
+
+} // namespace
+} // namespace sunfleck::tests
