@@ -8,15 +8,11 @@ configure_package_config_file("${PROJECT_SOURCE_DIR}/cmake/sunfleckConfig.cmake.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/sunfleckConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/sunfleckConfig.cmake" "${PROJECT_BINARY_DIR}/sunfleckConfigVersion.cmake"
         DESTINATION "${package_folder}")
-# sunfleck/host.h is what a foreign host needs. The headers of the module and of the engine's lower half are there for
-# hosts that use gi::System itself, and for shaders that pack normals.
+# What sunfleck/host.h includes, and what shaders that pack normals do.
 install(DIRECTORY gi_module/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-foreach(folder engine/core engine/statistics engine/ecs engine/gpu engine/scene engine/raytrace gi_module)
-  install(DIRECTORY "${folder}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck/${folder}"
-          FILES_MATCHING PATTERN "*.h" PATTERN "include" EXCLUDE PATTERN "reference" EXCLUDE)
-endforeach()
-install(FILES "${PROJECT_BINARY_DIR}/generated/sunfleck_vulkan_names.h"
-        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck")
+install(FILES engine/core/result.h engine/core/octahedral.h engine/core/shader_language.h engine/core/maths.h
+        DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck/engine/core")
+install(FILES README.md CHANGELOG.md docs/scene.schema.json DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(SUNFLECK_BUILD_APPLICATIONS)
   install(TARGETS sunfleck sunfleck_demo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(TARGETS sunfleck_draco sunfleck_image_codec LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

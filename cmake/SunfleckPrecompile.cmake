@@ -14,7 +14,6 @@ function(sunfleck_precompile name position_independent)
   add_library(${name} OBJECT "${PROJECT_BINARY_DIR}/generated/precompiled.cpp")
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/generated"
                              "${PROJECT_SOURCE_DIR}/gi_module/include")
-  target_include_directories(${name} SYSTEM PRIVATE "${SUNFLECK_VOLK_INCLUDE}")
   target_link_libraries(${name} PRIVATE sunfleck_flags)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ${position_independent})
   target_precompile_headers(${name} PRIVATE ${ARGN})

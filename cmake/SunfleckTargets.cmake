@@ -48,7 +48,6 @@ function(sunfleck_library name)
   sunfleck_sources(${name} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
                              "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>")
-  target_include_directories(${name} SYSTEM PUBLIC "$<BUILD_INTERFACE:${SUNFLECK_VOLK_INCLUDE}>")
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:sunfleck_flags> ${ARG_PRIVATE_LINK})
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN")

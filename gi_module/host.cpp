@@ -3,8 +3,45 @@
 
 namespace sunfleck::host {
 
-std::vector<std::string> missing_features(VkPhysicalDevice physical_device) {
-    return gpu::missing_features(physical_device);
+namespace {
+
+sunfleck::LogSink engine_sink(const LogSink& log) {
+    if (!log)
+        return {};
+    return [&log](sunfleck::LogLevel level, std::string_view message) {
+        log(level == sunfleck::LogLevel::error     ? LogLevel::error
+            : level == sunfleck::LogLevel::warning ? LogLevel::warning
+                                                   : LogLevel::information,
+            message);
+    };
+}
+
+Status check_handle(const void* handle, const char* name) {
+    return handle != nullptr ? Status() : Status(wrong(std::string(name) + " is null"));
+}
+
+Status check_handles(const VulkanHandles& handles) {
+    SUNFLECK_TRY(check_handle(handles.instance, "VulkanHandles::instance"));
+    SUNFLECK_TRY(check_handle(handles.physical_device, "VulkanHandles::physical_device"));
+    SUNFLECK_TRY(check_handle(handles.device, "VulkanHandles::device"));
+    return check_handle(handles.queue, "VulkanHandles::queue");
+}
+
+} // namespace
+
+Result<std::vector<std::string>> missing_features(VkInstance instance, VkPhysicalDevice physical_device,
+                                                  PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
+    return guarded({}, [&]() -> Result<std::vector<std::string>> {
+        SUNFLECK_TRY(check_handle(instance, "instance"));
+        SUNFLECK_TRY(check_handle(physical_device, "physical_device"));
+        if (get_instance_proc_addr == nullptr)
+            get_instance_proc_addr = gpu::loader_functions();
+        if (get_instance_proc_addr == nullptr)
+            return Error{"the Vulkan loader (libvulkan.so.1) was not found", ErrorCode::unsupported};
+        SUNFLECK_ASSIGN(const gpu::InstanceFunctions vk,
+                        gpu::InstanceFunctions::load(instance, get_instance_proc_addr));
+        return gpu::missing_features(vk, physical_device);
+    });
 }
 
 void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan12Features* features12,
@@ -29,46 +66,65 @@ void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan1
 
 Context::Context() : implementation_(std::make_unique<Implementation>()) {}
 
-Context::~Context() {
-    // Passes of the last frame refer to the rest.
-    implementation_->graph.reset();
+Context::~Context() = default;
+
+void Context::abandon() {
+    Implementation& self = *implementation_;
+    self.abandoned = true;
+    self.device->abandon();
 }
 
-Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles) {
-    if (handles.instance == VK_NULL_HANDLE || handles.physical_device == VK_NULL_HANDLE ||
-        handles.device == VK_NULL_HANDLE || handles.queue == VK_NULL_HANDLE)
-        return Error{"a context needs an instance, a physical device, a device and a queue"};
-    std::unique_ptr<Context> context(new Context());
-    Implementation& self = *context->implementation_;
-    gpu::HostDevice host;
-    host.instance = handles.instance;
-    host.physical_device = handles.physical_device;
-    host.device = handles.device;
-    host.queue = handles.queue;
-    host.queue_family = handles.queue_family;
-    SUNFLECK_ASSIGN(self.device, gpu::Device::adopt(host));
-    scene::register_components(self.registry);
-    self.shaders.add(gi::shaders());
-    self.pipelines = std::make_unique<gpu::PipelineStore>(*self.device, self.shaders);
-    self.resources = std::make_unique<gpu::FrameResources>(*self.device);
-    self.timers = std::make_unique<gpu::Timers>(*self.device);
-    self.graph = std::make_unique<gpu::FrameGraph>(self.device.get());
-    self.gpu_scene = std::make_unique<scene::GpuScene>(*self.device);
-    SUNFLECK_ASSIGN(self.rays, raytrace::RayScene::create());
-    SUNFLECK_ASSIGN(self.system, gi::System::create(*self.device, *self.pipelines));
-    SUNFLECK_ASSIGN(self.conversion, gi::GBufferConversion::create(*self.device, *self.pipelines));
-    return context;
+Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles, LogSink log) {
+    const sunfleck::LogSink engine_log = engine_sink(log);
+    return guarded(engine_log, [&]() -> Result<std::unique_ptr<Context>> {
+        SUNFLECK_TRY(check_handles(handles));
+        std::unique_ptr<Context> context(new Context());
+        Implementation& self = *context->implementation_;
+        gpu::HostDevice host;
+        host.instance = handles.instance;
+        host.physical_device = handles.physical_device;
+        host.device = handles.device;
+        host.queue = handles.queue;
+        host.queue_family = handles.queue_family;
+        host.get_instance_proc_addr = handles.get_instance_proc_addr;
+        host.enabled_features = handles.enabled_features;
+        SUNFLECK_ASSIGN(self.device, gpu::Device::adopt(host));
+        self.shaders.add(gi::shaders());
+        self.pipelines = std::make_unique<gpu::PipelineStore>(*self.device, self.shaders);
+        self.resources = std::make_unique<gpu::FrameResources>(*self.device);
+        self.timers = std::make_unique<gpu::Timers>(*self.device);
+        // Here, so that a device that will not do is found at once.
+        SUNFLECK_ASSIGN(self.follower,
+                        Follower::create(*self.device, *self.pipelines, self.description, self.settings));
+        self.log = std::move(log);
+        self.engine_log = engine_sink(self.log);
+        return context;
+    });
+}
+
+Status Context::Implementation::check_ready() const {
+    if (!abandoned)
+        return {};
+    return Error{"the context was abandoned, because its device is gone", ErrorCode::device_lost};
 }
 
 Status Context::set(std::string_view name, std::string_view value) {
     Implementation& self = *implementation_;
-    if (const Field* field = gi::SensorSettings::description().find(name))
-        return self.set_for_sensors(*field, value);
-    gi::Settings changed = self.settings;
-    SUNFLECK_TRY(changed.set(name, value));
-    SUNFLECK_TRY(self.system->set_settings(changed));
-    self.settings = changed;
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        if (const Field* field = gi::SensorSettings::description().find(name))
+            return self.set_for_sensors(*field, value);
+        gi::Settings changed = self.settings;
+        if (const Status status = changed.set(name, value); !status)
+            return wrong(status.error().message);
+        if (const Status status = changed.validate(); !status)
+            return wrong(status.error().message);
+        if (self.follower != nullptr && !self.damaged)
+            if (const Status status = self.follower->system->set_settings(changed); !status)
+                return wrong(status.error().message);
+        self.settings = changed;
+        return {};
+    });
 }
 
 } // namespace sunfleck::host

@@ -1,10 +1,13 @@
-// What a host::Context holds: the module with a registry, device and frame graph of its own.
+// What a host::Context holds: what the host described, and the module with a registry, device and frame graph of its
+// own that follows it.
 #pragma once
 
 #include "engine/gpu/vulkan.h" // before any other header that includes Vulkan's
 
+#include "engine/core/log.h"
 #include "engine/scene/camera_projection.h"
 #include "gi_module/g_buffer/conversion.h"
+#include "gi_module/host_checks.h"
 #include "gi_module/light_sensors/light_sensors.h"
 #include "gi_module/system.h"
 #include "sunfleck/host.h"
@@ -13,70 +16,155 @@
 
 namespace sunfleck::host {
 
-inline vec3 vector_of(const Vector3& v) {
-    return {v[0], v[1], v[2]};
-}
+struct SharedMaterial {
+    scene::Material material;
+    std::optional<scene::MaterialTextures> textures;
+};
 
-inline bool is_strength(const Vector3& v) {
-    const vec3 value = vector_of(v);
-    return is_finite(value) && value.x >= 0.0f && value.y >= 0.0f && value.z >= 0.0f;
-}
+// The scene in the host's words. Nothing in it depends on a device.
+struct Description {
+    struct Instance {
+        std::uint64_t order = 0; // in which all of them were added
+        std::uint32_t mesh = 0;
+        mat4 transform{1.0f};
+        Mobility mobility = Mobility::fixed;
+        std::uint32_t material = no_material; // no_material: `own`
+        SharedMaterial own;
+    };
+    struct Light {
+        std::uint64_t order = 0;
+        LightData data;
+    };
+    struct Sensor {
+        std::uint64_t order = 0;
+        SensorData data;
+    };
+    scene::MeshStore meshes;
+    std::vector<std::uint32_t> removed_meshes; // of which the store still has some
+    scene::TextureStore textures;
+    std::vector<SharedMaterial> materials;
+    std::vector<std::optional<Instance>> instances; // empty: removed
+    std::vector<std::optional<Light>> lights;
+    std::vector<std::optional<Sensor>> sensors;
+    std::uint64_t next_order = 0;
+
+    const SharedMaterial& surface_of(const Instance& instance) const {
+        return instance.material == no_material ? instance.own : materials[instance.material];
+    }
+};
+
+// The description as entities.
+struct Mirror {
+    explicit Mirror(const Description& description);
+    void add(const Description& description, std::uint32_t instance);
+    void add_light(const Description& description, std::uint32_t light);
+    void place(ecs::Entity entity, const mat4& matrix) {
+        // Hosts give whole matrices, so the hierarchy's part of an entity stays unused.
+        registry.update<scene::WorldTransform>(entity, {matrix});
+    }
+    void add_sensor(const Description& description, std::uint32_t sensor);
+    void set_light(ecs::Entity entity, const LightData& data);
+    void set_sensor(ecs::Entity entity, const SensorData& data);
+    void set_surface(ecs::Entity entity, const SharedMaterial& surface);
+
+    ecs::Registry registry;
+    std::vector<ecs::Entity> instances, lights, sensors; // null: removed
+    scene::ChangeTracker change_tracker{scene::ChangeTracker::Space::of_scene};
+};
+
+// Everything that follows from the description, and can be made from it again.
+struct Follower {
+    static Result<std::unique_ptr<Follower>> create(gpu::Device& device, gpu::PipelineStore& pipelines,
+                                                    const Description& description, const gi::Settings& settings);
+    explicit Follower(const Description& description) : mirror(description) {}
+    ~Follower() {
+        // Passes of the last frame refer to the rest.
+        graph.reset();
+    }
+
+    Mirror mirror;
+    std::unique_ptr<scene::GpuScene> gpu_scene;
+    std::unique_ptr<raytrace::RayScene> rays;
+    std::unique_ptr<gi::System> system;
+    std::unique_ptr<gi::GBufferConversion> conversion;
+    std::unique_ptr<gi::LightSensors> sensors; // null until their first step
+    std::unique_ptr<gpu::FrameGraph> graph;
+    scene::SceneSpace space;                // of the last update
+    std::vector<std::uint32_t> surface_ids; // by instance
+    std::optional<mat4> view_projection;    // of the last frame recorded
+    bool updated = false;
+    bool unrecorded = false; // the last update was not followed by a frame
+};
 
 struct Context::Implementation {
-    struct SharedMaterial {
-        scene::Material material;
-        std::optional<scene::MaterialTextures> textures;
-    };
-
     std::unique_ptr<gpu::Device> device;
     gpu::ShaderLibrary shaders;
     std::unique_ptr<gpu::PipelineStore> pipelines;
     std::unique_ptr<gpu::FrameResources> resources;
     std::unique_ptr<gpu::Timers> timers;
-    std::unique_ptr<gpu::FrameGraph> graph;
-    std::unique_ptr<scene::GpuScene> gpu_scene;
-    std::unique_ptr<raytrace::RayScene> rays;
-    std::unique_ptr<gi::System> system;
-    std::unique_ptr<gi::GBufferConversion> conversion;
-    std::unique_ptr<gi::LightSensors> sensors; // null until there is one
+    LogSink log;
+    sunfleck::LogSink engine_log; // leads to `log`
     gi::Settings settings;
     gi::SensorSettings sensor_settings;
-    ecs::Registry registry;
-    scene::MeshStore meshes;
-    scene::ChangeTracker change_tracker{scene::ChangeTracker::Space::of_scene};
-    scene::SceneSpace space; // of the last update
-    scene::TextureStore textures;
-    std::vector<SharedMaterial> materials;
-    std::vector<ecs::Entity> instances, lights;    // null: removed
-    std::vector<ecs::Entity> sensor_entities;      // the same
-    std::vector<std::uint32_t> instance_materials; // no_material: a surface of its own
-    std::vector<std::uint32_t> surface_ids;        // by instance
-    std::optional<mat4> view_projection;           // of the last frame recorded
-    bool updated = false;
-    bool unrecorded = false; // the last update was not followed by a frame
-    bool broken = false;     // recording ended halfway: its commands will never be executed
+    Description description;
+    std::unique_ptr<Follower> follower;
+    Serials serials;
+    // The follower may be half of this and half of that, because a step failed: the next update makes another.
+    bool damaged = false;
+    bool abandoned = false;
 
-    Result<ecs::Entity> find(const std::vector<ecs::Entity>& list, std::uint32_t number, const char* what) const {
-        if (number >= list.size() || list[number].is_null())
-            return Error{std::string("there is no ") + what + " " + std::to_string(number)};
-        return list[number];
-    }
-    void place(ecs::Entity entity, const mat4& matrix) {
-        // Hosts give whole matrices, so the hierarchy's part of an entity stays unused.
-        registry.update<scene::WorldTransform>(entity, {matrix});
-    }
-    void set_light(ecs::Entity entity, const LightData& data);
-    Result<SharedMaterial> make_material(const MaterialData& data, const SharedMaterial* before);
-    void set_surface(ecs::Entity entity, const SharedMaterial& surface);
+    Status restart();
     Status set_for_sensors(const Field& field, std::string_view value);
+    Status step_sensors();
+    Status update(const Frame& frame);
+    Status follow(const Frame& frame, bool lost);
+    void number_surfaces();
+    void drop_removed_meshes();
     void forget_lost_commands();
+    Status check_record(VkCommandBuffer commands, const FrameImages& images) const;
     Status record(VkCommandBuffer commands, const scene::ProjectedCamera& camera, const FrameImages& images);
     Status record_passes(VkCommandBuffer commands, const gpu::UploadSlice& row, const scene::DepthMapping& mapping,
                          const FrameImages& images);
+    Result<SharedMaterial> make_material(const MaterialData& data, const SharedMaterial* before);
+    Status check_ready() const;
+
+    // Calls change(mirror). The description has the change already; where the mirror cannot follow, it is made again.
+    template <typename Change>
+    void mirror(const Change& change) noexcept {
+        if (damaged || follower == nullptr)
+            return;
+        try {
+            change(follower->mirror);
+        } catch (...) {
+            damaged = true;
+        }
+    }
 };
 
+// Runs a call of the host's; no exception leaves it.
+template <typename Call>
+auto guarded(const sunfleck::LogSink& log, const Call& call) noexcept -> decltype(call()) {
+    try {
+        const ThreadLogSink scope(log);
+        return call();
+    } catch (const std::bad_alloc&) {
+        return Error{"out of memory", ErrorCode::memory};
+    } catch (const std::exception& exception) {
+        return Error{exception.what()};
+    } catch (...) {
+        return Error{"a callback of the host's ended with an exception"};
+    }
+}
+
+template <typename T>
+Status check_there(const std::vector<std::optional<T>>& list, std::uint32_t number, const char* what) {
+    if (number < list.size() && list[number])
+        return {};
+    return wrong(std::string("there is no ") + what + " " + std::to_string(number));
+}
+
 // host_images.cpp
-Status check_images(const FrameImages& images);
+Status check_images(const FrameImages& images, std::uint32_t largest);
 gi::HostGBuffer import_g_buffer(gpu::FrameGraph& graph, const FrameImages& images, const scene::DepthMapping& mapping);
 gpu::ResourceId import_output(gpu::FrameGraph& graph, const char* name, const HostImage& image,
                               const FrameImages& images);

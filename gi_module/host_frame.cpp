@@ -32,125 +32,202 @@ glm::dmat4 world_to_clip_of(const View& view) {
     return view_to_clip * world_to_view;
 }
 
-bool is_camera(const Camera& camera) {
-    const vec3 forward = vector_of(camera.forward);
-    return is_finite(vector_of(camera.position)) && is_finite(forward) && is_finite(vector_of(camera.up)) &&
-           glm::length(forward) > 1e-12f && camera.vertical_field_of_view > 0.0f && camera.vertical_field_of_view < pi;
-}
-
 } // namespace
 
 Matrix4 view_projection(const Camera& camera, std::uint32_t width, std::uint32_t height) {
+    if (!check_camera(camera) || width == 0 || height == 0)
+        return identity;
     const shared::CameraRow row = scene::make_camera_row(view_of(camera), width, height);
     Matrix4 result;
     std::memcpy(result.data(), &row.view_projection, sizeof result);
     return result;
 }
 
+Result<std::unique_ptr<Follower>> Follower::create(gpu::Device& device, gpu::PipelineStore& pipelines,
+                                                   const Description& description, const gi::Settings& settings) {
+    auto follower = std::make_unique<Follower>(description);
+    follower->gpu_scene = std::make_unique<scene::GpuScene>(device);
+    SUNFLECK_ASSIGN(follower->rays, raytrace::RayScene::create());
+    SUNFLECK_ASSIGN(follower->system, gi::System::create(device, pipelines));
+    SUNFLECK_TRY(follower->system->set_settings(settings));
+    SUNFLECK_ASSIGN(follower->conversion, gi::GBufferConversion::create(device, pipelines));
+    follower->graph = std::make_unique<gpu::FrameGraph>(&device);
+    return follower;
+}
+
+// Frames in flight may use what the old follower has.
+Status Context::Implementation::restart() {
+    if (follower != nullptr)
+        resources->retire(std::move(follower));
+    SUNFLECK_ASSIGN(follower, Follower::create(*device, *pipelines, description, settings));
+    damaged = false;
+    return {};
+}
+
 // What the last frame uploaded and drew never happened on the GPU: buffers and images that it would have filled are
 // made again. Frames before it may still use the old ones.
 void Context::Implementation::forget_lost_commands() {
-    resources->retire(std::move(graph));
-    graph = std::make_unique<gpu::FrameGraph>(device.get());
-    resources->retire(std::move(gpu_scene));
-    gpu_scene = std::make_unique<scene::GpuScene>(*device);
+    resources->retire(std::move(follower->graph));
+    follower->graph = std::make_unique<gpu::FrameGraph>(device.get());
+    resources->retire(std::move(follower->gpu_scene));
+    follower->gpu_scene = std::make_unique<scene::GpuScene>(*device);
 }
 
 Status Context::update(const Frame& frame) {
     Implementation& self = *implementation_;
-    self.updated = false;
-    self.resources->begin_frame(frame.serial, frame.completed_serial);
-    self.timers->begin_frame(frame.serial, frame.completed_serial);
-    if (frame.dropped || self.broken)
-        self.forget_lost_commands();
-    const bool lost = frame.dropped || self.broken || self.unrecorded;
-    self.broken = false;
-    self.unrecorded = true;
-    const scene::SceneChanges& changes = self.change_tracker.collect(self.registry, self.meshes);
+    if (self.follower != nullptr)
+        self.follower->updated = false;
+    bool begun = false;
+    const Status status = guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(self.serials.check(frame));
+        begun = true;
+        return self.update(frame);
+    });
+    // One that was stopped, or that lacks a choice of settings, is whole.
+    if (!status && begun && status.error().code != ErrorCode::stopped)
+        self.damaged = true;
+    return status;
+}
+
+Status Context::Implementation::update(const Frame& frame) {
+    serials.completed = frame.completed_serial;
+    if (frame.dropped && serials.recorded == frame.serial)
+        --serials.recorded;
+    resources->begin_frame(frame.serial, frame.completed_serial);
+    timers->begin_frame(frame.serial, frame.completed_serial);
+    const bool fresh = damaged || follower == nullptr;
+    if (fresh)
+        SUNFLECK_TRY(restart());
+    else if (frame.dropped)
+        forget_lost_commands();
+    const bool lost = !fresh && (frame.dropped || follower->unrecorded);
+    follower->unrecorded = true;
+    bool went_on = true;
+    Frame watched = frame;
+    if (frame.progress)
+        watched.progress = [&](float share) { return went_on = frame.progress(share); };
+    if (const Status status = follow(watched, lost); !status)
+        return went_on ? status : Status(Error{status.error().message, ErrorCode::stopped});
+    number_surfaces();
+    drop_removed_meshes();
+    follower->updated = true;
+    return {};
+}
+
+Status Context::Implementation::follow(const Frame& frame, bool lost) {
+    Follower& self = *follower;
+    const scene::SceneChanges& changes = self.mirror.change_tracker.collect(self.mirror.registry, description.meshes);
     if (changes.space != self.space)
         self.view_projection.reset();
     self.space = changes.space;
-    SUNFLECK_TRY(self.rays->update(changes, self.meshes, &self.textures));
-    SUNFLECK_TRY(self.gpu_scene->stage_meshes(self.meshes, *self.resources));
-    SUNFLECK_TRY(self.gpu_scene->update(changes, self.meshes, *self.resources));
+    SUNFLECK_TRY(self.rays->update(changes, description.meshes, &description.textures));
+    SUNFLECK_TRY(self.gpu_scene->stage_meshes(description.meshes, *resources));
+    SUNFLECK_TRY(self.gpu_scene->update(changes, description.meshes, *resources));
     gi::FrameInput input;
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
     input.progress = frame.progress;
     input.view_projection = self.view_projection;
-    gi::set_measured_times(input, self.timers->latest());
+    gi::set_measured_times(input, timers->latest());
     input.previous_frame_lost = lost;
-    SUNFLECK_TRY(self.system->update(self.registry, changes, self.meshes, *self.gpu_scene, *self.rays, input));
+    return self.system->update(self.mirror.registry, changes, description.meshes, *self.gpu_scene, *self.rays, input);
+}
+
+void Context::Implementation::number_surfaces() {
     std::unordered_map<ecs::Entity, std::uint32_t> rows;
-    for (const scene::DrawItem& item : self.gpu_scene->draws())
+    for (const scene::DrawItem& item : follower->gpu_scene->draws())
         rows[item.entity] = item.row;
-    self.surface_ids.assign(self.instances.size(), 0);
-    for (std::size_t i = 0; i < self.instances.size(); ++i)
-        if (const auto found = rows.find(self.instances[i]); found != rows.end())
-            self.surface_ids[i] = found->second + 1;
-    self.updated = true;
-    return {};
+    const std::vector<ecs::Entity>& instances = follower->mirror.instances;
+    follower->surface_ids.assign(instances.size(), 0);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        if (const auto found = rows.find(instances[i]); found != rows.end())
+            follower->surface_ids[i] = found->second + 1;
+}
+
+// Nobody refers to them any more. The GPU's copy goes with the next update.
+void Context::Implementation::drop_removed_meshes() {
+    for (const std::uint32_t mesh : description.removed_meshes)
+        description.meshes.remove(mesh);
+    description.removed_meshes.clear();
 }
 
 std::uint32_t Context::surface_id(std::uint32_t instance) const {
-    const auto& ids = implementation_->surface_ids;
-    return instance < ids.size() ? ids[instance] : 0;
+    const Implementation& self = *implementation_;
+    if (self.damaged || self.follower == nullptr || instance >= self.follower->surface_ids.size())
+        return 0;
+    return self.follower->surface_ids[instance];
 }
 
 Status Context::record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images) {
-    if (!is_camera(camera))
-        return Error{"a camera's numbers must be finite, its direction not zero, its field of view between 0 and pi"};
-    const scene::SceneSpace& space = implementation_->space;
-    const scene::ProjectedCamera projected{scene::make_camera_row(space.view(view_of(camera)), images.width,
-                                                                  images.height, scene::camera_near / space.unit),
-                                           {}};
-    return implementation_->record(commands, projected, images);
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_record(commands, images));
+        SUNFLECK_TRY(check_camera(camera));
+        const scene::SceneSpace& space = self.follower->space;
+        const scene::ProjectedCamera projected{scene::make_camera_row(space.view(view_of(camera)), images.width,
+                                                                      images.height, scene::camera_near / space.unit),
+                                               {}};
+        return self.record(commands, projected, images);
+    });
 }
 
 Status Context::record(VkCommandBuffer commands, const View& view, const FrameImages& images) {
-    SUNFLECK_ASSIGN(
-        const scene::ProjectedCamera projected,
-        scene::camera_from_matrix(implementation_->space.to_clip(world_to_clip_of(view)), images.width, images.height));
-    return implementation_->record(commands, projected, images);
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_record(commands, images));
+        SUNFLECK_TRY(check_view(view));
+        const auto projected = scene::camera_from_matrix(self.follower->space.to_clip(world_to_clip_of(view)),
+                                                         images.width, images.height);
+        if (!projected)
+            return wrong("View: " + projected.error().message);
+        return self.record(commands, *projected, images);
+    });
 }
 
 // Whatever is refused here leaves the update to be recorded by another call.
+Status Context::Implementation::check_record(VkCommandBuffer commands, const FrameImages& images) const {
+    SUNFLECK_TRY(check_ready());
+    if (damaged || follower == nullptr || !follower->updated)
+        return wrong("record needs an update before it, each frame");
+    if (commands == VK_NULL_HANDLE)
+        return wrong("commands is null; record needs a command buffer");
+    return check_images(images, device->traits().max_image_size);
+}
+
 Status Context::Implementation::record(VkCommandBuffer commands, const scene::ProjectedCamera& camera,
                                        const FrameImages& images) {
-    if (!updated)
-        return Error{"record needs an update before it, each frame"};
-    if (commands == VK_NULL_HANDLE)
-        return Error{"record needs a command buffer"};
-    SUNFLECK_TRY(check_images(images));
     shared::CameraRow row = camera.row;
-    row.previous_view_projection = view_projection.value_or(row.view_projection);
+    row.previous_view_projection = follower->view_projection.value_or(row.view_projection);
+    damaged = true; // until all is recorded
     SUNFLECK_ASSIGN(const gpu::UploadSlice slice, resources->upload_value(row));
-    updated = false;
-    broken = true; // until all is recorded
     SUNFLECK_TRY(record_passes(commands, slice, camera.depth, images));
-    broken = unrecorded = false;
-    view_projection = row.view_projection;
+    damaged = false;
+    follower->updated = follower->unrecorded = false;
+    follower->view_projection = row.view_projection;
+    serials.recorded = resources->serial();
     return {};
 }
 
 Status Context::Implementation::record_passes(VkCommandBuffer commands, const gpu::UploadSlice& row,
                                               const scene::DepthMapping& mapping, const FrameImages& images) {
-    graph->reset();
-    gpu_scene->add_passes(*graph);
-    const gi::HostGBuffer host = import_g_buffer(*graph, images, mapping);
-    SUNFLECK_ASSIGN(gi::GBufferInput g_buffer, conversion->add_passes(*graph, host, row));
-    g_buffer.motion = import_optional(*graph, "host motion", images.motion, VK_FORMAT_R16G16_SFLOAT, images);
+    gpu::FrameGraph& graph = *follower->graph;
+    graph.reset();
+    follower->gpu_scene->add_passes(graph);
+    const gi::HostGBuffer host = import_g_buffer(graph, images, mapping);
+    SUNFLECK_ASSIGN(gi::GBufferInput g_buffer, follower->conversion->add_passes(graph, host, row));
+    g_buffer.motion = import_optional(graph, "host motion", images.motion, VK_FORMAT_R16G16_SFLOAT, images);
     g_buffer.metallic_roughness =
-        import_optional(*graph, "host metallic and roughness", images.metallic_roughness, VK_FORMAT_R8G8_UNORM, images);
-    const gpu::ResourceId output = import_output(*graph, "host irradiance", images.irradiance, images);
+        import_optional(graph, "host metallic and roughness", images.metallic_roughness, VK_FORMAT_R8G8_UNORM, images);
+    const gpu::ResourceId output = import_output(graph, "host irradiance", images.irradiance, images);
     const gpu::ResourceId specular =
-        import_optional(*graph, "host specular light", images.specular, VK_FORMAT_R16G16B16A16_SFLOAT, images);
+        import_optional(graph, "host specular light", images.specular, VK_FORMAT_R16G16B16A16_SFLOAT, images);
     if (specular.valid())
-        SUNFLECK_TRY(conversion->add_clear(*graph, specular));
-    SUNFLECK_TRY(system->add_passes(*graph, *gpu_scene, g_buffer, row, output));
-    SUNFLECK_TRY(graph->compile());
-    return graph->execute(commands, *resources, timers.get());
+        SUNFLECK_TRY(follower->conversion->add_clear(graph, specular));
+    SUNFLECK_TRY(follower->system->add_passes(graph, *follower->gpu_scene, g_buffer, row, output));
+    SUNFLECK_TRY(graph.compile());
+    return graph.execute(commands, *resources, timers.get());
 }
 
 } // namespace sunfleck::host

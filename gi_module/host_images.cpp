@@ -35,24 +35,42 @@ bool is_there(const HostImage& image) {
     return image.image != VK_NULL_HANDLE || image.view != VK_NULL_HANDLE;
 }
 
+// Images of the host's may lie in any layout of Vulkan 1.3 but the swapchain's.
+Status check_layout(const std::string& what, VkImageLayout layout) {
+    const bool of_core = layout >= VK_IMAGE_LAYOUT_UNDEFINED && layout <= VK_IMAGE_LAYOUT_PREINITIALIZED;
+    constexpr VkImageLayout later[] = {VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_STENCIL_READ_ONLY_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
+                                       VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL};
+    if (of_core || std::find(std::begin(later), std::end(later), layout) != std::end(later))
+        return {};
+    return wrong(what + " has the layout " + std::to_string(layout) + ", which is none of Vulkan 1.3");
+}
+
 Status check_image(const char* name, const HostImage& image, std::initializer_list<Formats> allowed) {
-    const std::string what = std::string("the image of ") + name;
+    const std::string what = std::string("FrameImages: the image of ") + name;
     if (image.image == VK_NULL_HANDLE || image.view == VK_NULL_HANDLE)
-        return Error{what + " has no " + (image.image == VK_NULL_HANDLE ? "image handle" : "view")};
+        return wrong(what + " has no " + (image.image == VK_NULL_HANDLE ? "image handle" : "view"));
+    SUNFLECK_TRY(check_layout(what + " at entry", image.entry.layout));
+    SUNFLECK_TRY(check_layout(what + " at exit", image.exit.layout));
     if (image.exit.layout == VK_IMAGE_LAYOUT_UNDEFINED || image.exit.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
-        return Error{what + " needs a layout at exit"};
+        return wrong(what + " needs a layout at exit");
     const VkFormat format = format_of(image, *allowed.begin()->begin());
     if (std::any_of(allowed.begin(), allowed.end(), [&](Formats formats) { return is_one_of(format, formats); }))
         return {};
-    return Error{what + " has the format " + std::to_string(format) +
-                 " (VkFormat), which sunfleck/host.h does not list"};
+    return wrong(what + " has the format " + std::to_string(format) +
+                 " (VkFormat), which sunfleck/host.h does not list");
 }
 
 // An input of undefined layout has no content.
 Status check_input(const char* name, const HostImage& image, std::initializer_list<Formats> allowed) {
     SUNFLECK_TRY(check_image(name, image, allowed));
     if (image.entry.layout == VK_IMAGE_LAYOUT_UNDEFINED)
-        return Error{std::string("the image of ") + name + " has an undefined layout at entry"};
+        return wrong(std::string("FrameImages: the image of ") + name + " has an undefined layout at entry");
     return {};
 }
 
@@ -99,9 +117,11 @@ gi::NormalEncoding encoding_of(VkFormat format) {
 
 } // namespace
 
-Status check_images(const FrameImages& images) {
-    if (images.width == 0 || images.height == 0)
-        return Error{"the images have no size"};
+Status check_images(const FrameImages& images, std::uint32_t largest) {
+    if (images.width == 0 || images.height == 0 || images.width > largest || images.height > largest)
+        return wrong("FrameImages: width and height are " + std::to_string(images.width) + " and " +
+                     std::to_string(images.height) + "; on this device they must lie between 1 and " +
+                     std::to_string(largest));
     SUNFLECK_TRY(check_input("depth", images.depth, {depth_formats}));
     SUNFLECK_TRY(check_input("normals", images.normals,
                              {packed_normal_formats, signed_normal_formats, unsigned_normal_formats}));

@@ -1,63 +1,52 @@
-// The host's meshes, materials, instances and lights, mirrored into the registry.
+// What the host says of meshes, materials, instances and lights: kept in its words, and mirrored into the registry.
 #include "gi_module/host_context.h"
 
 #include "engine/scene/procedural.h"
 
+#include <algorithm>
+#include <map>
+
 namespace sunfleck::host {
 namespace {
-
-mat4 matrix_of(const Matrix4& m) {
-    mat4 result;
-    for (int i = 0; i < 16; ++i)
-        result[i / 4][i % 4] = m[std::size_t(i)];
-    return result;
-}
-
-bool is_finite_matrix(const mat4& m) {
-    for (int c = 0; c < 4; ++c)
-        if (!is_finite(vec3(m[c])))
-            return false;
-    return true;
-}
 
 template <typename... Components>
 void remove_if_there(ecs::Registry& registry, ecs::Entity entity) {
     ((registry.has<Components>(entity) ? registry.remove<Components>(entity) : void()), ...);
 }
 
-// Looks along -Z, as lights do.
+// Looks along -Z, as lights do. Kinds without a direction may have any.
 mat4 facing_along(vec3 direction, vec3 position) {
     const float length = glm::length(direction);
-    const vec3 z = length > 1e-12f ? -direction / length : vec3(0.0f, 1.0f, 0.0f);
+    const vec3 z = length > 0.0f && is_finite(direction / length) ? -direction / length : vec3(0.0f, 1.0f, 0.0f);
     vec3 x, y;
     orthonormal_basis(z, x, y);
-    return mat4(vec4(x, 0.0f), vec4(y, 0.0f), vec4(z, 0.0f), vec4(position, 1.0f));
+    return mat4(vec4(x, 0.0f), vec4(y, 0.0f), vec4(z, 0.0f), vec4(is_finite(position) ? position : vec3(0.0f), 1.0f));
 }
 
-// Per vertex: three floats each, or none at all.
-Status read_vectors(std::span<const float> from, const char* what, std::vector<vec3>& to) {
-    for (std::size_t i = 0; i + 2 < from.size(); i += 3) {
+std::vector<vec3> vectors_of(std::span<const float> from) {
+    std::vector<vec3> to;
+    to.reserve(from.size() / 3);
+    for (std::size_t i = 0; i + 2 < from.size(); i += 3)
         to.emplace_back(from[i], from[i + 1], from[i + 2]);
-        if (!is_finite(to.back()))
-            return Error{std::string(what) + " " + std::to_string(i / 3) + " is not finite"};
-    }
-    return {};
+    return to;
 }
 
-Status read_coordinates(std::span<const float> from, std::vector<vec4>& to) {
-    for (std::size_t i = 0; i + 1 < from.size(); i += 2) {
-        to.emplace_back(from[i], from[i + 1], 0.0f, 0.0f);
-        if (!is_finite(vec3(to.back())))
-            return Error{"texture coordinate " + std::to_string(i / 2) + " is not finite"};
-    }
-    return {};
+scene::Mesh mesh_of(const MeshData& data) {
+    scene::Mesh mesh;
+    mesh.positions = vectors_of(data.positions);
+    mesh.normals = vectors_of(data.normals);
+    for (vec3& normal : mesh.normals)
+        normal = glm::normalize(normal);
+    mesh.texture_coordinates.reserve(data.texture_coordinates.size() / 2);
+    for (std::size_t i = 0; i + 1 < data.texture_coordinates.size(); i += 2)
+        mesh.texture_coordinates.emplace_back(data.texture_coordinates[i], data.texture_coordinates[i + 1], 0.0f, 0.0f);
+    mesh.indices.assign(data.indices.begin(), data.indices.end());
+    if (mesh.normals.empty())
+        scene::compute_normals(mesh);
+    return mesh;
 }
 
-Result<scene::Texture> texture_of(const TextureData& data) {
-    const std::uint64_t bytes = std::uint64_t(data.width) * data.height * 4;
-    if (data.width == 0 || data.height == 0 || data.pixels.size() != bytes)
-        return Error{"a texture of " + std::to_string(data.width) + "x" + std::to_string(data.height) + " texels has " +
-                     std::to_string(data.pixels.size()) + " bytes; four a texel are needed"};
+scene::Texture texture_of(const TextureData& data) {
     scene::Texture texture;
     texture.name = "host texture";
     texture.width = data.width;
@@ -69,14 +58,69 @@ Result<scene::Texture> texture_of(const TextureData& data) {
 
 scene::Material material_of(const Vector3& albedo, const Vector3& emission) {
     scene::Material material;
-    material.base_colour = glm::min(vector_of(albedo), vec3(1.0f));
+    material.base_colour = vector_of(albedo);
     material.emission = vector_of(emission);
     return material;
 }
 
+Status check_mesh_there(const Description& description, std::uint32_t mesh) {
+    if (mesh < description.meshes.size() &&
+        std::find(description.removed_meshes.begin(), description.removed_meshes.end(), mesh) ==
+            description.removed_meshes.end() &&
+        !description.meshes[mesh].indices.empty())
+        return {};
+    return wrong("there is no mesh " + std::to_string(mesh));
+}
+
+Status check_material_there(const Description& description, std::uint32_t material) {
+    if (material < description.materials.size())
+        return {};
+    return wrong("there is no material " + std::to_string(material));
+}
+
 } // namespace
 
-void Context::Implementation::set_light(ecs::Entity entity, const LightData& data) {
+Mirror::Mirror(const Description& description) {
+    scene::register_components(registry);
+    instances.assign(description.instances.size(), ecs::null_entity);
+    lights.assign(description.lights.size(), ecs::null_entity);
+    sensors.assign(description.sensors.size(), ecs::null_entity);
+    // In the order in which they were added.
+    using Add = void (Mirror::*)(const Description&, std::uint32_t);
+    std::map<std::uint64_t, std::pair<Add, std::uint32_t>> ordered;
+    const auto list = [&](const auto& entries, Add add_entry) {
+        for (std::uint32_t i = 0; i < entries.size(); ++i)
+            if (entries[i])
+                ordered.emplace(entries[i]->order, std::pair(add_entry, i));
+    };
+    list(description.instances, &Mirror::add);
+    list(description.lights, &Mirror::add_light);
+    list(description.sensors, &Mirror::add_sensor);
+    for (const auto& [order, entry] : ordered)
+        (this->*entry.first)(description, entry.second);
+}
+
+void Mirror::add(const Description& description, std::uint32_t number) {
+    const Description::Instance& instance = *description.instances[number];
+    instances.resize(std::max<std::size_t>(instances.size(), number + 1), ecs::null_entity);
+    const ecs::Entity entity = registry.create();
+    instances[number] = entity;
+    registry.emplace<scene::MeshInstance>(entity, {instance.mesh});
+    set_surface(entity, description.surface_of(instance));
+    if (instance.mobility == Mobility::moving)
+        registry.emplace<scene::Mover>(entity, {});
+    place(entity, instance.transform);
+}
+
+void Mirror::add_light(const Description& description, std::uint32_t number) {
+    lights.resize(std::max<std::size_t>(lights.size(), number + 1), ecs::null_entity);
+    lights[number] = registry.create();
+    set_light(lights[number], description.lights[number]->data);
+}
+
+void Mirror::set_light(ecs::Entity entity, const LightData& data) {
+    // Another kind takes the place of the old one.
+    remove_if_there<scene::PointLight, scene::SpotLight, scene::DirectionalLight, scene::Environment>(registry, entity);
     const vec3 strength = vector_of(data.strength);
     place(entity, facing_along(vector_of(data.direction), vector_of(data.position)));
     switch (data.kind) {
@@ -95,42 +139,50 @@ void Context::Implementation::set_light(ecs::Entity entity, const LightData& dat
     }
 }
 
+void Mirror::set_surface(ecs::Entity entity, const SharedMaterial& surface) {
+    registry.emplace_or_replace<scene::Material>(entity, surface.material);
+    if (surface.textures)
+        registry.emplace_or_replace<scene::MaterialTextures>(entity, *surface.textures);
+    else
+        remove_if_there<scene::MaterialTextures>(registry, entity);
+}
+
 Result<std::uint32_t> Context::add_mesh(const MeshData& data) {
-    scene::Mesh mesh;
-    const std::size_t vertices = data.positions.size() / 3;
-    if (vertices == 0 || data.positions.size() % 3 != 0 || data.indices.empty() || data.indices.size() % 3 != 0)
-        return Error{"a mesh needs three numbers a vertex and three indices a triangle"};
-    if (!data.normals.empty() && data.normals.size() != data.positions.size())
-        return Error{"a mesh needs one normal a vertex, or none"};
-    if (!data.texture_coordinates.empty() && data.texture_coordinates.size() != 2 * vertices)
-        return Error{"a mesh needs two texture coordinates a vertex, or none"};
-    SUNFLECK_TRY(read_vectors(data.positions, "vertex", mesh.positions));
-    SUNFLECK_TRY(read_vectors(data.normals, "normal", mesh.normals));
-    SUNFLECK_TRY(read_coordinates(data.texture_coordinates, mesh.texture_coordinates));
-    for (const std::uint32_t index : data.indices)
-        if (index >= vertices)
-            return Error{"index " + std::to_string(index) + " points past the last of " + std::to_string(vertices) +
-                         " vertices"};
-    mesh.indices.assign(data.indices.begin(), data.indices.end());
-    if (mesh.normals.empty())
-        scene::compute_normals(mesh);
-    return implementation_->meshes.add(std::move(mesh));
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_mesh(data));
+        return self.description.meshes.add(mesh_of(data));
+    });
+}
+
+Status Context::remove_mesh(std::uint32_t mesh) {
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_mesh_there(self.description, mesh));
+        const auto& instances = self.description.instances;
+        for (std::size_t i = 0; i < instances.size(); ++i)
+            if (instances[i] && instances[i]->mesh == mesh)
+                return wrong("instance " + std::to_string(i) + " has mesh " + std::to_string(mesh) +
+                             "; remove the instance first");
+        // Whoever follows the scene may still look at it, until the next update.
+        self.description.removed_meshes.push_back(mesh);
+        return {};
+    });
 }
 
 // `before`: keeps its texture if the new data has the same one.
-Result<Context::Implementation::SharedMaterial> Context::Implementation::make_material(const MaterialData& data,
-                                                                                       const SharedMaterial* before) {
-    if (!is_strength(data.albedo) || !is_strength(data.emission))
-        return Error{"albedo and emission must be finite and not negative"};
-    if (!(data.metallic >= 0.0f && data.metallic <= 1.0f && data.roughness >= 0.0f && data.roughness <= 1.0f))
-        return Error{"metallic and roughness must lie between 0 and 1"};
+Result<SharedMaterial> Context::Implementation::make_material(const MaterialData& data, const SharedMaterial* before) {
+    SUNFLECK_TRY(check_material(data, device->traits().max_image_size));
     SharedMaterial result;
     result.material = material_of(data.albedo, data.emission);
     result.material.metallic = data.metallic;
     result.material.roughness = data.roughness;
     if (data.albedo_texture.pixels.empty())
         return result;
-    SUNFLECK_ASSIGN(scene::Texture texture, texture_of(data.albedo_texture));
+    scene::TextureStore& textures = description.textures;
+    scene::Texture texture = texture_of(data.albedo_texture);
     const std::int32_t old = before != nullptr && before->textures ? before->textures->base_colour.texture : -1;
     const bool same = old >= 0 && textures[std::uint32_t(old)].width == texture.width &&
                       textures[std::uint32_t(old)].pixels == texture.pixels;
@@ -139,108 +191,147 @@ Result<Context::Implementation::SharedMaterial> Context::Implementation::make_ma
     return result;
 }
 
-void Context::Implementation::set_surface(ecs::Entity entity, const SharedMaterial& surface) {
-    registry.emplace_or_replace<scene::Material>(entity, surface.material);
-    if (surface.textures)
-        registry.emplace_or_replace<scene::MaterialTextures>(entity, *surface.textures);
-    else
-        remove_if_there<scene::MaterialTextures>(registry, entity);
-}
-
 Result<std::uint32_t> Context::add_material(const MaterialData& data) {
     Implementation& self = *implementation_;
-    SUNFLECK_ASSIGN(auto material, self.make_material(data, nullptr));
-    self.materials.push_back(std::move(material));
-    return std::uint32_t(self.materials.size() - 1);
+    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_ASSIGN(auto material, self.make_material(data, nullptr));
+        self.description.materials.push_back(std::move(material));
+        return std::uint32_t(self.description.materials.size() - 1);
+    });
 }
 
 Status Context::set_material(std::uint32_t material, const MaterialData& data) {
     Implementation& self = *implementation_;
-    if (material >= self.materials.size())
-        return Error{"there is no material " + std::to_string(material)};
-    SUNFLECK_ASSIGN(self.materials[material], self.make_material(data, &self.materials[material]));
-    for (std::size_t i = 0; i < self.instances.size(); ++i)
-        if (self.instance_materials[i] == material && !self.instances[i].is_null())
-            self.set_surface(self.instances[i], self.materials[material]);
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_material_there(self.description, material));
+        SharedMaterial& changed = self.description.materials[material];
+        SUNFLECK_ASSIGN(changed, self.make_material(data, &changed));
+        self.mirror([&](Mirror& mirror) {
+            for (std::size_t i = 0; i < mirror.instances.size(); ++i)
+                if (const auto& instance = self.description.instances[i]; instance && instance->material == material)
+                    mirror.set_surface(mirror.instances[i], changed);
+        });
+        return {};
+    });
 }
 
 Result<std::uint32_t> Context::add_instance(const InstanceData& data) {
     Implementation& self = *implementation_;
-    const mat4 matrix = matrix_of(data.transform);
-    if (data.mesh >= self.meshes.size())
-        return Error{"there is no mesh " + std::to_string(data.mesh)};
-    if (data.material != no_material && data.material >= self.materials.size())
-        return Error{"there is no material " + std::to_string(data.material)};
-    if (!is_finite_matrix(matrix) || !is_strength(data.albedo) || !is_strength(data.emission))
-        return Error{"an instance's transform, albedo and emission must be finite, the latter two not negative"};
-    const ecs::Entity entity = self.registry.create();
-    self.registry.emplace<scene::MeshInstance>(entity, {data.mesh});
-    self.set_surface(entity, data.material != no_material
-                                 ? self.materials[data.material]
-                                 : Implementation::SharedMaterial{material_of(data.albedo, data.emission), {}});
-    if (data.mobility == Mobility::moving)
-        self.registry.emplace<scene::Mover>(entity, {});
-    self.place(entity, matrix);
-    self.instances.push_back(entity);
-    self.instance_materials.push_back(data.material);
-    return std::uint32_t(self.instances.size() - 1);
+    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+        Description& description = self.description;
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_mesh_there(description, data.mesh));
+        if (data.material != no_material)
+            SUNFLECK_TRY(check_material_there(description, data.material));
+        if (data.mobility != Mobility::fixed && data.mobility != Mobility::moving)
+            return wrong("InstanceData::mobility is " + std::to_string(int(data.mobility)) + ", which is no Mobility");
+        SUNFLECK_TRY(check_transform("InstanceData::transform", data.transform, description.meshes.bounds(data.mesh)));
+        SUNFLECK_TRY(check_albedo("InstanceData::albedo", data.albedo));
+        SUNFLECK_TRY(check_strength("InstanceData::emission", data.emission));
+        description.instances.push_back(Description::Instance{description.next_order++,
+                                                              data.mesh,
+                                                              matrix_of(data.transform),
+                                                              data.mobility,
+                                                              data.material,
+                                                              {material_of(data.albedo, data.emission), {}}});
+        const auto number = std::uint32_t(description.instances.size() - 1);
+        self.mirror([&](Mirror& mirror) { mirror.add(description, number); });
+        return number;
+    });
 }
 
 Status Context::set_transform(std::uint32_t instance, const Matrix4& transform) {
-    SUNFLECK_ASSIGN(const ecs::Entity entity, implementation_->find(implementation_->instances, instance, "instance"));
-    if (!is_finite_matrix(matrix_of(transform)))
-        return Error{"a transform must be finite"};
-    implementation_->place(entity, matrix_of(transform));
-    return {};
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
+        Description::Instance& changed = *self.description.instances[instance];
+        SUNFLECK_TRY(check_transform("transform", transform, self.description.meshes.bounds(changed.mesh)));
+        changed.transform = matrix_of(transform);
+        self.mirror([&](Mirror& mirror) { mirror.place(mirror.instances[instance], changed.transform); });
+        return {};
+    });
 }
 
 Status Context::set_surface(std::uint32_t instance, const Vector3& albedo, const Vector3& emission) {
     Implementation& self = *implementation_;
-    SUNFLECK_ASSIGN(const ecs::Entity entity, self.find(self.instances, instance, "instance"));
-    if (!is_strength(albedo) || !is_strength(emission))
-        return Error{"albedo and emission must be finite and not negative"};
-    self.set_surface(entity, {material_of(albedo, emission), {}});
-    self.instance_materials[instance] = no_material;
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
+        SUNFLECK_TRY(check_albedo("albedo", albedo));
+        SUNFLECK_TRY(check_strength("emission", emission));
+        Description::Instance& changed = *self.description.instances[instance];
+        changed.own = {material_of(albedo, emission), {}};
+        changed.material = no_material;
+        self.mirror([&](Mirror& mirror) { mirror.set_surface(mirror.instances[instance], changed.own); });
+        return {};
+    });
 }
 
 Status Context::remove_instance(std::uint32_t instance) {
-    SUNFLECK_ASSIGN(const ecs::Entity entity, implementation_->find(implementation_->instances, instance, "instance"));
-    implementation_->registry.destroy(entity);
-    implementation_->instances[instance] = ecs::null_entity;
-    return {};
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
+        self.description.instances[instance].reset();
+        self.mirror([&](Mirror& mirror) {
+            mirror.registry.destroy(mirror.instances[instance]);
+            mirror.instances[instance] = ecs::null_entity;
+        });
+        return {};
+    });
 }
 
 Result<std::uint32_t> Context::add_light(const LightData& data) {
     Implementation& self = *implementation_;
-    self.lights.push_back(self.registry.create());
-    const std::uint32_t number = std::uint32_t(self.lights.size() - 1);
-    if (const Status status = set_light(number, data); !status) {
-        self.registry.destroy(self.lights.back());
-        self.lights.pop_back();
-        return status.error();
-    }
-    return number;
+    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+        Description& description = self.description;
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_light(data));
+        description.lights.push_back(Description::Light{description.next_order++, data});
+        const auto number = std::uint32_t(description.lights.size() - 1);
+        self.mirror([&](Mirror& mirror) { mirror.add_light(description, number); });
+        return number;
+    });
 }
 
 Status Context::set_light(std::uint32_t light, const LightData& data) {
     Implementation& self = *implementation_;
-    SUNFLECK_ASSIGN(const ecs::Entity entity, self.find(self.lights, light, "light"));
-    if (!is_strength(data.strength) || !is_finite(vector_of(data.position)) || !is_finite(vector_of(data.direction)))
-        return Error{"a light's strength, position and direction must be finite, its strength not negative"};
-    // Another kind takes the place of the old one.
-    remove_if_there<scene::PointLight, scene::SpotLight, scene::DirectionalLight, scene::Environment>(self.registry,
-                                                                                                      entity);
-    self.set_light(entity, data);
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
+        SUNFLECK_TRY(check_light(data));
+        self.description.lights[light]->data = data;
+        self.mirror([&](Mirror& mirror) { mirror.set_light(mirror.lights[light], data); });
+        return {};
+    });
 }
 
 Status Context::remove_light(std::uint32_t light) {
-    SUNFLECK_ASSIGN(const ecs::Entity entity, implementation_->find(implementation_->lights, light, "light"));
-    implementation_->registry.destroy(entity);
-    implementation_->lights[light] = ecs::null_entity;
-    return {};
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
+        self.description.lights[light].reset();
+        self.mirror([&](Mirror& mirror) {
+            mirror.registry.destroy(mirror.lights[light]);
+            mirror.lights[light] = ecs::null_entity;
+        });
+        return {};
+    });
+}
+
+Status Context::clear() {
+    Implementation& self = *implementation_;
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        // Nothing of the follower looks at the description before the next update makes another one.
+        self.description = {};
+        self.damaged = true;
+        return {};
+    });
 }
 
 } // namespace sunfleck::host

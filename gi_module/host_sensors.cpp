@@ -1,6 +1,8 @@
 // Light sensors of a foreign host, mirrored into the registry.
 #include "gi_module/host_context.h"
 
+#include <algorithm>
+
 namespace sunfleck::host {
 namespace {
 
@@ -12,69 +14,105 @@ mat4 place_of(const SensorData& sensor) {
     return mat4(vec4(x, 0.0f), vec4(y, 0.0f), vec4(z, 0.0f), vec4(vector_of(sensor.position), 1.0f));
 }
 
-Status check(const SensorData& sensor) {
-    const vec3 normal = vector_of(sensor.normal);
-    if (!is_finite(vector_of(sensor.position)) || !is_finite(normal) || !(glm::length(normal) > 1e-12f) ||
-        !is_strength(sensor.threshold))
-        return Error{"a sensor's position, normal and threshold must be finite, its normal not zero, its threshold not "
-                     "negative"};
-    return {};
+} // namespace
+
+void Mirror::add_sensor(const Description& description, std::uint32_t number) {
+    sensors.resize(std::max<std::size_t>(sensors.size(), number + 1), ecs::null_entity);
+    sensors[number] = registry.create();
+    set_sensor(sensors[number], description.sensors[number]->data);
 }
 
-} // namespace
+void Mirror::set_sensor(ecs::Entity entity, const SensorData& data) {
+    scene::LightSensor described;
+    described.threshold = vector_of(data.threshold);
+    registry.emplace_or_replace<scene::LightSensor>(entity, described);
+    place(entity, place_of(data));
+}
 
 Status Context::Implementation::set_for_sensors(const Field& field, std::string_view value) {
     gi::SensorSettings changed = sensor_settings;
-    SUNFLECK_TRY(field_from_text(field, &changed, value));
-    if (sensors)
-        SUNFLECK_TRY(sensors->set_settings(changed));
+    if (const Status status = field_from_text(field, &changed, value); !status)
+        return wrong(status.error().message);
+    if (follower != nullptr && follower->sensors != nullptr)
+        if (const Status status = follower->sensors->set_settings(changed); !status)
+            return wrong(status.error().message);
     sensor_settings = changed;
     return {};
 }
 
 Result<std::uint32_t> Context::add_sensor(const SensorData& data) {
     Implementation& self = *implementation_;
-    SUNFLECK_TRY(check(data));
-    if (!self.sensors) {
-        SUNFLECK_ASSIGN(self.sensors, gi::LightSensors::create());
-        SUNFLECK_TRY(self.sensors->set_settings(self.sensor_settings));
-    }
-    self.sensor_entities.push_back(self.registry.create());
-    const std::uint32_t number = std::uint32_t(self.sensor_entities.size() - 1);
-    SUNFLECK_TRY(set_sensor(number, data));
-    return number;
+    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+        Description& description = self.description;
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_sensor(data));
+        description.sensors.push_back(Description::Sensor{description.next_order++, data});
+        const auto number = std::uint32_t(description.sensors.size() - 1);
+        self.mirror([&](Mirror& mirror) { mirror.add_sensor(description, number); });
+        return number;
+    });
 }
 
 Status Context::set_sensor(std::uint32_t sensor, const SensorData& data) {
     Implementation& self = *implementation_;
-    SUNFLECK_ASSIGN(const ecs::Entity entity, self.find(self.sensor_entities, sensor, "sensor"));
-    SUNFLECK_TRY(check(data));
-    scene::LightSensor described;
-    described.threshold = vector_of(data.threshold);
-    self.registry.emplace_or_replace<scene::LightSensor>(entity, described);
-    self.place(entity, place_of(data));
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
+        SUNFLECK_TRY(check_sensor(data));
+        self.description.sensors[sensor]->data = data;
+        self.mirror([&](Mirror& mirror) { mirror.set_sensor(mirror.sensors[sensor], data); });
+        return {};
+    });
 }
 
 Status Context::remove_sensor(std::uint32_t sensor) {
     Implementation& self = *implementation_;
-    SUNFLECK_ASSIGN(const ecs::Entity entity, self.find(self.sensor_entities, sensor, "sensor"));
-    self.registry.destroy(entity);
-    self.sensor_entities[sensor] = ecs::null_entity;
-    return {};
+    return guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
+        self.description.sensors[sensor].reset();
+        self.mirror([&](Mirror& mirror) {
+            mirror.registry.destroy(mirror.sensors[sensor]);
+            mirror.sensors[sensor] = ecs::null_entity;
+        });
+        return {};
+    });
 }
 
 Status Context::step_sensors() {
     Implementation& self = *implementation_;
-    return self.sensors ? self.sensors->step(self.registry, self.meshes, &self.textures) : Status();
+    bool whole = false;
+    const Status status = guarded(self.engine_log, [&]() -> Status {
+        SUNFLECK_TRY(self.check_ready());
+        const Status stepped = self.step_sensors();
+        whole = bool(stepped);
+        return stepped;
+    });
+    if (!whole && self.follower != nullptr)
+        self.follower->sensors.reset(); // they begin again
+    return status;
+}
+
+Status Context::Implementation::step_sensors() {
+    if (description.sensors.empty())
+        return {};
+    if (damaged || follower == nullptr)
+        SUNFLECK_TRY(restart());
+    std::unique_ptr<gi::LightSensors>& sensors = follower->sensors;
+    if (sensors == nullptr) {
+        SUNFLECK_ASSIGN(sensors, gi::LightSensors::create());
+        SUNFLECK_TRY(sensors->set_settings(sensor_settings));
+    }
+    return sensors->step(follower->mirror.registry, description.meshes, &description.textures);
 }
 
 SensorValue Context::read_sensor(std::uint32_t sensor) const {
     const Implementation& self = *implementation_;
     SensorValue value;
-    if (sensor >= self.sensor_entities.size() || self.sensor_entities[sensor].is_null())
+    if (self.damaged || self.follower == nullptr || !check_there(self.description.sensors, sensor, "sensor"))
         return value;
-    if (const auto* reading = self.registry.try_get<scene::SensorReading>(self.sensor_entities[sensor])) {
+    const Mirror& mirror = self.follower->mirror;
+    if (const auto* reading = mirror.registry.try_get<scene::SensorReading>(mirror.sensors[sensor])) {
         value.irradiance = {reading->irradiance.x, reading->irradiance.y, reading->irradiance.z};
         value.share = reading->share;
         value.open = reading->open;

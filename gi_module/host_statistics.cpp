@@ -23,14 +23,20 @@ std::vector<Statistic> times_of(const std::map<std::string, double>& millisecond
 
 Statistics Context::statistics() const {
     const Implementation& self = *implementation_;
-    Statistics result;
-    result.gpu_serial = self.timers->latest().serial;
-    result.gpu_passes = times_of(self.timers->latest().milliseconds);
-    result.cpu_stages = times_of(self.system->cpu_times().milliseconds());
-    result.counters = counters_of(*self.system);
-    for (const auto& [name, bytes] : self.device->memory().usage())
-        result.memory.push_back({name, double(bytes) / 1048576.0, "MiB"});
-    return result;
+    const Result<Statistics> result = guarded(self.engine_log, [&]() -> Result<Statistics> {
+        SUNFLECK_TRY(self.check_ready());
+        Statistics numbers;
+        numbers.gpu_serial = self.timers->latest().serial;
+        numbers.gpu_passes = times_of(self.timers->latest().milliseconds);
+        if (self.follower != nullptr) {
+            numbers.cpu_stages = times_of(self.follower->system->cpu_times().milliseconds());
+            numbers.counters = counters_of(*self.follower->system);
+        }
+        for (const auto& [name, bytes] : self.device->memory().usage())
+            numbers.memory.push_back({name, double(bytes) / 1048576.0, "MiB"});
+        return numbers;
+    });
+    return result ? *result : Statistics();
 }
 
 } // namespace sunfleck::host

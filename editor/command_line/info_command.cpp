@@ -14,7 +14,7 @@ Json device_json(gpu::Device& device, const std::vector<std::string>& devices) {
             {"devices", devices},
             {"software", traits.software},
             {"features_used", gpu::required_feature_names()},
-            {"features_missing", gpu::missing_features(device.physical_device())},
+            {"features_missing", gpu::missing_features(device.instance_vk(), device.physical_device())},
             {"limits",
              {{"image_size", traits.max_image_size},
               {"image_layers", traits.max_image_layers},

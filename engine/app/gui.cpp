@@ -258,7 +258,7 @@ Status Gui::draw(gpu::PassContext& context, gpu::ResourceId target, const Frame&
     rendering.layerCount = 1;
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &colour;
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     vk.vkCmdBeginRendering(context.commands, &rendering);
     const VkViewport viewport{0, 0, frame.size.x, frame.size.y, 0, 1};
     vk.vkCmdSetViewport(context.commands, 0, 1, &viewport);

@@ -26,17 +26,18 @@ Swapchain::~Swapchain() {
     for (VkSemaphore semaphore : acquired_)
         device_.vk.vkDestroySemaphore(device_.handle(), semaphore, nullptr);
     if (surface_ != VK_NULL_HANDLE)
-        vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
+        device_.instance_vk().vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
 }
 
 Status Swapchain::make_surface() {
     if (surface_ != VK_NULL_HANDLE)
-        vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
+        device_.instance_vk().vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
     surface_ = VK_NULL_HANDLE;
     SUNFLECK_VK(glfwCreateWindowSurface(device_.instance(), window_.handle(), nullptr, &surface_),
                 "creating the window's surface");
     VkBool32 supported = VK_FALSE;
-    vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical_device(), device_.queue_family(), surface_, &supported);
+    device_.instance_vk().vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical_device(), device_.queue_family(),
+                                                               surface_, &supported);
     if (!supported)
         return Error{"device '" + device_.traits().name +
                      "' cannot present to this window; choose another with --device, or run with --headless"};
@@ -51,9 +52,11 @@ void Swapchain::set_vertical_sync(bool wait) {
 
 VkPresentModeKHR Swapchain::present_mode() const {
     std::uint32_t count = 0;
-    vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count, nullptr);
+    device_.instance_vk().vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count,
+                                                                    nullptr);
     std::vector<VkPresentModeKHR> modes(count);
-    vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count, modes.data());
+    device_.instance_vk().vkGetPhysicalDeviceSurfacePresentModesKHR(device_.physical_device(), surface_, &count,
+                                                                    modes.data());
     if (!vertical_sync_)
         for (const VkPresentModeKHR mode : {VK_PRESENT_MODE_IMMEDIATE_KHR, VK_PRESENT_MODE_MAILBOX_KHR})
             if (std::find(modes.begin(), modes.end(), mode) != modes.end())
@@ -72,9 +75,10 @@ void Swapchain::destroy_chain() {
 
 Result<VkSurfaceFormatKHR> Swapchain::choose_format() const {
     std::uint32_t count = 0;
-    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, nullptr);
+    device_.instance_vk().vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, nullptr);
     std::vector<VkSurfaceFormatKHR> formats(count);
-    vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count, formats.data());
+    device_.instance_vk().vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical_device(), surface_, &count,
+                                                               formats.data());
     if (formats.empty())
         return Error{"the window's surface offers no image format"};
     // The image is already sRGB-encoded: a UNORM format passes it on unchanged.
@@ -90,7 +94,8 @@ Status Swapchain::rebuild() {
     if (surface_lost_)
         SUNFLECK_TRY(make_surface());
     VkSurfaceCapabilitiesKHR capabilities;
-    SUNFLECK_VK(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical_device(), surface_, &capabilities),
+    SUNFLECK_VK(device_.instance_vk().vkGetPhysicalDeviceSurfaceCapabilitiesKHR(device_.physical_device(), surface_,
+                                                                                &capabilities),
                 "querying the window's surface");
     std::uint32_t width = 0, height = 0;
     window_.size(width, height);

@@ -11,6 +11,8 @@ LogSink& sink() {
     return instance;
 }
 
+thread_local const LogSink* thread_sink = nullptr;
+
 const char* label(LogLevel level) {
     switch (level) {
     case LogLevel::debug:
@@ -31,7 +33,20 @@ void set_log_sink(LogSink new_sink) {
     sink() = std::move(new_sink);
 }
 
+ThreadLogSink::ThreadLogSink(const LogSink& sink) : before_(thread_sink) {
+    if (sink)
+        thread_sink = &sink;
+}
+
+ThreadLogSink::~ThreadLogSink() {
+    thread_sink = before_;
+}
+
 void log_message(LogLevel level, std::string_view message) {
+    if (thread_sink != nullptr) {
+        (*thread_sink)(level, message);
+        return;
+    }
     if (sink()) {
         sink()(level, message);
         return;

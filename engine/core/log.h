@@ -13,6 +13,19 @@ using LogSink = std::function<void(LogLevel, std::string_view)>;
 // Installs the process-wide sink. Not thread-safe: call it before other threads log.
 void set_log_sink(LogSink sink);
 
+// While it lives, messages of this thread go to `sink` instead; an empty one changes nothing. What runs in parallel for
+// this thread on others still logs to the process-wide sink.
+class ThreadLogSink {
+public:
+    explicit ThreadLogSink(const LogSink& sink);
+    ~ThreadLogSink();
+    ThreadLogSink(const ThreadLogSink&) = delete;
+    ThreadLogSink& operator=(const ThreadLogSink&) = delete;
+
+private:
+    const LogSink* before_;
+};
+
 // Thread-safe if the sink is; the default sink is.
 void log_message(LogLevel level, std::string_view message);
 

@@ -10,9 +10,20 @@
 
 namespace sunfleck {
 
+// For programs that act on a failure; people read the message.
+enum class ErrorCode {
+    other,
+    argument,    // what was asked for makes no sense, or is out of range; nothing has changed
+    memory,      // the CPU's or the GPU's is used up
+    device_lost, // the GPU stopped answering: nothing goes on without a new device
+    unsupported, // the driver, or how instance and device were created, lacks what is needed
+    stopped,     // by who asked for it
+};
+
 // One sentence that says what failed, where, and what the reader can do about it.
 struct Error {
     std::string message;
+    ErrorCode code = ErrorCode::other;
 };
 
 template <typename T>

@@ -132,7 +132,7 @@ Status ComputePass::Recording::record(PassContext& context) const {
     SUNFLECK_TRY(context.resources.bind(context.commands, *kernel, bindings));
     if (!constants.empty() || kernel->push_constant_bytes() > 0)
         SUNFLECK_TRY(context.resources.push_bytes(context.commands, *kernel, constants));
-    const VolkDeviceTable& vk = context.device.vk;
+    const DeviceFunctions& vk = context.device.vk;
     if (commands != nullptr)
         vk.vkCmdDispatchIndirect(context.commands, commands->handle(), offset);
     else

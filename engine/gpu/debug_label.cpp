@@ -3,17 +3,20 @@
 namespace sunfleck::gpu {
 
 DebugLabel::DebugLabel(const Device& device, VkCommandBuffer commands, const std::string& name) {
-    if (!device.debug_labels() || vkCmdBeginDebugUtilsLabelEXT == nullptr || vkCmdEndDebugUtilsLabelEXT == nullptr)
+    const InstanceFunctions& vk = device.instance_vk();
+    if (!device.debug_labels() || vk.vkCmdBeginDebugUtilsLabelEXT == nullptr ||
+        vk.vkCmdEndDebugUtilsLabelEXT == nullptr)
         return;
     commands_ = commands;
+    end_ = vk.vkCmdEndDebugUtilsLabelEXT;
     VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
     label.pLabelName = name.c_str();
-    vkCmdBeginDebugUtilsLabelEXT(commands_, &label);
+    vk.vkCmdBeginDebugUtilsLabelEXT(commands_, &label);
 }
 
 DebugLabel::~DebugLabel() {
     if (commands_ != VK_NULL_HANDLE)
-        vkCmdEndDebugUtilsLabelEXT(commands_);
+        end_(commands_);
 }
 
 } // namespace sunfleck::gpu

@@ -17,6 +17,7 @@ public:
 
 private:
     VkCommandBuffer commands_ = VK_NULL_HANDLE; // null: labels are off
+    PFN_vkCmdEndDebugUtilsLabelEXT end_ = nullptr;
 };
 
 } // namespace sunfleck::gpu

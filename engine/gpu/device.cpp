@@ -1,4 +1,3 @@
-#define VOLK_IMPLEMENTATION
 #include "engine/gpu/device.h"
 
 #include "engine/gpu/pipeline_cache.h"
@@ -8,79 +7,44 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
-#include <vulkan/vk_enum_string_helper.h>
 
 namespace sunfleck::gpu {
 
-Error vulkan_error(VkResult result, std::string_view doing) {
-    std::string message = std::string(doing) + " failed: " + string_VkResult(result);
-    if (result == VK_ERROR_DEVICE_LOST)
-        message += ". The GPU stopped answering; start the program again, and lower --lights or --size if it repeats";
-    else if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        message += ". Not enough memory; lower --size, --lights or shadow_map_resolution";
-    else if (result == VK_ERROR_FEATURE_NOT_PRESENT || result == VK_ERROR_EXTENSION_NOT_PRESENT)
-        message += ". The driver lacks something that is needed; a newer driver may have it";
-    return Error{message};
-}
-
-RequiredFeatures::RequiredFeatures() {
-    features.features.shaderClipDistance = VK_TRUE;
-    features.features.depthClamp = VK_TRUE;
-    features.features.multiDrawIndirect = VK_TRUE;
-    features.features.drawIndirectFirstInstance = VK_TRUE;
-    features.features.shaderStorageImageWriteWithoutFormat = VK_TRUE;
-    features12.timelineSemaphore = VK_TRUE;
-    features12.hostQueryReset = VK_TRUE;
-    features12.shaderOutputLayer = VK_TRUE;
-    features13.dynamicRendering = VK_TRUE;
-    features13.synchronization2 = VK_TRUE;
-    features13.maintenance4 = VK_TRUE; // glslang writes LocalSizeId for Vulkan 1.3
-    features.pNext = &features12;
-    features12.pNext = &features13;
-}
-
 namespace {
 
-// Each required feature by name, with whether `device` has it (all false without a device).
-std::vector<std::pair<std::string, bool>> feature_support(VkPhysicalDevice device) {
-    VkPhysicalDeviceFeatures2 has{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-    VkPhysicalDeviceVulkan12Features has12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-    VkPhysicalDeviceVulkan13Features has13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    has.pNext = &has12;
-    has12.pNext = &has13;
-    if (device != VK_NULL_HANDLE)
-        vkGetPhysicalDeviceFeatures2(device, &has);
-    return {
-        {"shaderClipDistance", has.features.shaderClipDistance},
-        {"depthClamp", has.features.depthClamp},
-        {"multiDrawIndirect", has.features.multiDrawIndirect},
-        {"drawIndirectFirstInstance", has.features.drawIndirectFirstInstance},
-        {"shaderStorageImageWriteWithoutFormat", has.features.shaderStorageImageWriteWithoutFormat},
-        {"timelineSemaphore", has12.timelineSemaphore},
-        {"hostQueryReset", has12.hostQueryReset},
-        {"shaderOutputLayer", has12.shaderOutputLayer},
-        {"dynamicRendering", has13.dynamicRendering},
-        {"synchronization2", has13.synchronization2},
-        {"maintenance4", has13.maintenance4},
-    };
+VkPhysicalDeviceProperties properties_of(const InstanceFunctions& vk, VkPhysicalDevice device) {
+    VkPhysicalDeviceProperties properties;
+    vk.vkGetPhysicalDeviceProperties(device, &properties);
+    return properties;
+}
+
+std::vector<VkQueueFamilyProperties> queue_families(const InstanceFunctions& vk, VkPhysicalDevice device) {
+    std::uint32_t count = 0;
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    vk.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    return families;
+}
+
+bool draws_and_computes(const VkQueueFamilyProperties& family) {
+    const VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    return (family.queueFlags & needed) == needed;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names)
+        list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+// Functions that need no instance.
+template <typename Function>
+Function global_function(const char* name) {
+    return reinterpret_cast<Function>(loader_functions()(nullptr, name));
 }
 
 } // namespace
-
-std::vector<std::string> required_feature_names() {
-    std::vector<std::string> names;
-    for (const auto& [name, present] : feature_support(VK_NULL_HANDLE))
-        names.push_back(name);
-    return names;
-}
-
-std::vector<std::string> missing_features(VkPhysicalDevice physical_device) {
-    std::vector<std::string> missing;
-    for (const auto& [name, present] : feature_support(physical_device))
-        if (!present)
-            missing.push_back(name);
-    return missing;
-}
 
 VkBool32 Device::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
@@ -98,9 +62,11 @@ struct DeviceBuilder {
 
     static Status make_instance(Device& device, const DeviceOptions& options, bool validation) {
         std::uint32_t count = 0;
-        vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
+        const auto list_extensions =
+            global_function<PFN_vkEnumerateInstanceExtensionProperties>("vkEnumerateInstanceExtensionProperties");
+        list_extensions(nullptr, &count, nullptr);
         std::vector<VkExtensionProperties> available(count);
-        vkEnumerateInstanceExtensionProperties(nullptr, &count, available.data());
+        list_extensions(nullptr, &count, available.data());
         std::vector<const char*> extensions = options.window_extensions;
         device.debug_labels_ =
             has_name(available, VK_EXT_DEBUG_UTILS_EXTENSION_NAME, &VkExtensionProperties::extensionName);
@@ -109,9 +75,11 @@ struct DeviceBuilder {
 
         const char* layer = "VK_LAYER_KHRONOS_validation";
         if (validation) {
-            vkEnumerateInstanceLayerProperties(&count, nullptr);
+            const auto list_layers =
+                global_function<PFN_vkEnumerateInstanceLayerProperties>("vkEnumerateInstanceLayerProperties");
+            list_layers(&count, nullptr);
             std::vector<VkLayerProperties> layers(count);
-            vkEnumerateInstanceLayerProperties(&count, layers.data());
+            list_layers(&count, layers.data());
             if (!has_name(layers, layer, &VkLayerProperties::layerName))
                 return Error{"validation was asked for, but the Khronos validation layer is not installed (package "
                              "vulkan-validationlayers)"};
@@ -135,10 +103,12 @@ struct DeviceBuilder {
             info.enabledLayerCount = 1;
             info.ppEnabledLayerNames = &layer;
         }
-        SUNFLECK_VK(vkCreateInstance(&info, nullptr, &device.instance_), "creating a Vulkan 1.3 instance");
-        volkLoadInstanceOnly(device.instance_);
+        SUNFLECK_VK(global_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &device.instance_),
+                    "creating a Vulkan 1.3 instance");
+        SUNFLECK_ASSIGN(device.instance_vk_, InstanceFunctions::load(device.instance_, loader_functions()));
         if (validation && device.debug_labels_)
-            SUNFLECK_VK(vkCreateDebugUtilsMessengerEXT(device.instance_, &messenger, nullptr, &device.messenger_),
+            SUNFLECK_VK(device.instance_vk_.vkCreateDebugUtilsMessengerEXT(device.instance_, &messenger, nullptr,
+                                                                           &device.messenger_),
                         "creating the validation messenger");
         return {};
     }
@@ -154,13 +124,13 @@ struct DeviceBuilder {
         return info;
     }
 
-    static std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
+    static std::vector<VkPhysicalDevice> physical_devices(const InstanceFunctions& vk, VkInstance instance) {
         std::uint32_t count = 0;
-        vkEnumeratePhysicalDevices(instance, &count, nullptr);
+        vk.vkEnumeratePhysicalDevices(instance, &count, nullptr);
         std::vector<VkPhysicalDevice> devices(count);
-        vkEnumeratePhysicalDevices(instance, &count, devices.data());
-        const auto rank = [](VkPhysicalDevice device) {
-            switch (properties_of(device).deviceType) {
+        vk.vkEnumeratePhysicalDevices(instance, &count, devices.data());
+        const auto rank = [&vk](VkPhysicalDevice device) {
+            switch (properties_of(vk, device).deviceType) {
             case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
                 return 0;
             case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
@@ -176,23 +146,17 @@ struct DeviceBuilder {
         return devices;
     }
 
-    static VkPhysicalDeviceProperties properties_of(VkPhysicalDevice device) {
-        VkPhysicalDeviceProperties properties;
-        vkGetPhysicalDeviceProperties(device, &properties);
-        return properties;
-    }
-
     static Status choose_physical_device(Device& device, std::string wanted) {
         if (wanted.empty())
             if (const char* environment = std::getenv("SUNFLECK_DEVICE"))
                 wanted = environment;
-        const std::vector<VkPhysicalDevice> devices = physical_devices(device.instance_);
+        const std::vector<VkPhysicalDevice> devices = physical_devices(device.instance_vk_, device.instance_);
         if (devices.empty())
             return Error{"no Vulkan device was found; install a driver (software rendering: package "
                          "mesa-vulkan-drivers)"};
         std::string names;
         for (std::size_t i = 0; i < devices.size(); ++i) {
-            const VkPhysicalDeviceProperties properties = properties_of(devices[i]);
+            const VkPhysicalDeviceProperties properties = properties_of(device.instance_vk_, devices[i]);
             names += (i ? ", " : "") + std::to_string(i) + " '" + properties.deviceName + "'";
             const bool chosen = wanted.empty() || wanted == std::to_string(i) ||
                                 (wanted.find_first_not_of("0123456789") != std::string::npos &&
@@ -206,27 +170,39 @@ struct DeviceBuilder {
     }
 
     static Status check_features(const Device& device) {
-        const VkPhysicalDeviceProperties properties = properties_of(device.physical_device_);
-        if (properties.apiVersion < VK_API_VERSION_1_3)
-            return Error{std::string("device '") + properties.deviceName +
-                         "' does not support Vulkan 1.3; update its driver or choose another with --device"};
-        std::string list;
-        for (const std::string& name : missing_features(device.physical_device_))
-            list += (list.empty() ? "" : ", ") + name;
-        if (!list.empty())
-            return Error{std::string("device '") + properties.deviceName + "' lacks " + list +
-                         "; choose another device with --device"};
-        return {};
+        const VkPhysicalDeviceProperties properties = properties_of(device.instance_vk_, device.physical_device_);
+        const std::string list = joined(missing_features(device.instance_vk_, device.physical_device_));
+        if (list.empty())
+            return {};
+        return Error{std::string("device '") + properties.deviceName + "' lacks " + list +
+                         "; update its driver or choose another device",
+                     ErrorCode::unsupported};
+    }
+
+    // What a host says of its device.
+    static Status check_host(const Device& device, const HostDevice& host) {
+        const std::vector<VkQueueFamilyProperties> families =
+            queue_families(device.instance_vk_, device.physical_device_);
+        if (host.queue_family >= families.size())
+            return Error{"there is no queue family " + std::to_string(host.queue_family) + "; the device has " +
+                             std::to_string(families.size()),
+                         ErrorCode::argument};
+        if (!draws_and_computes(families[host.queue_family]))
+            return Error{"queue family " + std::to_string(host.queue_family) +
+                             " cannot do both graphics and compute, which is needed",
+                         ErrorCode::argument};
+        if (host.enabled_features == nullptr)
+            return {};
+        const std::string list = joined(missing_features(*host.enabled_features));
+        if (list.empty())
+            return {};
+        return Error{"the device was created without " + list + ", which is needed", ErrorCode::unsupported};
     }
 
     static Status make_device(Device& device, bool window) {
-        std::uint32_t count = 0;
-        vkGetPhysicalDeviceQueueFamilyProperties(device.physical_device_, &count, nullptr);
-        std::vector<VkQueueFamilyProperties> families(count);
-        vkGetPhysicalDeviceQueueFamilyProperties(device.physical_device_, &count, families.data());
-        const VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-        const auto family = std::find_if(families.begin(), families.end(),
-                                         [&](const auto& f) { return (f.queueFlags & needed) == needed; });
+        const std::vector<VkQueueFamilyProperties> families =
+            queue_families(device.instance_vk_, device.physical_device_);
+        const auto family = std::find_if(families.begin(), families.end(), draws_and_computes);
         if (family == families.end())
             return Error{"the device has no queue for both graphics and compute"};
         device.queue_family_ = std::uint32_t(family - families.begin());
@@ -244,7 +220,7 @@ struct DeviceBuilder {
         info.pQueueCreateInfos = &queue;
         info.enabledExtensionCount = window ? 1 : 0;
         info.ppEnabledExtensionNames = &swapchain;
-        SUNFLECK_VK(vkCreateDevice(device.physical_device_, &info, nullptr, &device.device_),
+        SUNFLECK_VK(device.instance_vk_.vkCreateDevice(device.physical_device_, &info, nullptr, &device.device_),
                     "creating the Vulkan device");
         return {};
     }
@@ -253,7 +229,7 @@ struct DeviceBuilder {
         VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES};
         VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, &subgroup};
         VkPhysicalDeviceProperties2 all{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver};
-        vkGetPhysicalDeviceProperties2(device.physical_device_, &all);
+        device.instance_vk_.vkGetPhysicalDeviceProperties2(device.physical_device_, &all);
         const VkPhysicalDeviceLimits& limits = all.properties.limits;
         DeviceTraits& traits = device.traits_;
         traits.name = all.properties.deviceName;
@@ -272,16 +248,19 @@ struct DeviceBuilder {
         traits.subgroup_size = subgroup.subgroupSize;
     }
 
-    static void finish(Device& device) {
-        volkLoadDeviceTable(&device.vk, device.device_);
-        device.vk.vkGetDeviceQueue(device.device_, device.queue_family_, 0, &device.queue_);
+    static Status finish(Device& device) {
+        SUNFLECK_ASSIGN(device.vk, DeviceFunctions::load(device.device_, device.instance_vk_.vkGetDeviceProcAddr));
+        if (device.queue_ == VK_NULL_HANDLE)
+            device.vk.vkGetDeviceQueue(device.device_, device.queue_family_, 0, &device.queue_);
         read_traits(device);
         device.memory_ = std::make_unique<Memory>(device);
+        return {};
     }
 
     static Status start_loader() {
-        if (volkGetInstanceVersion() == 0 && volkInitialize() != VK_SUCCESS)
-            return Error{"the Vulkan loader (libvulkan.so.1) was not found; install package libvulkan1"};
+        if (loader_functions() == nullptr)
+            return Error{"the Vulkan loader (libvulkan.so.1) was not found; install package libvulkan1",
+                         ErrorCode::unsupported};
         return {};
     }
 };
@@ -296,24 +275,28 @@ Result<std::unique_ptr<Device>> Device::create(const DeviceOptions& options) {
     SUNFLECK_TRY(DeviceBuilder::choose_physical_device(*device, options.device));
     SUNFLECK_TRY(DeviceBuilder::check_features(*device));
     SUNFLECK_TRY(DeviceBuilder::make_device(*device, !options.window_extensions.empty()));
-    DeviceBuilder::finish(*device);
+    SUNFLECK_TRY(DeviceBuilder::finish(*device));
     return device;
 }
 
 Result<std::unique_ptr<Device>> Device::adopt(const HostDevice& host) {
-    SUNFLECK_TRY(DeviceBuilder::start_loader());
+    PFN_vkGetInstanceProcAddr get = host.get_instance_proc_addr;
+    if (get == nullptr) {
+        SUNFLECK_TRY(DeviceBuilder::start_loader());
+        get = loader_functions();
+    }
     std::unique_ptr<Device> device(new Device());
-    if (host.get_instance_proc_addr != nullptr)
-        volkInitializeCustom(host.get_instance_proc_addr);
-    volkLoadInstanceOnly(host.instance);
-    device->debug_labels_ = vkCmdBeginDebugUtilsLabelEXT != nullptr; // null unless the host enabled the extension
+    SUNFLECK_ASSIGN(device->instance_vk_, InstanceFunctions::load(host.instance, get));
+    // Null unless the host enabled the extension.
+    device->debug_labels_ = device->instance_vk_.vkCmdBeginDebugUtilsLabelEXT != nullptr;
     device->instance_ = host.instance;
     device->physical_device_ = host.physical_device;
     device->device_ = host.device;
     device->queue_family_ = host.queue_family;
-    SUNFLECK_TRY(DeviceBuilder::check_features(*device));
-    DeviceBuilder::finish(*device);
     device->queue_ = host.queue;
+    SUNFLECK_TRY(DeviceBuilder::check_features(*device));
+    SUNFLECK_TRY(DeviceBuilder::check_host(*device, host));
+    SUNFLECK_TRY(DeviceBuilder::finish(*device));
     return device;
 }
 
@@ -326,22 +309,22 @@ Device::~Device() {
     memory_.reset();
     if (!owned_)
         return;
-    if (device_ != VK_NULL_HANDLE)
+    if (device_ != VK_NULL_HANDLE && vk.vkDestroyDevice != nullptr)
         vk.vkDestroyDevice(device_, nullptr);
     if (messenger_ != VK_NULL_HANDLE)
-        vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
-    if (instance_ != VK_NULL_HANDLE)
-        vkDestroyInstance(instance_, nullptr);
+        instance_vk_.vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+    if (instance_ != VK_NULL_HANDLE && instance_vk_.vkDestroyInstance != nullptr)
+        instance_vk_.vkDestroyInstance(instance_, nullptr);
 }
 
 void Device::set_name(VkObjectType type, std::uint64_t handle, const std::string& name) {
-    if (!debug_labels_ || vkSetDebugUtilsObjectNameEXT == nullptr)
+    if (!debug_labels_ || instance_vk_.vkSetDebugUtilsObjectNameEXT == nullptr)
         return;
     VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
     info.objectType = type;
     info.objectHandle = handle;
     info.pObjectName = name.c_str();
-    vkSetDebugUtilsObjectNameEXT(device_, &info);
+    instance_vk_.vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
 Status Device::wait_idle() {
@@ -357,12 +340,13 @@ Result<std::vector<std::string>> list_devices() {
     VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     info.pApplicationInfo = &application;
     VkInstance instance = VK_NULL_HANDLE;
-    SUNFLECK_VK(vkCreateInstance(&info, nullptr, &instance), "creating a Vulkan 1.3 instance");
-    volkLoadInstanceOnly(instance);
+    SUNFLECK_VK(global_function<PFN_vkCreateInstance>("vkCreateInstance")(&info, nullptr, &instance),
+                "creating a Vulkan 1.3 instance");
+    SUNFLECK_ASSIGN(const InstanceFunctions vk, InstanceFunctions::load(instance, loader_functions()));
     std::vector<std::string> names;
-    for (VkPhysicalDevice device : DeviceBuilder::physical_devices(instance))
-        names.emplace_back(DeviceBuilder::properties_of(device).deviceName);
-    vkDestroyInstance(instance, nullptr);
+    for (VkPhysicalDevice device : DeviceBuilder::physical_devices(vk, instance))
+        names.emplace_back(properties_of(vk, device).deviceName);
+    vk.vkDestroyInstance(instance, nullptr);
     return names;
 }
 

@@ -1,8 +1,8 @@
 // A Vulkan 1.3 device: made here, or the host's.
 #pragma once
 
+#include "engine/gpu/functions.h"
 #include "engine/gpu/memory.h"
-#include "engine/gpu/vulkan.h"
 
 #include <atomic>
 #include <memory>
@@ -30,7 +30,8 @@ struct HostDevice {
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t queue_family = 0;
-    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr; // null: the loader's
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;  // null: the loader's
+    const VkPhysicalDeviceFeatures2* enabled_features = nullptr; // null: they cannot be checked
 };
 
 // What a device can do beyond the floor, and its limits that algorithms here depend on.
@@ -72,7 +73,8 @@ public:
     PipelineCache& pipelines() { return *pipelines_; }
 
     // Functions of this device. Tests replace entries to make calls fail on purpose.
-    VolkDeviceTable vk{};
+    DeviceFunctions vk;
+    const InstanceFunctions& instance_vk() const { return instance_vk_; }
 
     // Names an object for validation messages and captures. No effect without VK_EXT_debug_utils.
     void set_name(VkObjectType type, std::uint64_t handle, const std::string& name);
@@ -88,6 +90,10 @@ public:
     // Blocks until the queue is idle. For shutdown and resizing, never within a frame.
     Status wait_idle();
 
+    // The device is gone, or about to go, with all that was made on it: what is destroyed from then on frees the CPU's
+    // memory and calls nothing of Vulkan.
+    void abandon() { vk.abandon(); }
+
 private:
     Device();
     friend struct DeviceBuilder;
@@ -97,6 +103,7 @@ private:
 
     bool owned_ = false;
     bool debug_labels_ = false;
+    InstanceFunctions instance_vk_;
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device_ = VK_NULL_HANDLE;
@@ -126,7 +133,9 @@ struct RequiredFeatures {
 
 // Names of the features that this project needs.
 std::vector<std::string> required_feature_names();
-// Names of required features that the physical device lacks; empty if it will do.
-std::vector<std::string> missing_features(VkPhysicalDevice physical_device);
+// Names of required features that `features` (a chain, as for vkCreateDevice) leaves out.
+std::vector<std::string> missing_features(const VkPhysicalDeviceFeatures2& features);
+// Names of what a physical device lacks, "Vulkan 1.3" among them; empty if it will do.
+std::vector<std::string> missing_features(const InstanceFunctions& vk, VkPhysicalDevice physical_device);
 
 } // namespace sunfleck::gpu

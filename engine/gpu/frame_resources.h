@@ -76,6 +76,7 @@ public:
 
     // Starts the frame `serial`; whatever belongs to frames up to `completed_serial` is reused or destroyed.
     void begin_frame(std::uint64_t serial, std::uint64_t completed_serial);
+    std::uint64_t serial() const { return serial_; }
 
     Result<UploadSlice> allocate(VkDeviceSize size);
     template <typename T>

@@ -13,7 +13,7 @@ constexpr VkDeviceSize dedicated_size = block_size / 4;
 } // namespace
 
 Memory::Memory(Device& device) : device_(device) {
-    vkGetPhysicalDeviceMemoryProperties(device.physical_device(), &properties_);
+    device.instance_vk().vkGetPhysicalDeviceMemoryProperties(device.physical_device(), &properties_);
 }
 
 Memory::~Memory() {

@@ -16,7 +16,7 @@ inline VkRenderingAttachmentInfo rendering_attachment(VkImageView view, VkImageL
 }
 
 // Begins rendering onto attachments of this size; draws change only the rendering's area of them.
-inline void begin_rendering(const VolkDeviceTable& vk, VkCommandBuffer commands, const VkRenderingInfo& rendering,
+inline void begin_rendering(const DeviceFunctions& vk, VkCommandBuffer commands, const VkRenderingInfo& rendering,
                             std::uint32_t width, std::uint32_t height) {
     vk.vkCmdBeginRendering(commands, &rendering);
     const VkViewport viewport{0, 0, float(width), float(height), 0, 1};

@@ -43,7 +43,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     texel_view_ = std::exchange(other.texel_view_, VK_NULL_HANDLE);
     size_ = other.size_;
     allocation_ = std::exchange(other.allocation_, {});
-    name_ = other.name_;
+    name_ = std::move(other.name_);
     state_ = other.state_;
     return *this;
 }
@@ -117,7 +117,7 @@ Image& Image::operator=(Image&& other) noexcept {
     handle_ = std::exchange(other.handle_, VK_NULL_HANDLE);
     view_ = std::exchange(other.view_, VK_NULL_HANDLE);
     allocation_ = std::exchange(other.allocation_, {});
-    description_ = other.description_;
+    description_ = std::move(other.description_);
     state_ = other.state_;
     return *this;
 }

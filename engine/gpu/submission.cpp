@@ -121,7 +121,7 @@ Status upload_now(Device& device, Submission& submission, const Buffer& target, 
 
 namespace {
 
-void move_image(const VolkDeviceTable& vk, VkCommandBuffer commands, VkImage image, VkImageLayout from,
+void move_image(const DeviceFunctions& vk, VkCommandBuffer commands, VkImage image, VkImageLayout from,
                 VkImageLayout to) {
     const bool before = from == VK_IMAGE_LAYOUT_UNDEFINED;
     VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};

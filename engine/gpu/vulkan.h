@@ -1,14 +1,10 @@
-// Vulkan through volk's tables of functions: no global device, so two devices live side by side in one process.
+// Vulkan's types and errors. Its functions are called through tables (functions.h), never by the loader's names.
 #pragma once
 
 #ifndef VK_NO_PROTOTYPES
 #define VK_NO_PROTOTYPES
 #endif
-// volk's globals bear the names of the loader's functions. In a program that links the loader, too, the program's own
-// calls would land in them; so ours have names of their own (made from volk.h when the project is configured).
-#include <sunfleck_vulkan_names.h>
-
-#include <volk.h>
+#include <vulkan/vulkan_core.h>
 
 #include "engine/core/result.h"
 

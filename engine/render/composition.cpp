@@ -90,7 +90,7 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
             rendering.layerCount = 1;
             rendering.colorAttachmentCount = 1;
             rendering.pColorAttachments = &target;
-            const VolkDeviceTable& vk = context.device.vk;
+            const gpu::DeviceFunctions& vk = context.device.vk;
             // Bound, but not read, where there is none.
             const gpu::Binding bindings[] = {image(input.irradiance), image(g_buffer.albedo),
                                              image(emission_image ? g_buffer.emission : g_buffer.albedo),

@@ -57,7 +57,7 @@ void DebugLines::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const gpu:
             rendering.colorAttachmentCount = 1;
             rendering.pColorAttachments = &colour;
             rendering.pDepthAttachment = &depth;
-            const VolkDeviceTable& vk = context.device.vk;
+            const gpu::DeviceFunctions& vk = context.device.vk;
             gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
             const gpu::Binding binding = gpu::Binding::uniform(camera);
             const Status status = context.resources.bind(context.commands, *pipeline_, {&binding, 1});

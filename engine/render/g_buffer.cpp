@@ -153,7 +153,7 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
 
 Status GBufferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                          Extra extra) const {
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     const VkBuffer buffers[] = {scene.positions().handle(), scene.normals().handle(),
                                 scene.texture_coordinates().handle(), scene.tangents().handle(),
                                 scene.colours().handle()};

@@ -43,6 +43,7 @@ GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
     auto& [positions, normals, coordinates, tangents, colours, indices] = geometry;
     ranges_.clear();
     ranges_changed_ = true;
+    removals_ = meshes.removals();
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
         const Mesh& mesh = meshes[i];
         ranges_.push_back({std::uint32_t(indices.size()),
@@ -77,11 +78,23 @@ GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
     return geometry;
 }
 
+// An upload that fails halfway leaves no buffer that looks complete: indices come last. Frames in flight may still read
+// the old ones, which `resources` keeps for them.
+void GpuScene::forget_meshes(gpu::FrameResources* resources) {
+    staged_.clear();
+    for (gpu::Buffer* buffer : {&indices_, &positions_, &normals_, &texture_coordinates_, &tangents_, &colours_}) {
+        if (*buffer && resources != nullptr)
+            resources->retire(std::move(*buffer));
+        *buffer = {};
+    }
+}
+
 Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission) {
-    if (ranges_.size() == meshes.size() && positions_)
+    if (has_all(meshes))
         return {};
-    const Geometry geometry = gather(meshes);
     SUNFLECK_TRY(device_.wait_idle());
+    forget_meshes(nullptr);
+    const Geometry geometry = gather(meshes);
     const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
                           VkBufferUsageFlags usage) -> Status {
         SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));
@@ -91,14 +104,12 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
 }
 
 Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources) {
-    if (ranges_.size() == meshes.size() && positions_)
+    if (has_all(meshes))
         return {};
+    forget_meshes(&resources);
     const Geometry geometry = gather(meshes);
-    staged_.clear();
     const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
                           VkBufferUsageFlags usage) -> Status {
-        if (target)
-            resources.retire(std::move(target));
         SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));
         gpu::BufferDescription description;
         description.name = "mesh upload";
@@ -147,7 +158,7 @@ void GpuScene::add_passes(gpu::FrameGraph& graph) {
 
 // Vertex buffers are no resources of the graph: nothing else writes them. The barriers are here.
 Status GpuScene::copy_vertices(gpu::PassContext& context) const {
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     memory_barrier(context, VK_PIPELINE_STAGE_2_VERTEX_INPUT_BIT, 0, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                    VK_ACCESS_2_TRANSFER_WRITE_BIT);
     const auto copy_to = [&](const gpu::UploadSlice& source, const gpu::Buffer& target, VkDeviceSize offset) {

@@ -116,6 +116,10 @@ private:
         std::vector<vec4> coordinates, tangents;
         std::vector<std::uint32_t> colours, indices;
     };
+    bool has_all(const MeshStore& meshes) const {
+        return ranges_.size() == meshes.size() && removals_ == meshes.removals() && indices_;
+    }
+    void forget_meshes(gpu::FrameResources* resources);
     Geometry gather(const MeshStore& meshes);
     struct VertexCopy {
         gpu::UploadSlice positions, normals, tangents;
@@ -155,6 +159,7 @@ private:
     std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;
     bool ranges_changed_ = false; // since the draw list was laid out
+    std::uint64_t removals_ = 0;  // of the store, that ranges_ has seen
     ChangeTracker tracker_;       // of the update without changes
     ChangeCursor cursor_;
     std::vector<DrawItem> draws_;

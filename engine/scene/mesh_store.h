@@ -1,5 +1,6 @@
 // Triangle meshes, by index. Meshes are added and keep their triangles; vertices of deforming meshes are replaced, and
-// a revision number tells consumers of derived data.
+// a revision number tells consumers of derived data. A mesh that nothing refers to any more can be removed: it has no
+// triangles then, and its index is not used again.
 #pragma once
 
 #include "engine/core/maths.h"
@@ -33,34 +34,44 @@ struct Mesh {
 class MeshStore {
 public:
     std::uint32_t add(Mesh mesh) {
-        bounds_.push_back(mesh.bounds());
-        meshes_.push_back(std::move(mesh));
-        revisions_.push_back(0);
+        entries_.push_back({std::move(mesh), {}, 0});
+        entries_.back().bounds = entries_.back().mesh.bounds();
         ++edits_;
-        return std::uint32_t(meshes_.size() - 1);
+        return std::uint32_t(entries_.size() - 1);
+    }
+    void remove(std::uint32_t index) {
+        entries_[index].mesh = {};
+        entries_[index].bounds = {};
+        ++removals_;
     }
     // New vertices for the same triangles.
     void replace(std::uint32_t index, Mesh mesh) {
-        assert(mesh.positions.size() == meshes_[index].positions.size() &&
-               mesh.indices.size() == meshes_[index].indices.size());
-        bounds_[index] = mesh.bounds();
-        meshes_[index] = std::move(mesh);
-        ++revisions_[index];
+        Entry& entry = entries_[index];
+        assert(mesh.positions.size() == entry.mesh.positions.size() &&
+               mesh.indices.size() == entry.mesh.indices.size());
+        entry.bounds = mesh.bounds();
+        entry.mesh = std::move(mesh);
+        ++entry.revision;
         ++edits_;
     }
-    const Mesh& operator[](std::uint32_t index) const { return meshes_[index]; }
-    const Bounds& bounds(std::uint32_t index) const { return bounds_[index]; }
+    const Mesh& operator[](std::uint32_t index) const { return entries_[index].mesh; }
+    const Bounds& bounds(std::uint32_t index) const { return entries_[index].bounds; }
     // How often the vertices were replaced.
-    std::uint32_t revision(std::uint32_t index) const { return revisions_[index]; }
+    std::uint32_t revision(std::uint32_t index) const { return entries_[index].revision; }
     // How often meshes were added or replaced.
     std::uint64_t edits() const { return edits_; }
-    std::uint32_t size() const { return std::uint32_t(meshes_.size()); }
+    // How often meshes were removed.
+    std::uint64_t removals() const { return removals_; }
+    std::uint32_t size() const { return std::uint32_t(entries_.size()); }
 
 private:
-    std::vector<Mesh> meshes_;
-    std::vector<Bounds> bounds_;
-    std::vector<std::uint32_t> revisions_;
-    std::uint64_t edits_ = 0;
+    struct Entry {
+        Mesh mesh;
+        Bounds bounds;
+        std::uint32_t revision = 0;
+    };
+    std::vector<Entry> entries_;
+    std::uint64_t edits_ = 0, removals_ = 0;
 };
 
 } // namespace sunfleck::scene

@@ -2,6 +2,7 @@
 #include "gi_module/light_sampling/emitters.h"
 
 #include <algorithm>
+#include <mutex>
 
 namespace sunfleck::gi {
 namespace {
@@ -11,7 +12,9 @@ bool usable(vec3 value) {
 }
 
 void warn_once(ecs::Entity entity, const char* what) {
+    static std::mutex mutex; // systems are updated by threads of their own
     static std::set<EntityBits> warned;
+    const std::scoped_lock lock(mutex);
     if (warned.insert(entity.bits()).second)
         log_warning("light of entity " + std::to_string(entity.index) + " is ignored: " + what);
 }

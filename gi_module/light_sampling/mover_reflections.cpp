@@ -12,11 +12,11 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::uint32_t follow_frames = 5;     // within which all samples are where their movers have taken them
-constexpr std::uint32_t max_resampled = 4;     // per mover and frame
-constexpr std::uint32_t least_samples = 6;     // of a mover that has any
-constexpr float path_share = 0.4f;             // of a mover's samples
-constexpr std::uint32_t places_per_sample = 2; // where arriving light is computed
+constexpr std::uint32_t follow_frames = 5;           // within which all samples are where their movers have taken them
+constexpr std::uint32_t max_resampled_per_mover = 4; // per mover and frame
+constexpr std::uint32_t least_samples = 6;           // of a mover that has any
+constexpr float path_share = 0.4f;                   // of a mover's samples
+constexpr std::uint32_t places_per_sample = 2;       // where arriving light is computed
 
 } // namespace
 
@@ -266,7 +266,7 @@ void MoverReflections::follow_paths(Mover& mover, bool moved, const raytrace::Ra
         mover.paths.reset(source, mover.reflected, hash_combine(settings_.seed, 0x3a70u + mover.first));
     else if (moved)
         mover.paths.validate(source, rays);
-    mover.paths.fill_gaps(source, mover.started ? max_resampled : mover.reflected, space, reflected);
+    mover.paths.fill_gaps(source, mover.started ? max_resampled_per_mover : mover.reflected, space, reflected);
     mover.started = true;
     mover.paths.share_flux(source, reflected);
 }

@@ -301,7 +301,7 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
     rendering.renderArea.extent = {resolution_, resolution_};
     rendering.layerCount = std::uint32_t(chunk.slots.size());
     rendering.pDepthAttachment = &depth;
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     gpu::begin_rendering(vk, context.commands, rendering, resolution_, resolution_);
     Status status;
     if (chunk.command_count > 0 || !chunk.hole_textures.empty()) {
@@ -332,7 +332,7 @@ Status ShadowMaps::draw_chunk(gpu::PassContext& context, const scene::GpuScene& 
 Status ShadowMaps::draw_holes(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk) const {
     if (chunk.hole_textures.empty())
         return {};
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     const gpu::Pipeline& pipeline = *hole_pipelines_[bits_ == 16 ? 0 : 1];
     const VkBuffer buffers[] = {scene.texture_coordinates().handle(), scene.colours().handle()};
     const VkDeviceSize offsets[2] = {};

@@ -80,7 +80,7 @@ Status TransferPass::draw(gpu::PassContext& context, const LightTarget& target,
     rendering.layerCount = 1;
     rendering.colorAttachmentCount = 1;
     rendering.pColorAttachments = &colour;
-    const VolkDeviceTable& vk = context.device.vk;
+    const gpu::DeviceFunctions& vk = context.device.vk;
     gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
     const VkBuffer vertices = scene.positions().handle();
     const VkDeviceSize offset = 0;

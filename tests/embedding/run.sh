@@ -11,6 +11,19 @@ cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_
     >"$work/configure.log" 2>&1 || { cat "$work/configure.log"; exit 1; }
 cmake --build "$work/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
 
+# The package has its public headers and no others, and what goes with them.
+headers=$(cd "$work/prefix/include" && find . -type f | sort | tr '\n' ' ')
+[[ $headers == "./sunfleck/engine/core/maths.h ./sunfleck/engine/core/octahedral.h ./sunfleck/engine/core/result.h \
+./sunfleck/engine/core/shader_language.h ./sunfleck/host.h " ]] || { echo "other headers are installed: $headers"; exit 1; }
+for file in README.md CHANGELOG.md scene.schema.json; do
+    [[ -s $work/prefix/share/doc/sunfleck/$file ]] || { echo "$file is not installed"; exit 1; }
+done
+# No symbol of the libraries can clash with one of a host's, whatever Vulkan loader that has: all that is not weak (templates
+# of headers) is of namespace sunfleck.
+strays=$(find "$work/prefix" -name 'libsunfleck_*.a' -exec nm -g --defined-only {} + 2>/dev/null |
+    awk 'NF == 3 && $2 !~ /^[VWu]$/ && $3 !~ /8sunfleck|^sunfleck_/ {print $3}' | sort -u)
+[[ -z $strays ]] || { echo "symbols that could clash with a host's:"; echo "$strays"; exit 1; }
+
 glue=$(sed -n '/\[sunfleck: begin\]/,/\[sunfleck: end\]/p' "$source/main.cpp" | sed '1d;$d')
 lines=$(grep -c . <<<"$glue")
 echo "$lines lines of glue"

@@ -8,11 +8,30 @@
 //         ... the host's geometry pass, which writes context->surface_id(instance) for each instance ...
 //         context->record(commands, camera, images);    // GPU work into the host's command buffer
 //
-// A context never submits, waits for the GPU, presents, or owns a swapchain. All functions must be called from one
-// thread at a time; update uses all cores. Several contexts, also on different devices, may live in one process.
-// Handles stay the host's and must outlive the context; destroy a context only when the GPU has finished its frames.
-// World space is right-handed, in metres; matrices are column-major, 16 floats. Strengths are radiometric RGB, linear
-// Rec. 709. Functions that can fail return a Result or Status (engine/core/result.h) with a message; none throws.
+// A context never submits, waits for the GPU, presents, or owns a swapchain.
+//
+// Threads. A context may be used from any thread, but by one at a time; update uses all cores. Contexts share nothing:
+// any number of them, on one device or on several, may be used at the same time by threads of their own.
+//
+// Ownership. Handles stay the host's. They must be valid (no library can tell a destroyed or foreign handle from a good
+// one; null ones are refused) and outlive the context. A context may be destroyed once the GPU has finished the frames
+// that it recorded; abandon() is for one whose device is gone. What a context makes of Vulkan's objects it makes
+// without VkAllocationCallbacks, whatever the host uses for its own.
+//
+// Errors. Functions that can fail return a Result or Status (engine/core/result.h): a message for people and an
+// ErrorCode for programs. None throws, whatever a callback of the host's does.
+//   argument     The message names the argument, its value and what is allowed. Nothing has changed.
+//   memory       The CPU's or the GPU's. What the call was to add or change is as before. An update or record that
+//                failed may be followed by the next update, which computes what follows from the scene again.
+//   device_lost  Only destroying or abandoning the context makes sense.
+//   unsupported  The driver, the instance or the device lacks what missing_features names.
+//   stopped      Frame::progress returned false; the next update begins again.
+//
+// Units. World space is right-handed, in metres; matrices are column-major, 16 floats. Strengths are radiometric RGB,
+// linear Rec. 709. Coordinates and strengths may be as large as 2^60: squares of them still fit into a float.
+//
+// The package's include folder is all that a compiler needs; engine/core/octahedral.h lies in its folder sunfleck/,
+// which shader compilers are given as an include folder, too.
 #pragma once
 
 #include "engine/core/result.h"
@@ -29,9 +48,13 @@
 
 namespace sunfleck::host {
 
-// What the device must have been created with: Vulkan 1.3 and these features. `missing` tells which of them a physical
-// device lacks; `enable` fills the chain's feature bits, all others left as they are (null: skip that struct).
-std::vector<std::string> missing_features(VkPhysicalDevice physical_device);
+// What the device must have been created with: an instance and a device of Vulkan 1.3 or later
+// (VkApplicationInfo::apiVersion) and these features. No extension is needed; with VK_EXT_debug_utils, objects and
+// passes have names. `missing_features` tells what a physical device lacks, "Vulkan 1.3" among it, before anything else
+// exists; `get_instance_proc_addr` is the host's, or null for the loader's. `enable_features` sets the chain's feature
+// bits, all others left as they are (null: skip that struct).
+Result<std::vector<std::string>> missing_features(VkInstance instance, VkPhysicalDevice physical_device,
+                                                  PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan12Features* features12,
                      VkPhysicalDeviceVulkan13Features* features13);
 
@@ -39,18 +62,29 @@ struct VulkanHandles {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
-    VkQueue queue = VK_NULL_HANDLE; // that the recorded command buffers are submitted to: graphics and compute
-    std::uint32_t queue_family = 0;
+    VkQueue queue = VK_NULL_HANDLE; // that the recorded command buffers are submitted to
+    std::uint32_t queue_family = 0; // of that queue: graphics and compute
+    // Where every function of Vulkan is loaded from; null: libvulkan.so.1, loaded at run time.
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr;
+    // What vkCreateDevice was given, with its chain. Vulkan cannot be asked which features a device was created with:
+    // with this, a context refuses a device that lacks one by its name; without it, what happens then is undefined.
+    const VkPhysicalDeviceFeatures2* enabled_features = nullptr;
 };
+
+enum class LogLevel { information, warning, error };
+// What a context has to say beside errors (a light that is left out, say), from the threads that use it.
+using LogSink = std::function<void(LogLevel, std::string_view)>;
 
 using Vector3 = std::array<float, 3>;
 using Matrix4 = std::array<float, 16>;
 inline constexpr Matrix4 identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-// Triangles, counter-clockwise from their front. The spans are read before the call returns.
+// Triangles, counter-clockwise from their front. Fronts and backs of everything receive light and block it, whatever
+// the host's cull mode: a host that shows backs (VK_CULL_MODE_NONE) writes the normal on the camera's side for them;
+// one that culls them just never shows that light. The spans are read before the call returns.
 struct MeshData {
     std::span<const float> positions; // three a vertex, m
-    std::span<const float> normals;   // three a vertex, unit length; empty: made from the triangles
+    std::span<const float> normals;   // three a vertex, not zero; empty: made from the triangles
     std::span<const std::uint32_t> indices;
     std::span<const float> texture_coordinates; // two a vertex, u to the right and v down the texture; may be empty
 };
@@ -67,7 +101,7 @@ struct TextureData {
 
 // A surface that instances share.
 struct MaterialData {
-    Vector3 albedo = {0.8f, 0.8f, 0.8f};     // what reflected light is multiplied by
+    Vector3 albedo = {0.8f, 0.8f, 0.8f};     // what reflected light is multiplied by, 0 to 1
     Vector3 emission = {0.0f, 0.0f, 0.0f};   // radiance on the front side, W/(sr m2); not zero: an emitter of any shape
     float metallic = 0.0f, roughness = 1.0f; // as in glTF; for specular light, which no technique has yet
     TextureData albedo_texture;              // multiplies albedo, where the mesh has texture coordinates
@@ -77,7 +111,7 @@ inline constexpr std::uint32_t no_material = 0xffffffffu;
 
 struct InstanceData {
     std::uint32_t mesh = 0;
-    Matrix4 transform = identity; // mesh to world
+    Matrix4 transform = identity; // mesh to world; its last row is 0 0 0 1
     Mobility mobility = Mobility::fixed;
     Vector3 albedo = {0.8f, 0.8f, 0.8f}; // this and the next: as in MaterialData, for an instance without a material
     Vector3 emission = {0.0f, 0.0f, 0.0f};
@@ -90,8 +124,8 @@ struct LightData {
     LightKind kind = LightKind::point;
     Vector3 strength = {1.0f, 1.0f, 1.0f}; // point, spot: W/sr; directional: W/m2; sky: W/(sr m2)
     Vector3 position = {0.0f, 0.0f, 0.0f};
-    Vector3 direction = {0.0f, -1.0f, 0.0f};      // spot, directional: along which light travels
-    float inner_angle = 0.3f, outer_angle = 0.6f; // spot, rad
+    Vector3 direction = {0.0f, -1.0f, 0.0f};      // spot, directional: along which light travels; of any length
+    float inner_angle = 0.3f, outer_angle = 0.6f; // spot, rad from its direction: 0 <= inner <= outer <= pi/2
 };
 
 // A place where a game asks how much light arrives, direct and reflected.
@@ -106,11 +140,12 @@ struct SensorValue {
     bool open = false;                       // from a share of 1 until one below 0.8
 };
 
+// Forward and up have any length, but different directions.
 struct Camera {
     Vector3 position = {0.0f, 0.0f, 0.0f};
     Vector3 forward = {0.0f, 0.0f, -1.0f};
     Vector3 up = {0.0f, 1.0f, 0.0f};
-    float vertical_field_of_view = 0.9f; // rad
+    float vertical_field_of_view = 0.9f; // rad, between 0 and pi
 };
 
 // The camera's matrix, world to clip: reverse Z without a far plane, y down. The depth that `record` reads together
@@ -127,10 +162,15 @@ struct View {
     bool clip_y_up = false; // clip y runs up the picture: the host's viewport has a negative height
 };
 
-// An image of the host: in which state `record` finds it, and in which state it leaves it.
+// An image of the host: in which state `record` finds it, and in which state it leaves it. `record` has barriers of its
+// own on both sides, so the host needs none. `entry` is the last use before: of an input, the layout that it lies in,
+// and the stages and accesses that wrote it, so that they are waited for and made visible (accesses that only read may
+// be given, too); of an output, the last stages that use it, and the undefined layout, because nothing of it is kept.
+// `exit` is the first use after: the layout that it shall lie in, and the stages and accesses that then may read or
+// write it.
 struct ImageState {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT; // last use before, or first use after
+    VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     VkAccessFlags2 access = 0;
 };
 struct HostImage {
@@ -165,14 +205,15 @@ struct HostImage {
 // Motion, metallic and roughness are read by no technique yet: giving them costs no more than the change to the layout
 // at exit.
 struct FrameImages {
-    std::uint32_t width = 0, height = 0; // of all of them
+    std::uint32_t width = 0, height = 0; // of all of them, in fact: images cannot be asked for their size
     HostImage depth, normals, surface, irradiance;
     HostImage geometric_normals, motion, metallic_roughness, specular;
 };
 
 struct Frame {
-    std::uint64_t serial = 1;           // of this frame; rises by one each frame
-    std::uint64_t completed_serial = 0; // all frames up to this one are finished on the GPU
+    // Of this frame: greater than those of all frames that were recorded, or that of the frame that was dropped.
+    std::uint64_t serial = 1;
+    std::uint64_t completed_serial = 0; // all frames up to this one are finished on the GPU; never falls
     // Shadow maps redrawn in this frame at most. A light sample without one yet shines only where nothing is in the
     // way.
     std::uint32_t map_budget = 0xffffffffu;
@@ -201,17 +242,23 @@ struct Statistics {
 
 class Context {
 public:
-    static Result<std::unique_ptr<Context>> create(const VulkanHandles& handles);
+    // `log` stays the context's; without one, messages go to standard error.
+    static Result<std::unique_ptr<Context>> create(const VulkanHandles& handles, LogSink log = {});
     ~Context();
+    // The device is lost, or is destroyed before the context: from then on nothing of Vulkan is called, every function
+    // that can fail does, and destroying the context frees the CPU's part.
+    void abandon();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
 
     // A setting by its name, as `sunfleck info` lists them: set("lights", "600"). Takes effect at the next update.
     Status set(std::string_view name, std::string_view value);
 
-    // Meshes stay until the context goes. Rejects indices out of range and numbers that are not finite.
+    // Numbers of meshes, materials, instances, lights and sensors rise from 0 and are not used again until clear().
     Result<std::uint32_t> add_mesh(const MeshData& mesh);
-    // Materials and their textures stay, too. A changed material changes all instances that have it.
+    // Refused while an instance has it. Its memory is free after the next update.
+    Status remove_mesh(std::uint32_t mesh);
+    // Materials and their textures stay until clear(). A changed material changes all instances that have it.
     Result<std::uint32_t> add_material(const MaterialData& material);
     Status set_material(std::uint32_t material, const MaterialData& data);
     Result<std::uint32_t> add_instance(const InstanceData& instance);
@@ -233,20 +280,26 @@ public:
     Status set_sensor(std::uint32_t sensor, const SensorData& data);
     Status remove_sensor(std::uint32_t sensor);
     Status step_sensors();
-    // Of the last step; all zero before the first, and for no such sensor.
+    // Of the last step; all zero before the first, for no such sensor, and until the next step after an error of
+    // memory.
     SensorValue read_sensor(std::uint32_t sensor) const;
+
+    // As if the context had just been made: no mesh, material, instance, light or sensor. Settings and serials stay.
+    Status clear();
 
     // The CPU's part of a frame: follows all changes since the last one.
     Status update(const Frame& frame);
     // What the geometry pass writes for the instance; valid from one update to the next. 0 for no such instance.
     std::uint32_t surface_id(std::uint32_t instance) const;
     // The GPU's part, once after each update, into a command buffer that is being recorded outside of any rendering.
-    // Images or a view that are refused leave nothing recorded and may be followed by another try or another update.
-    // After any other error the command buffer must not be submitted.
+    // Arguments that are refused leave nothing recorded and may be followed by another try or another update. After any
+    // other error the command buffer must not be submitted. What is bound afterwards (pipelines, descriptor sets, push
+    // constants, vertex and index buffers, viewport and other dynamic state, for graphics and compute) is undefined; no
+    // query, rendering or debug label is left open.
     Status record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images);
     Status record(VkCommandBuffer commands, const View& view, const FrameImages& images);
 
-    // Times, counters and memory: see Statistics. Waits for nothing.
+    // Times, counters and memory: see Statistics. Waits for nothing; empty after abandon().
     Statistics statistics() const;
 
 private:

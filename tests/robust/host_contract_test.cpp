@@ -1,0 +1,190 @@
+// Every call of sunfleck/host.h, in any order and with any value: right, or an error that names what was wrong and
+// leaves all as it was.
+#include "tests/support/host_program.h"
+
+namespace sunfleck::tests {
+namespace {
+
+using host::LightKind;
+using host::Mobility;
+
+class RobustHost : public GpuTest {};
+
+void expect_argument(const Status& status, const std::string& word) {
+    ASSERT_FALSE(status) << word;
+    EXPECT_EQ(status.error().code, ErrorCode::argument) << status.error().message;
+    EXPECT_NE(status.error().message.find(word), std::string::npos) << status.error().message;
+}
+
+TEST_F(RobustHost, MissingFeaturesNeedNoContext) {
+    const auto missing = host::missing_features(device().instance(), device().physical_device());
+    ASSERT_TRUE(missing) << missing.error().message;
+    EXPECT_TRUE(missing->empty());
+    expect_argument(without_value(host::missing_features(VK_NULL_HANDLE, device().physical_device())), "instance");
+    expect_argument(without_value(host::missing_features(device().instance(), VK_NULL_HANDLE)), "physical_device");
+}
+
+TEST_F(RobustHost, HandlesThatWillNotDoAreRefusedByName) {
+    const HostProgram program(device());
+    const host::VulkanHandles good = program.handles();
+    const auto refused = [&](const auto& change, const char* word) {
+        host::VulkanHandles handles = good;
+        change(handles);
+        expect_argument(without_value(host::Context::create(handles)), word);
+    };
+    refused([](auto& handles) { handles.instance = VK_NULL_HANDLE; }, "VulkanHandles::instance");
+    refused([](auto& handles) { handles.physical_device = VK_NULL_HANDLE; }, "VulkanHandles::physical_device");
+    refused([](auto& handles) { handles.device = VK_NULL_HANDLE; }, "VulkanHandles::device");
+    refused([](auto& handles) { handles.queue = VK_NULL_HANDLE; }, "VulkanHandles::queue");
+    refused([](auto& handles) { handles.queue_family = 77; }, "queue family 77");
+
+    VkPhysicalDeviceVulkan13Features of13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features of12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &of13};
+    VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &of12};
+    host::enable_features(&features.features, &of12, &of13);
+    host::VulkanHandles handles = good;
+    handles.enabled_features = &features;
+    EXPECT_TRUE(host::Context::create(handles));
+    of13.synchronization2 = VK_FALSE;
+    const auto lacking = host::Context::create(handles);
+    ASSERT_FALSE(lacking);
+    EXPECT_EQ(lacking.error().code, ErrorCode::unsupported);
+    EXPECT_NE(lacking.error().message.find("synchronization2"), std::string::npos) << lacking.error().message;
+}
+
+// An instance of Vulkan 1.1 with a device of its own.
+struct OldProgram {
+    gpu::InstanceFunctions vk;
+    VkInstance instance = VK_NULL_HANDLE;
+    VkPhysicalDevice physical_device = VK_NULL_HANDLE;
+    VkDevice device = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+
+    OldProgram() {
+        const PFN_vkGetInstanceProcAddr get = gpu::loader_functions();
+        VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
+        application.apiVersion = VK_API_VERSION_1_1;
+        VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+        info.pApplicationInfo = &application;
+        const auto create = reinterpret_cast<PFN_vkCreateInstance>(get(nullptr, "vkCreateInstance"));
+        EXPECT_EQ(create(&info, nullptr, &instance), VK_SUCCESS);
+        vk = gpu::InstanceFunctions::load(instance, get).value();
+        std::uint32_t one = 1;
+        vk.vkEnumeratePhysicalDevices(instance, &one, &physical_device);
+        const float priority = 1.0f;
+        VkDeviceQueueCreateInfo queues{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+        queues.queueCount = 1;
+        queues.pQueuePriorities = &priority;
+        VkDeviceCreateInfo description{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+        description.queueCreateInfoCount = 1;
+        description.pQueueCreateInfos = &queues;
+        EXPECT_EQ(vk.vkCreateDevice(physical_device, &description, nullptr, &device), VK_SUCCESS);
+        reinterpret_cast<PFN_vkGetDeviceQueue>(vk.vkGetDeviceProcAddr(device, "vkGetDeviceQueue"))(device, 0, 0,
+                                                                                                   &queue);
+    }
+    ~OldProgram() {
+        reinterpret_cast<PFN_vkDestroyDevice>(vk.vkGetDeviceProcAddr(device, "vkDestroyDevice"))(device, nullptr);
+        vk.vkDestroyInstance(instance, nullptr);
+    }
+};
+
+TEST_F(RobustHost, InstancesOfOlderVulkanAreRefused) {
+    const OldProgram program;
+    const auto context =
+        host::Context::create({program.instance, program.physical_device, program.device, program.queue, 0});
+    ASSERT_FALSE(context);
+    EXPECT_EQ(context.error().code, ErrorCode::unsupported);
+    EXPECT_NE(context.error().message.find("1.3"), std::string::npos) << context.error().message;
+}
+
+TEST_F(RobustHost, MeshesAreRemovedAndTheirMemoryFreed) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    describe_room(*context);
+    const HostPicture before = picture_of_room(program, *context);
+    std::vector<float> positions;
+    std::vector<std::uint32_t> indices(30000);
+    for (std::uint32_t i = 0; i < 30000; ++i) {
+        indices[i] = i;
+        positions.insert(positions.end(), {0.01f * float(i % 97), 0.01f * float(i % 89), 0.01f * float(i % 83)});
+    }
+    const std::uint32_t large = context->add_mesh({positions, {}, indices, {}}).value();
+    const std::uint32_t instance =
+        context->add_instance({large, box_matrix(vec3(0, 1, 0), vec3(0.5f)), Mobility::moving}).value();
+    ASSERT_TRUE(program.frame(*context, 0));
+    const auto mesh_memory = [&] {
+        double sum = 0;
+        for (const host::Statistic& use : context->statistics().memory)
+            if (use.name.find("mesh") != std::string::npos)
+                sum += use.value;
+        return sum;
+    };
+    const double with = mesh_memory();
+    expect_argument(context->remove_mesh(large), "instance " + std::to_string(instance));
+    ASSERT_TRUE(context->remove_instance(instance));
+    ASSERT_TRUE(context->remove_mesh(large));
+    expect_argument(context->remove_mesh(large), "there is no mesh");
+    expect_argument(without_value(context->add_instance({large})), "there is no mesh");
+    EXPECT_EQ(picture_of_room(program, *context), before);
+    for (int i = 0; i < 3; ++i) // until no frame in flight can read it
+        ASSERT_TRUE(program.frame(*context, 0));
+    EXPECT_LT(mesh_memory(), 0.1 * with) << "MiB";
+}
+
+TEST_F(RobustHost, ClearedContextsAreLikeNewOnes) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    describe_room(*context);
+    const HostPicture first = picture_of_room(program, *context);
+    ASSERT_TRUE(context->add_light({LightKind::sky, {1, 1, 1}}));
+    ASSERT_TRUE(program.settle(*context, 0));
+    EXPECT_NE(program.picture(), first);
+    ASSERT_TRUE(context->clear());
+    EXPECT_EQ(context->surface_id(0), 0u);
+    expect_argument(context->set_transform(0, host::identity), "there is no instance 0");
+    ASSERT_TRUE(program.frame(*context, 0)) << "an empty scene";
+    describe_room(*context);
+    EXPECT_EQ(picture_of_room(program, *context), first);
+}
+
+TEST_F(RobustHost, AbandonedContextsCallNothingOfVulkan) {
+    auto other = gpu::Device::create({}).value();
+    std::unique_ptr<host::Context> context;
+    {
+        HostProgram program(*other);
+        context = host::Context::create(program.handles()).value();
+        describe_room(*context);
+        ASSERT_TRUE(program.frame(*context, 0));
+        program.wait();
+    }
+    context->abandon();
+    other.reset(); // with everything that the context made on it; the driver frees it or leaks it
+    const Status update = context->update({});
+    ASSERT_FALSE(update);
+    EXPECT_EQ(update.error().code, ErrorCode::device_lost);
+    EXPECT_TRUE(context->statistics().memory.empty());
+    context.reset();
+}
+
+TEST_F(RobustHost, ExceptionsOfCallbacksEndTheUpdateAlone) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    describe_room(*context);
+    host::Frame frame = program.next_frame();
+    frame.progress = [](float) -> bool { throw 7; };
+    const Status thrown = context->update(frame);
+    ASSERT_FALSE(thrown);
+    EXPECT_NE(thrown.error().message.find("exception"), std::string::npos) << thrown.error().message;
+    frame.progress = [](float) { return false; };
+    const Status stopped = context->update(frame);
+    ASSERT_FALSE(stopped);
+    EXPECT_EQ(stopped.error().code, ErrorCode::stopped) << stopped.error().message;
+    program.submit_empty();
+    const HostPicture picture = picture_of_room(program, *context);
+    const auto fresh = make_context(program);
+    describe_room(*fresh);
+    EXPECT_EQ(picture_of_room(program, *fresh), picture);
+}
+
+} // namespace
+} // namespace sunfleck::tests

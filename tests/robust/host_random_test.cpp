@@ -1,0 +1,304 @@
+// Random sequences of calls, half of them with a value that makes no sense: each is right or refused, and once all is
+// cleared, a scene that is described again is lit as in a new context.
+#include "tests/robust/random_host_values.h"
+#include "tests/support/test_size.h"
+
+namespace sunfleck::tests {
+namespace {
+
+using host::Mobility;
+
+class RobustHostCalls : public GpuTest {};
+
+struct Tally {
+    std::uint64_t tried = 0, refused = 0, right = 0, wrong = 0;
+};
+
+// Calls a host might make, half of them with a value that makes no sense.
+class Sequence : RandomHostValues {
+public:
+    Sequence(std::uint32_t seed, HostProgram& program, host::Context& context)
+        : RandomHostValues(seed), program_(program), context_(context) {}
+
+    void call() {
+        static constexpr void (Sequence::*calls[])() = {
+            &Sequence::add_mesh,     &Sequence::remove_mesh,   &Sequence::add_material, &Sequence::set_material,
+            &Sequence::add_instance, &Sequence::set_transform, &Sequence::set_surface,  &Sequence::remove_instance,
+            &Sequence::add_light,    &Sequence::set_light,     &Sequence::remove_light, &Sequence::set,
+            &Sequence::look,         &Sequence::frame,         &Sequence::frame,        &Sequence::frame};
+        // Half of the calls are of values that make no sense, whichever they are.
+        wrong_ = pick(2) == 0;
+        (this->*calls[pick(std::size(calls))])();
+    }
+    Tally tally;
+    std::string log;
+
+private:
+    std::uint32_t some(std::uint32_t count) { return wrong_ ? count + pick(1000) : pick(count); }
+
+    void expect(const Status& status, const char* call, const std::string& why = "") {
+        ++tally.tried;
+        log += std::string(" ") + call + (wrong_ ? "!" : "");
+        const bool named = !status && status.error().code == ErrorCode::argument && !status.error().message.empty();
+        tally.refused += named && wrong_;
+        tally.right += bool(status) && !wrong_;
+        if (wrong_ ? !named : !status) {
+            ++tally.wrong;
+            ADD_FAILURE() << call << (wrong_ ? " should be refused " : " should succeed ") << why << ": "
+                          << (status ? "it succeeds" : status.error().message);
+        }
+    }
+
+    void add_mesh() {
+        if (meshes_ >= 6)
+            return;
+        const Mesh mesh = this->mesh();
+        const auto made = context_.add_mesh({mesh.positions, mesh.normals, mesh.indices, {}});
+        if (made)
+            meshes_ = made.value() + 1;
+        expect(without_value(made), "add_mesh");
+    }
+    void remove_mesh() {
+        // Of those that it knows, all but the last may be in use.
+        wrong_ = true;
+        expect(context_.remove_mesh(meshes_ + pick(100)), "remove_mesh");
+    }
+    void add_material() {
+        const auto made = context_.add_material(material());
+        if (made)
+            materials_ = made.value() + 1;
+        expect(without_value(made), "add_material");
+    }
+    void set_material() {
+        if (materials_ == 0)
+            return;
+        const host::MaterialData data = material();
+        expect(context_.set_material(pick(materials_), data), "set_material");
+    }
+    void add_instance() {
+        if (meshes_ == 0 || live_ >= 12)
+            return;
+        host::InstanceData data;
+        const std::uint32_t mistake = wrong_ ? pick(5) : 9;
+        const bool wrong = std::exchange(wrong_, mistake == 0);
+        data.mesh = some(meshes_);
+        wrong_ = mistake == 1;
+        data.transform = matrix();
+        wrong_ = wrong;
+        data.mobility = mistake == 2 ? Mobility(2 + pick(100)) : chance() ? Mobility::fixed : Mobility::moving;
+        data.albedo = {real(0, 1), real(0, 1), mistake == 3 ? 5.0f : real(0, 1)};
+        if (mistake == 4)
+            data.material = materials_ + 5;
+        else if (materials_ > 0 && chance())
+            data.material = pick(materials_);
+        const auto made = context_.add_instance(data);
+        if (made) {
+            instances_.resize(made.value() + 1, false);
+            instances_[made.value()] = true;
+            ++live_;
+        }
+        expect(without_value(made), "add_instance", "mistake " + std::to_string(mistake));
+    }
+    // An instance or light that is there; without one, a wrong one.
+    std::uint32_t one_of(const std::vector<bool>& list) {
+        const std::uint32_t start = pick(list.size() + 1);
+        for (std::uint32_t i = 0; i < list.size(); ++i)
+            if (const std::uint32_t k = (start + i) % std::uint32_t(list.size()); list[k])
+                return k;
+        wrong_ = true;
+        return std::uint32_t(list.size()) + pick(9);
+    }
+    void set_transform() {
+        const std::uint32_t instance = one_of(instances_);
+        expect(context_.set_transform(instance, matrix()), "set_transform");
+    }
+    void set_surface() {
+        const std::uint32_t instance = one_of(instances_);
+        host::Vector3 albedo = {real(0, 1), 0.5f, 0.5f}, emission = {0, 0, real(0, 2)};
+        if (wrong_)
+            spoil(chance() ? std::span<float>(albedo) : std::span<float>(emission));
+        expect(context_.set_surface(instance, albedo, emission), "set_surface");
+    }
+    void remove_instance() {
+        std::uint32_t instance = one_of(instances_);
+        if (wrong_)
+            instance = std::uint32_t(instances_.size()) + pick(50);
+        const Status status = context_.remove_instance(instance);
+        if (status) {
+            instances_[instance] = false;
+            --live_;
+        }
+        expect(status, "remove_instance");
+    }
+    void add_light() {
+        if (lights_.size() > 8)
+            return;
+        const auto made = context_.add_light(light());
+        if (made) {
+            lights_.resize(made.value() + 1, false);
+            lights_[made.value()] = true;
+        }
+        expect(without_value(made), "add_light");
+    }
+    void set_light() {
+        const std::uint32_t number = one_of(lights_);
+        expect(context_.set_light(number, light()), "set_light");
+    }
+    void remove_light() {
+        std::uint32_t number = one_of(lights_);
+        if (wrong_)
+            number = std::uint32_t(lights_.size()) + pick(50);
+        const Status status = context_.remove_light(number);
+        if (status)
+            lights_[number] = false;
+        expect(status, "remove_light");
+    }
+    void set() {
+        struct Choice {
+            const char *name, *value;
+        };
+        constexpr Choice good[] = {{"lights", "16"},        {"lights", "8"},         {"baked_light", "off"},
+                                   {"baked_light", "on"},   {"light_maps", "off"},   {"light_maps", "on"},
+                                   {"low_resolution", "1"}, {"low_resolution", "4"}, {"shadow_map_bits", "16"}};
+        constexpr Choice bad[] = {{"lights", "-1"}, {"lights", "nan"}, {"lights", ""},          {"", "1"},
+                                  {"nothing", "1"}, {"lights", "1e9"}, {"baked_light", "maybe"}};
+        const Choice choice = wrong_ ? bad[pick(std::size(bad))] : good[pick(std::size(good))];
+        expect(context_.set(choice.name, choice.value), "set");
+    }
+    // What returns no status: any number will do.
+    void look() {
+        wrong_ = false;
+        static_cast<void>(context_.surface_id(pick(100)));
+        static_cast<void>(host::view_projection({{bad_number(), 0, 0}}, pick(3), 7));
+        expect(context_.statistics().counters.empty() ? Status(Error{"no counters"}) : Status(), "statistics");
+    }
+
+    void spoil_frame(host::Frame& frame) {
+        if (chance())
+            frame.serial = recorded_ > 0 ? pick(2) * recorded_ : 0;
+        else
+            frame.completed_serial = frame.serial + pick(3);
+    }
+    Status record_by_view(VkCommandBuffer commands) {
+        host::View view;
+        view.view_to_clip = host::view_projection(program_.camera(), HostProgram::width, HostProgram::height);
+        if (wrong_ && chance())
+            view.view_to_clip = host::Matrix4{};
+        else if (wrong_)
+            spoil(chance() ? std::span<float>(view.world_to_view) : std::span<float>(view.view_to_clip));
+        return context_.record(commands, view, program_.images());
+    }
+
+    void frame() {
+        const bool wrong_frame = wrong_ && chance(), wrong_record = wrong_ && !wrong_frame;
+        host::Frame frame = program_.next_frame();
+        frame.map_budget = chance() ? 5 : 0xffffffffu;
+        const std::uint64_t serial = frame.serial;
+        wrong_ = wrong_frame;
+        if (wrong_) {
+            spoil_frame(frame);
+            expect(context_.update(frame), "update");
+            program_.submit_empty();
+            return;
+        }
+        expect(context_.update(frame), "update");
+        const bool recorded = record(wrong_record);
+        const std::uint32_t fate = pick(8);
+        if (!recorded || fate == 0) {
+            program_.submit_empty(); // the commands are lost
+            if (recorded)
+                drop(serial);
+        } else {
+            program_.submit();
+            recorded_ = serial;
+        }
+    }
+    bool record(bool with_mistake) {
+        if (with_mistake) {
+            wrong_ = true;
+            host::FrameImages images = program_.images();
+            const std::uint32_t mistake = pick(4);
+            if (mistake == 0)
+                spoil_images(images);
+            if (mistake == 3) {
+                expect(record_by_view(program_.commands()), "record(view)");
+            } else {
+                wrong_ = mistake == 1;
+                const host::Camera eye = camera(program_.camera());
+                wrong_ = true;
+                expect(context_.record(mistake == 2 ? VK_NULL_HANDLE : program_.commands(), eye, images), "record");
+            }
+            // May be followed by another try, or by another update.
+            if (chance())
+                return false;
+        }
+        wrong_ = false;
+        program_.draw(context_.surface_id(pick(6)));
+        if (pick(4) == 0)
+            expect(record_by_view(program_.commands()), "record(view)");
+        else
+            expect(context_.record(program_.commands(), program_.camera(), program_.images()), "record");
+        return true;
+    }
+    void drop(std::uint64_t serial) {
+        host::Frame next = program_.next_frame();
+        next.dropped = true;
+        expect(context_.update(next), "update after a dropped frame");
+        program_.submit_empty();
+        recorded_ = serial;
+    }
+
+    HostProgram& program_;
+    host::Context& context_;
+    std::uint32_t meshes_ = 0, materials_ = 0, live_ = 0;
+    std::vector<bool> instances_, lights_;
+    std::uint64_t recorded_ = 0;
+};
+
+std::uint32_t seed_from_environment(const char* name, std::uint32_t otherwise) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::uint32_t(std::strtoul(text, nullptr, 10)) : otherwise;
+}
+
+TEST_F(RobustHostCalls, AreRightOrRefused) {
+    const std::uint32_t first = seed_from_environment("SUNFLECK_FIRST_SEED", 1);
+    const std::uint32_t last =
+        seed_from_environment("SUNFLECK_LAST_SEED", first + by_size(sanitized() ? 3u : 11u, 1999u));
+    HostProgram program(device());
+    auto context = make_context(program);
+    auto fresh = make_context(program);
+    describe_room(*fresh);
+    const HostPicture expected = picture_of_room(program, *fresh);
+    fresh.reset();
+    Tally sum;
+    for (std::uint32_t seed = first; seed <= last && !HasFailure(); ++seed) {
+        Sequence sequence(seed, program, *context);
+        const std::uint32_t calls = 30 + seed * 7 % 71;
+        for (std::uint32_t i = 0; i < calls && !HasFailure(); ++i)
+            sequence.call();
+        sum.tried += sequence.tally.tried;
+        sum.refused += sequence.tally.refused;
+        sum.right += sequence.tally.right;
+        sum.wrong += sequence.tally.wrong;
+        // Contexts are used again. Every eighth one is judged by its picture, every fiftieth replaced.
+        ASSERT_TRUE(context->clear());
+        if (seed % 50 == 0)
+            context = make_context(program);
+        for (const auto& [name, value] : {std::pair("baked_light", "on"), std::pair("light_maps", "on"),
+                                          std::pair("low_resolution", "4"), std::pair("shadow_map_bits", "16")})
+            ASSERT_TRUE(context->set(name, value));
+        if (seed % 8 == 0) {
+            describe_room(*context);
+            EXPECT_EQ(picture_of_room(program, *context), expected);
+            ASSERT_TRUE(context->clear());
+        }
+        if (HasFailure())
+            ADD_FAILURE() << "seed " << seed << ":" << sequence.log;
+    }
+    std::printf("seeds %u to %u: tried %llu, refused %llu, right %llu, wrong %llu\n", first, last,
+                static_cast<unsigned long long>(sum.tried), static_cast<unsigned long long>(sum.refused),
+                static_cast<unsigned long long>(sum.right), static_cast<unsigned long long>(sum.wrong));
+}
+
+} // namespace
+} // namespace sunfleck::tests
