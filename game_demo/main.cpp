@@ -1,6 +1,7 @@
 // The demo's command line.
 #include "engine/core/exit_status.h"
 #include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "game_demo/options.h"
@@ -55,6 +56,8 @@ void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
                        demo::has_transfer() ? std::vector<std::string>{"per_pixel", "prt"}
                                             : std::vector<std::string>{"per_pixel"},
                        "Lighting of complex moving objects; prt: precomputed (default: set by the preset)");
+    viewer::add_whole(program, "--memory", options.memory_mib, 0, 1 << 30,
+                      "Memory that may be taken, in MiB; 0: three quarters of what is free");
     viewer::add_name(program, "--settings", options.settings_file,
                      "Settings file (default: sunfleck/demo.json in the configuration folder)", "FILE");
     viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
@@ -99,6 +102,7 @@ int main(int argc, char** argv) {
         return program.exit(error) == 0 ? flushed(exit_done) : exit_usage;
     }
     translate(text, options);
+    set_memory_limit(std::uint64_t(options.memory_mib) << 20);
     watch_interrupts();
     const Status status = options.headless ? demo::run_headless(options) : demo::run_window(options);
     if (!status)

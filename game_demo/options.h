@@ -17,6 +17,7 @@ struct Options {
     std::optional<bool> transfer; // overrides the preset
     std::uint32_t width = 1280, height = 720;
     bool indirect = true;
+    std::uint32_t memory_mib = 0;  // that may be taken; 0: three quarters of what is free
     std::string settings_file;     // empty: the default one
     std::string screenshots = "."; // folder
     bool allow_outside = false;

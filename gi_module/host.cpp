@@ -119,10 +119,14 @@ Status Context::set(std::string_view name, std::string_view value) {
             return wrong(status.error().message);
         if (const Status status = changed.validate(); !status)
             return wrong(status.error().message);
-        if (self.follower != nullptr && !self.damaged)
-            if (const Status status = self.follower->system->set_settings(changed); !status)
+        if (self.follower != nullptr && !self.damaged) {
+            self.damaged = true; // should memory run out within
+            const Status status = self.follower->system->set_settings(changed);
+            self.damaged = false;
+            if (!status)
                 return wrong(status.error().message);
-        self.settings = changed;
+        }
+        self.settings = std::move(changed);
         return {};
     });
 }

@@ -109,7 +109,8 @@ Status Context::Implementation::step_sensors() {
 SensorValue Context::read_sensor(std::uint32_t sensor) const {
     const Implementation& self = *implementation_;
     SensorValue value;
-    if (self.damaged || self.follower == nullptr || !check_there(self.description.sensors, sensor, "sensor"))
+    if (self.damaged || self.follower == nullptr || sensor >= self.follower->mirror.sensors.size() ||
+        self.follower->mirror.sensors[sensor].is_null())
         return value;
     const Mirror& mirror = self.follower->mirror;
     if (const auto* reading = mirror.registry.try_get<scene::SensorReading>(mirror.sensors[sensor])) {

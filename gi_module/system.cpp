@@ -149,7 +149,7 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
     SUNFLECK_TRY(
         visibility_.update(settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene, samples_.samples(),
                                        samples_.generation(), samples_.moved(), static_changed, lit_elsewhere,
-                                       settings_generation_, input_.progress, cpu_times_}));
+                                       settings_generation_, input_.progress, cpu_times_, max_buffer_bytes_}));
     return {};
 }
 

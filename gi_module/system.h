@@ -68,7 +68,7 @@ public:
     Technique* technique(std::string_view name);
 
 private:
-    explicit System(gpu::Device& device) : resources_(device) {}
+    explicit System(gpu::Device& device) : max_buffer_bytes_(device.traits().max_storage_range), resources_(device) {}
     Services services();
     bool wants_visibility() const;
     CellSet cells_with_maps() const;
@@ -79,6 +79,7 @@ private:
     Status find_view();
     void make_report();
 
+    std::uint64_t max_buffer_bytes_;
     gpu::FrameResources resources_;
     Settings settings_;
     LightPlan plan_;

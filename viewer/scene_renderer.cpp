@@ -1,5 +1,7 @@
 #include "viewer/scene_renderer.h"
 
+#include "engine/core/memory_limit.h"
+
 #include "engine/io/scene_file.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
@@ -128,6 +130,14 @@ shared::CameraRow SceneRenderer::camera_row(const FrameRequest& request) const {
     return scene::make_camera_row(space_.view(request.camera), request.width, request.height);
 }
 
+// G-buffer (20 bytes a pixel), light (8, and what techniques keep at full and at low resolution), picture, and the
+// picture on its way to a file (16): 75 to 95 bytes a pixel were measured.
+Status SceneRenderer::check_size(std::uint32_t width, std::uint32_t height) {
+    constexpr std::uint64_t bytes_per_pixel = 100;
+    return check_memory(bytes_per_pixel * width * height,
+                        "a picture of " + std::to_string(width) + "x" + std::to_string(height), "--size");
+}
+
 Status SceneRenderer::make_output(const FrameRequest& request) {
     const VkFormat format = request.tone_map ? display_format : linear_format;
     const gpu::ImageDescription& has = output_.description();
@@ -136,6 +146,7 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
     const std::uint32_t height = enlarged ? request.screen_height : request.height;
     if (output_ && has.width == width && has.height == height && has.format == format)
         return {};
+    SUNFLECK_TRY(check_size(width, height));
     if (output_)
         resources_->retire(std::move(output_));
     gpu::ImageDescription description;

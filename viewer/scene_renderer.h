@@ -48,6 +48,8 @@ public:
     // The device must outlive the renderer.
     static Result<std::unique_ptr<SceneRenderer>> create(gpu::Device& device, std::uint32_t frames_in_flight = 2);
     ~SceneRenderer();
+    // An error if the images of such a picture would be over the limit of memory.
+    static Status check_size(std::uint32_t width, std::uint32_t height);
 
     ecs::Registry& registry() { return registry_; }
     scene::MeshStore& meshes() { return meshes_; }

@@ -11,6 +11,7 @@
 #include "viewer/progress.h"
 #include "viewer/scene_renderer.h"
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -33,7 +34,8 @@ struct SceneOptions {
     std::map<std::string, std::string> lighting; // lighting settings that have options of their own, as given
     std::optional<float> ev100;                  // in place of the scene's
     io::ImportOptions import;
-    std::string environment; // picture file
+    std::string environment;      // picture file
+    std::uint32_t memory_mib = 0; // 0: memory_limit's default
     std::string device;
     bool validation = false;
 };
@@ -82,6 +84,19 @@ int fail(const Error& error);
 int exit_status(const Status& status, int on_error = exit_failed);
 
 using viewer::Progress;
+
+// Runs work that makes a device of its own. Where the GPU stops answering, it is run again with a new one, twice at
+// most.
+Status survive_lost_devices(const std::function<Status()>& work);
+
+// Seconds since it was made.
+class Stopwatch {
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
+
+private:
+    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
 
 // True once the user pressed Ctrl-C, or the program was asked to end by another signal (engine/core/stop_signals.h).
 bool interrupted();

@@ -87,6 +87,8 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
                       "Which animation of a glTF file plays; -1: none");
     app.add_flag("--allow-outside", options.import.allow_outside,
                  "The scene may read files outside of its folder: for scenes that you trust");
+    viewer::add_whole(app, "--memory", options.memory_mib, 0, 1 << 30,
+                      "Memory that may be taken, in MiB; 0: three quarters of what is free");
     viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
     app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
 }
@@ -112,7 +114,7 @@ Command make_render_command(CLI::App& program) {
                      "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev", "FILE");
     app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
-                watch_interrupts();
+                end_at_interrupts();
                 return exit_status(render(*options));
             }};
 }
@@ -140,7 +142,7 @@ Command make_reference_command(CLI::App& program) {
     viewer::add_real(*app, "--save-interval", options->save_interval, 0.05, 86400.0,
                      "Seconds between saves of what is there so far; more where they would take over 2 % of the time");
     return {app, [options] {
-                watch_interrupts();
+                end_at_interrupts();
                 return exit_status(reference(*options));
             }};
 }
@@ -286,7 +288,7 @@ int run_program(int argc, const char* const* argv) {
     try {
         return printed(status ? *status : program.run());
     } catch (const std::bad_alloc&) {
-        return fail({"the memory is not enough"});
+        return fail({"out of memory; lower --size or --lights"});
     }
 }
 

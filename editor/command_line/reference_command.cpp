@@ -4,6 +4,7 @@
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "engine/render/tone_map.h"
@@ -22,6 +23,9 @@ using namespace gi::reference;
 std::uint64_t hash_text(const std::string& text) {
     return hash_bytes(hash_start, text.data(), text.size());
 }
+
+// Sums (three doubles), counts and coverage, once more as the bytes of the file that is saved, and the picture itself.
+constexpr std::uint64_t bytes_per_pixel = 2 * (3 * sizeof(double) + 5) + sizeof(vec4);
 
 io::Picture to_picture(const Accumulation& accumulation, bool display, bool irradiance, float ev100) {
     io::Picture picture;
@@ -132,15 +136,6 @@ std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettin
                  {"lambertian", options.lambertian}};
     return hash_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
-
-// Seconds since it was made.
-class Stopwatch {
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count(); }
-
-private:
-    std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
 
 // When to save: every so many seconds, but so that saving takes 2 % of the time at most.
 class SaveClock {
@@ -281,6 +276,11 @@ Status try_files(const ReferenceOptions& options, const std::filesystem::path& s
 
 Status reference(const ReferenceOptions& options) {
     SUNFLECK_TRY(io::picture_kind(options.output));
+    set_memory_limit(std::uint64_t(options.scene.memory_mib) << 20);
+    const Size size = options.scene.size;
+    SUNFLECK_TRY(check_memory(bytes_per_pixel * size.width * size.height,
+                              "a picture of " + std::to_string(size.width) + "x" + std::to_string(size.height),
+                              "--size"));
     SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
     SUNFLECK_TRY(try_files(options, path));
     TracedScene scene;

@@ -4,6 +4,7 @@
 
 #include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
 
 #include <nlohmann/json.hpp>
@@ -98,6 +99,12 @@ Result<RenderedFrames> render_frames(const RenderOptions& options, viewer::Scene
     RenderedFrames frames;
     const std::uint32_t total = options.scene.warmup + options.scene.frames;
     Progress progress("rendering");
+    const auto preparing = std::make_shared<Progress>("preparing the lighting");
+    request.progress = [preparing, since = Stopwatch()](float share) {
+        if (since.seconds() > 0.5)
+            preparing->show(double(share), "");
+        return !interrupted();
+    };
     for (std::uint32_t frame = 0; frame < total; ++frame) {
         request.camera = camera_of_frame(start, options.scene, frame);
         request.step = step_of_frame(options.scene, frame);
@@ -125,26 +132,7 @@ Status write_statistics(const RenderOptions& options, viewer::SceneRenderer& ren
     return write_file(options.statistics, measurement_json(device, measurement).dump(2) + "\n");
 }
 
-} // namespace
-
-std::vector<std::string> view_names() {
-    std::vector<std::string> names;
-    names.reserve(picture_views.size() + gi::debug_views().size());
-    for (const auto& [name, view] : picture_views)
-        names.push_back(name);
-    for (const gi::DebugView* view : gi::debug_views())
-        names.emplace_back(view->name);
-    return names;
-}
-
-Status render(const RenderOptions& options) {
-    // What is wrong on the command line, before anything is loaded.
-    SUNFLECK_TRY(io::picture_kind(options.output));
-    SUNFLECK_TRY(make_settings(options, {}));
-    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
-    const NamedFile outputs[] = {{"-o", options.output}, {"--stats", options.statistics}, {"--trace", options.trace}};
-    const NamedFile inputs[] = {{"SCENE", path}, {"--environment", options.scene.environment}};
-    SUNFLECK_TRY(try_outputs(outputs, inputs));
+Status render_on_new_device(const RenderOptions& options, const std::filesystem::path& path) {
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.scene.device, options.scene.validation, {}}));
     SUNFLECK_ASSIGN(const auto renderer, viewer::SceneRenderer::create(*device));
     renderer->lighting().set_cache_folder(user_cache_folder());
@@ -171,6 +159,31 @@ Status render(const RenderOptions& options) {
     if (device->validation_messages() > 0)
         return Error{std::to_string(device->validation_messages()) + " validation messages (see above)"};
     return {};
+}
+
+} // namespace
+
+std::vector<std::string> view_names() {
+    std::vector<std::string> names;
+    names.reserve(picture_views.size() + gi::debug_views().size());
+    for (const auto& [name, view] : picture_views)
+        names.push_back(name);
+    for (const gi::DebugView* view : gi::debug_views())
+        names.emplace_back(view->name);
+    return names;
+}
+
+Status render(const RenderOptions& options) {
+    // What is wrong on the command line, before anything is loaded.
+    SUNFLECK_TRY(io::picture_kind(options.output));
+    SUNFLECK_TRY(make_settings(options, {}));
+    set_memory_limit(std::uint64_t(options.scene.memory_mib) << 20);
+    SUNFLECK_TRY(viewer::SceneRenderer::check_size(options.scene.size.width, options.scene.size.height));
+    SUNFLECK_ASSIGN(const std::filesystem::path path, find_scene(options.scene.scene));
+    const NamedFile outputs[] = {{"-o", options.output}, {"--stats", options.statistics}, {"--trace", options.trace}};
+    const NamedFile inputs[] = {{"SCENE", path}, {"--environment", options.scene.environment}};
+    SUNFLECK_TRY(try_outputs(outputs, inputs));
+    return survive_lost_devices([&] { return render_on_new_device(options, path); });
 }
 
 } // namespace sunfleck::command_line

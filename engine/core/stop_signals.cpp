@@ -3,6 +3,7 @@
 #include "engine/core/exit_status.h"
 
 #include <csignal>
+#include <ctime>
 #include <initializer_list>
 #include <unistd.h>
 
@@ -11,12 +12,24 @@ namespace {
 
 volatile std::sig_atomic_t first_signal = 0;
 
+timer_t grace;
+volatile std::sig_atomic_t has_grace = 0;
+
+void end_now(int) {
+    ::_exit(exit_stopped_by(int(first_signal)));
+}
+
 // Calls that wait are interrupted: there is no SA_RESTART.
 void note_signal(int signal) {
     if (signal == first_signal) // pressed again: at once
         ::_exit(exit_stopped_by(signal));
-    if (first_signal == 0)
-        first_signal = signal;
+    if (first_signal != 0)
+        return;
+    first_signal = signal;
+    itimerspec moment{};
+    moment.it_value.tv_nsec = 250'000'000;
+    if (has_grace != 0)
+        ::timer_settime(grace, 0, &moment, nullptr);
 }
 
 void watch(int signal) {
@@ -39,7 +52,19 @@ void watch_interrupts() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
+void end_at_interrupts() {
+    if (has_grace == 0) {
+        struct sigaction action {};
+        action.sa_handler = end_now;
+        sigemptyset(&action.sa_mask);
+        ::sigaction(SIGALRM, &action, nullptr);
+        has_grace = ::timer_create(CLOCK_MONOTONIC, nullptr, &grace) == 0 ? 1 : 0; // its signal is SIGALRM
+    }
+    watch_interrupts();
+}
+
 void watch_stop_signals() {
+    has_grace = 0;
     watch_interrupts();
     for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU, SIGHUP})
         if (signal != SIGHUP || !is_ignored(signal))

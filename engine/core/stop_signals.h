@@ -6,8 +6,12 @@ namespace sunfleck {
 // From now on SIGINT only sets the flag; pressed again, it ends the program at once. Writes to closed pipes and beyond
 // limits of file size become errors.
 void watch_interrupts();
-// The same for SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP: for work that has something to
-// save and looks at the flag often. All else is better ended by them at once, since no file is ever half written.
+// The same for work that has nothing to save: where it does not end by itself within a quarter of a second, whatever it
+// is doing, the program ends.
+void end_at_interrupts();
+// The same as watch_interrupts for SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP: for work
+// that has something to save and looks at the flag often. All else is better ended by them at once, since no file is
+// ever half written.
 void watch_stop_signals();
 
 // The number of the first signal that came; 0: none.

@@ -17,6 +17,7 @@ Error vulkan_error(VkResult result, std::string_view doing) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
     case VK_ERROR_OUT_OF_POOL_MEMORY:
     case VK_ERROR_FRAGMENTED_POOL:
+    case VK_ERROR_FRAGMENTATION:
     case VK_ERROR_MEMORY_MAP_FAILED:
     case VK_ERROR_TOO_MANY_OBJECTS:
         return Error{message + ". Not enough memory; lower --size, --lights or shadow_map_resolution",

@@ -7,6 +7,7 @@
 #include <any>
 #include <cstring>
 #include <deque>
+#include <optional>
 #include <span>
 
 namespace sunfleck::gpu {
@@ -101,10 +102,13 @@ public:
         return push_bytes(commands, pipeline, std::as_bytes(std::span<const T>(&constants, 1)));
     }
 
-    // Keeps `object` (a shared_ptr to a Buffer or Image, say) until the current frame is complete on the GPU.
+    // Keeps `object` (a shared_ptr to a Buffer or Image, say) until the current frame is complete on the GPU. Where
+    // memory runs out, it stays the caller's, since frames in flight may use it.
     template <typename T>
-    void retire(T object) {
-        retired_.push_back({serial_, std::make_shared<T>(std::move(object))});
+    void retire(T&& object) {
+        auto kept = std::make_shared<std::optional<std::decay_t<T>>>();
+        retired_.emplace_back(serial_, kept);
+        kept->emplace(std::forward<T>(object));
     }
 
 private:

@@ -5,6 +5,7 @@
 #include "engine/io/uri.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <meshoptimizer.h>
 
@@ -97,6 +98,25 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
     return bytes;
 }
 
+// JSON has one kind of number, so a whole one may be written as 2.0 (glTF 2.0, sec. 2.7.3).
+void make_whole_numbers_integers(json& value) {
+    if (value.is_structured()) {
+        for (json& element : value)
+            make_whole_numbers_integers(element);
+        return;
+    }
+    constexpr double exact = 9007199254740992.0; // beyond 2^53 not every integer is a double
+    if (!value.is_number_float())
+        return;
+    const double number = value.get<double>();
+    if (std::abs(number) <= exact && number == std::trunc(number))
+        value = std::int64_t(number);
+}
+
+bool is_draco(const json& primitive) {
+    return primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression");
+}
+
 // Removes from the JSON what tinygltf must not handle: sources of bytes, and what it would reject.
 json for_tinygltf(const json& file) {
     json reduced = file;
@@ -108,10 +128,18 @@ json for_tinygltf(const json& file) {
         for (json& mesh : reduced["meshes"])
             if (mesh.contains("primitives"))
                 for (json& primitive : mesh["primitives"])
-                    if (primitive.is_object() && primitive.contains("extensions") &&
-                        primitive["extensions"].contains("KHR_draco_mesh_compression"))
-                        primitive.erase("indices"); // its accessor has no view
+                    if (primitive.is_object())
+                        primitive.erase("indices"); // accessors without a view are refused there
     return reduced;
+}
+
+// Back again; those of Draco's primitives are in their compressed bytes.
+void restore_indices(const json& file, tinygltf::Model& model) {
+    for (std::size_t m = 0; m < model.meshes.size(); ++m)
+        for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
+            if (const json& primitive = file["meshes"][m]["primitives"][p];
+                primitive.contains("indices") && !is_draco(primitive))
+                model.meshes[m].primitives[p].indices = primitive["indices"].get<int>();
 }
 
 int number_of(const tinygltf::Value& object, const char* key, int fallback) {
@@ -238,6 +266,7 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
     json file = json::parse(chunks.json, nullptr, false);
     if (file.is_discarded())
         return Error{"its JSON is not valid"};
+    make_whole_numbers_integers(file);
     std::vector<std::string> notes;
     SUNFLECK_TRY(check_gltf_json(file, notes));
     GltfDocument document{{}, {}, GltfUsage(file), std::move(notes)};
@@ -248,6 +277,7 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
         error = error.substr(0, error.find('\n'));
         return Error{error.empty() ? "it is not valid glTF" : error};
     }
+    restore_indices(file, document.model);
     const FileSource files{folder, access};
     SUNFLECK_TRY(read_buffers(file, chunks, files, document));
     SUNFLECK_TRY(read_images(file, files, document));

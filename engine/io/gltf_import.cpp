@@ -59,12 +59,22 @@ Status read_skins(const GltfDocument& document, GltfContent& content) {
     return {};
 }
 
+// Without them, there is nothing to draw (glTF 2.0, sec. 3.7.2.1).
+bool has_positions(const tinygltf::Primitive& primitive) {
+    return primitive.attributes.count("POSITION") > 0 || primitive.extensions.count("KHR_draco_mesh_compression") > 0;
+}
+
 Status read_meshes(const GltfDocument& document, GltfContent& content, ImportReport& report) {
     const tinygltf::Model& model = document.model;
     for (std::size_t m = 0; m < model.meshes.size(); ++m) {
         const tinygltf::Mesh& mesh = model.meshes[m];
         content.meshes.emplace_back();
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+            if (!has_positions(mesh.primitives[p])) {
+                report.notes.push_back("mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " +
+                                       std::to_string(p) + ": it has no POSITION and is not drawn");
+                continue;
+            }
             auto primitive = read_primitive(model, mesh.primitives[p], report.variants.size());
             if (!primitive) {
                 const std::string problem = "mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " +

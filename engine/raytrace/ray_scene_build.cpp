@@ -1,6 +1,8 @@
 // The half of RayScene that follows the scene.
 #include "engine/raytrace/ray_scene_data.h"
 
+#include "engine/core/memory_limit.h"
+
 #include <algorithm>
 #include <unordered_set>
 
@@ -235,6 +237,17 @@ void RayScene::Implementation::list_instances(const scene::SceneChanges& changes
         measure_bounds();
 }
 
+// Embree's trees of the best quality take some 150 bytes a triangle, half as much again while they are built, beside
+// vertices and indices.
+Status RayScene::Implementation::check_size() const {
+    constexpr std::uint64_t bytes_per_triangle = 260;
+    std::uint64_t triangles = 0;
+    for (std::uint32_t i = 0; i < static_count; ++i)
+        triangles += (*meshes)[instances[i].mesh].triangle_count();
+    return check_memory(triangles * bytes_per_triangle, "rays among " + std::to_string(triangles) + " triangles",
+                        "the level's detail");
+}
+
 void RayScene::Implementation::rebuild(const Differences& differences) {
     if (differences.static_geometry)
         build_static();
@@ -265,9 +278,12 @@ Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshSto
     self.cursor.saw(changes);
     if (differences.static_geometry || differences.movers)
         self.list_instances(changes, differences.static_geometry);
+    if (differences.static_geometry)
+        SUNFLECK_TRY(self.check_size());
     self.rebuild(differences);
-    if (rtcGetDeviceError(self.device.get()) != RTC_ERROR_NONE)
-        return Error{"Embree could not build the ray scene (not enough memory, or damaged geometry)"};
+    if (const RTCError error = rtcGetDeviceError(self.device.get()); error != RTC_ERROR_NONE)
+        return Error{"Embree could not build the ray scene (not enough memory, or damaged geometry)",
+                     error == RTC_ERROR_OUT_OF_MEMORY ? ErrorCode::memory : ErrorCode::other};
     return {};
 }
 

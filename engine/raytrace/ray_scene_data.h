@@ -91,6 +91,7 @@ struct RayScene::Implementation {
     std::vector<scene::DrawableChange> compare_all(const scene::SceneChanges& changes) const;
     Differences take_over(std::span<const scene::DrawableChange> changes);
     void list_instances(const scene::SceneChanges& changes, bool static_ones);
+    Status check_size() const;
     void rebuild(const Differences& differences);
     SurfacePoint describe(const Instance& instance, const TrianglePlace& place, const vec3* position) const;
 

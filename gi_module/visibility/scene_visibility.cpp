@@ -39,6 +39,7 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
     options.patches.levels = settings.patch_levels;
     options.tests = settings.visibility_tests;
     options.patches.space = input.changes.space;
+    options.max_row_bytes = input.max_buffer_bytes;
     const bool same_options =
         options_ && options.patches.levels == options_->patches.levels && options.tests == options_->tests;
     std::span<const std::uint32_t> moved = input.moved_samples;
@@ -46,7 +47,7 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
     if (build) {
         sample_generation_ = 0; // in case it is stopped
         if (!database_.build(input.registry, input.meshes, input.samples, options, input.progress))
-            return Error{"preparing the lighting was stopped"};
+            return database_.problem();
         options_ = options;
         sample_generation_ = input.sample_generation;
         moved = {};

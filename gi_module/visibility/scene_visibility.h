@@ -25,9 +25,10 @@ struct VisibilityInput {
     bool static_changed = false; // static geometry did
     // Whether a mover is lit by a technique that needs nothing of the database; null: none is.
     std::function<bool(const scene::DrawItem&)> lit_elsewhere;
-    std::uint64_t lighting_generation = 0; // another number: lit_elsewhere may answer differently
-    std::function<bool(float)> progress;   // of building
-    StageTimes& cpu_times;                 // stages within the caller's
+    std::uint64_t lighting_generation = 0;              // another number: lit_elsewhere may answer differently
+    std::function<bool(float)> progress;                // of building
+    StageTimes& cpu_times;                              // stages within the caller's
+    std::uint64_t max_buffer_bytes = ~std::uint64_t(0); // that the device lets shaders see at once
 };
 
 class SceneVisibility {

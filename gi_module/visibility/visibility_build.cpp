@@ -1,30 +1,13 @@
 // The static half of the database: patches, their subdivision, and what static geometry does to each pair.
+#include "gi_module/visibility/build_progress.h"
 #include "gi_module/visibility/visibility_database.h"
 
 #include "engine/core/jobs.h"
 
 #include <algorithm>
-#include <atomic>
-#include <mutex>
-#include <numeric>
-#include <tuple>
 
 namespace sunfleck::gi {
 namespace {
-
-constexpr std::size_t roots_per_group = 4;
-
-// Place of a point on a curve that keeps neighbours together (Morton order of ten bits an axis).
-std::uint32_t morton(vec3 point, const Bounds& bounds) {
-    const vec3 unit = (point - bounds.minimum) / glm::max(bounds.extent(), vec3(1e-6f));
-    std::uint32_t code = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const std::uint32_t place = std::uint32_t(std::clamp(unit[axis], 0.0f, 1.0f) * 1023.0f);
-        for (std::uint32_t bit = 0; bit < 10; ++bit)
-            code |= ((place >> bit) & 1u) << (3 * bit + std::uint32_t(axis));
-    }
-    return code;
-}
 
 PairState state_of(Blocking blocking) {
     switch (blocking) {
@@ -53,21 +36,22 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     changes_.clear();
     affected_.assign(samples_.size(), 0);
     static_states_.clear();
-    if (!split_and_decide(progress)) {
+    make_groups();
+    choose_exact_roots();
+    Status status = check_size();
+    if (status && !split_and_decide(progress))
+        status = Error{"preparing the lighting was stopped", ErrorCode::stopped};
+    if (!status) {
         const std::uint64_t generation = generation_;
         *this = {};
         generation_ = generation + 1;
+        problem_ = status.error();
         return false;
     }
     patches_.finish();
     full_counts_.assign(static_states_.size(), 0);
     partial_counts_.assign(static_states_.size(), 0);
     make_clusters();
-    groups_.clear();
-    std::vector<std::uint32_t> roots(patches_.roots());
-    std::iota(roots.begin(), roots.end(), 0u);
-    if (!roots.empty())
-        make_group(std::move(roots));
     for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
         if (samples_[sample].dynamic) {
             const std::vector<PairState> states = decide_all_static(sample);
@@ -82,51 +66,21 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     return true;
 }
 
-namespace {
-
-// Calls the host's function with the share of all work, from whichever thread gets there, and keeps its answer.
-class Reporter {
-public:
-    Reporter(const std::function<bool(float)>& progress, std::uint32_t levels) : progress_(progress), levels_(levels) {}
-    void begin_level(std::size_t nodes) {
-        nodes_ = nodes;
-        done_ = 0;
-    }
-    void end_level() { ++level_; }
-    void add(std::size_t nodes) {
-        done_ += nodes;
-        const std::unique_lock lock(mutex_, std::try_to_lock);
-        if (!progress_ || !lock.owns_lock() || stopped_)
-            return;
-        const float share = float(done_) / float(std::max<std::size_t>(nodes_, 1));
-        stopped_ = !progress_((float(level_) + share) / float(levels_ + 1));
-    }
-    bool stopped() const { return stopped_; }
-
-private:
-    const std::function<bool(float)>& progress_;
-    std::uint32_t levels_, level_ = 0;
-    std::size_t nodes_ = 0;
-    std::atomic<std::size_t> done_{0};
-    std::atomic<bool> stopped_{false};
-    std::mutex mutex_;
-};
-
-} // namespace
-
 // Level by level: decide all pairs of the level's nodes, then split those with enough partial pairs.
 bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& progress) {
-    Reporter reporter(progress, options_.patches.levels);
+    BuildProgress reporter(progress, options_.patches.levels);
     std::uint32_t first = 0;
     while (first < patches_.nodes().size()) {
         const std::uint32_t end = std::uint32_t(patches_.nodes().size());
         static_states_.resize(at(end, 0));
         reporter.begin_level(end - first);
+        if (first == 0)
+            decide_coarse_roots(reporter);
         parallel_for_chunks(end - first, 4, [&](std::size_t begin, std::size_t stop) {
             if (reporter.stopped())
                 return;
             for (std::uint32_t node = first + std::uint32_t(begin); node < first + stop; ++node)
-                for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+                for (std::uint32_t sample = 0; sample < samples_.size() && is_exact(node); ++sample)
                     static_states_[at(node, sample)] = std::uint8_t(decide_static(node, sample));
             reporter.add(stop - begin);
         });
@@ -134,8 +88,7 @@ bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& prog
             return false;
         reporter.end_level();
         for (std::uint32_t node = first; node < end; ++node) {
-            if (!patches_.can_split(node) ||
-                (patches_.nodes().size() + 4) * std::uint64_t(samples_.size()) > options_.max_pairs)
+            if (!patches_.can_split(node) || !is_exact(node) || !may_split_more())
                 continue;
             std::size_t partial = 0, reached = 0;
             for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
@@ -184,12 +137,12 @@ PairState VisibilityDatabase::inherit(const SurfacePatch& patch, PairState paren
 std::vector<PairState> VisibilityDatabase::decide_all_static(std::uint32_t sample) const {
     std::vector<PairState> result(patches_.nodes().size());
     const LightSample& light = samples_[sample];
-    if (light.dynamic && !groups_.empty())
+    if ((light.dynamic || !is_exact_.empty()) && !groups_.empty())
         decide_group(0, light, result);
     for (std::uint32_t node = 0; node < result.size(); ++node) {
         const SurfacePatch& patch = patches_.nodes()[node];
         if (patch.parent == shared::no_node) {
-            if (!light.dynamic)
+            if (!light.dynamic && is_exact(node))
                 result[node] = decide_static(node, sample);
             continue;
         }
@@ -204,40 +157,6 @@ std::vector<PairState> VisibilityDatabase::decide_all_static(std::uint32_t sampl
             result[node] = parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
     }
     return result;
-}
-
-// All charts that one blocker hides, or the sample's tangent plane, at once.
-void VisibilityDatabase::decide_group(std::uint32_t group, const LightSample& sample,
-                                      std::vector<PairState>& states) const {
-    const Group& node = groups_[group];
-    const Bounds roomy{node.bounds.minimum - 1e-5f, node.bounds.maximum + 1e-5f};
-    const auto pyramid = pyramid_of_box(sample, OrientedBox::of(roomy));
-    if (!pyramid)
-        return decide_roots(group, PairState::unlit, states);
-    if (static_blockers_.covers(*pyramid))
-        return decide_roots(group, PairState::full, states);
-    for (const std::uint32_t root : node.roots) {
-        const SurfacePatch& patch = patches_.nodes()[root];
-        const bool behind = patch.planar && sample.kind != SampleKind::directional &&
-                            glm::dot(patch.normal, dvec3(sample.position) - patch.corners[0]) <= 0.0;
-        states[root] = behind         ? PairState::unlit
-                       : patch.planar ? inherit(patch, PairState::partial, sample)
-                                      : PairState::partial;
-    }
-    if (node.roots.empty()) {
-        decide_group(node.left, sample, states);
-        decide_group(node.right, sample, states);
-    }
-}
-
-void VisibilityDatabase::decide_roots(std::uint32_t group, PairState state, std::vector<PairState>& states) const {
-    const Group& node = groups_[group];
-    for (const std::uint32_t root : node.roots)
-        states[root] = state;
-    if (node.roots.empty()) {
-        decide_roots(node.left, state, states);
-        decide_roots(node.right, state, states);
-    }
 }
 
 PairState VisibilityDatabase::decide_box(const SurfacePatch& patch, const LightSample& sample) const {
@@ -257,60 +176,6 @@ PairState VisibilityDatabase::decide_mover(const MovingBlocker& mover, const Lig
     if (!static_blockers_.crosses_segment(middle, to_light))
         return PairState::partial;
     return static_blockers_.covers(*pyramid) ? PairState::full : PairState::partial;
-}
-
-// Samples that move stand alone: clusters keep their shape.
-void VisibilityDatabase::make_clusters() {
-    clusters_.clear();
-    cluster_of_.assign(samples_.size(), 0);
-    Bounds bounds;
-    for (const LightSample& sample : samples_)
-        bounds.add(sample.position);
-    std::vector<std::uint32_t> order(samples_.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto key = [&](std::uint32_t i) {
-        const bool unbounded = samples_[i].kind == SampleKind::directional;
-        return std::tuple(samples_[i].dynamic, unbounded ? 0xffffffffu : morton(samples_[i].position, bounds), i);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const LightSample& sample = samples_[order[i]];
-        const bool unbounded = sample.kind == SampleKind::directional;
-        if (clusters_.empty() || sample.dynamic || clusters_.back().samples.size() >= samples_per_cluster ||
-            clusters_.back().unbounded != unbounded)
-            clusters_.emplace_back();
-        Cluster& cluster = clusters_.back();
-        cluster.unbounded = unbounded;
-        cluster.bounds.add(sample.position);
-        cluster.samples.push_back(order[i]);
-        cluster_of_[order[i]] = std::uint32_t(clusters_.size() - 1);
-    }
-}
-
-std::uint32_t VisibilityDatabase::make_group(std::vector<std::uint32_t> roots) {
-    const std::uint32_t index = std::uint32_t(groups_.size());
-    groups_.emplace_back();
-    Bounds bounds, centres;
-    for (const std::uint32_t root : roots) {
-        bounds.add(patches_.nodes()[root].bounds);
-        centres.add(patches_.nodes()[root].bounds.centre());
-    }
-    groups_[index].bounds = bounds;
-    if (roots.size() <= roots_per_group) {
-        groups_[index].roots = std::move(roots);
-        return index;
-    }
-    const vec3 extent = centres.extent();
-    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
-    std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return patches_.nodes()[a].bounds.centre()[axis] < patches_.nodes()[b].bounds.centre()[axis];
-    });
-    const auto middle = roots.begin() + std::ptrdiff_t(roots.size() / 2);
-    const std::uint32_t left = make_group({roots.begin(), middle});
-    const std::uint32_t right = make_group({middle, roots.end()});
-    groups_[index].left = left;
-    groups_[index].right = right;
-    return index;
 }
 
 void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {

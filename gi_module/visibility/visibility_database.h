@@ -62,7 +62,10 @@ struct VisibilityOptions {
     PatchOptions patches;
     float split_share = 0.08f; // patches are split if at least this share of the samples that reach them is partial
     std::uint64_t max_pairs = std::uint64_t(24) << 20; // no further splits beyond
-    TestGrouping tests = TestGrouping::clusters;       // of movers
+    // Roots that cannot all be tested with all samples within so many tests are decided in groups, but for the largest.
+    std::uint64_t max_tests = std::uint64_t(2) << 20;
+    std::uint64_t max_row_bytes = ~std::uint64_t(0); // of all rows for shaders
+    TestGrouping tests = TestGrouping::clusters;     // of movers
 };
 
 struct VisibilityCounters {
@@ -70,14 +73,18 @@ struct VisibilityCounters {
     std::uint64_t full = 0, partial = 0, none = 0, unlit = 0; // pairs of leaves and movers
 };
 
+class BuildProgress;
+
 class VisibilityDatabase {
 public:
     // From scratch: finds patches of the registry's static geometry, splits them, decides all pairs. No movers yet.
     // The samples are not copied: they must stay where they are until the next build or change_samples.
     // `progress` is called with the share that is done, from any thread, never concurrently; if it returns false, build
-    // stops and returns false, and the database is empty.
+    // stops. False: it was stopped, or the pairs are more than memory or the device's buffers hold: problem() says
+    // which, and the database is empty.
     bool build(ecs::Registry& registry, const scene::MeshStore& meshes, std::span<const LightSample> samples,
                const VisibilityOptions& options, const std::function<bool(float)>& progress = {});
+    const Error& problem() const { return problem_; }
     // Forgets the changes of the last frame. Once a frame, before the two below.
     void begin_frame();
     // Samples with these indices have changed (their values already have, where it is the same array); their number and
@@ -177,6 +184,7 @@ private:
         std::uint64_t tests = 0;
     };
 
+    Status check_size() const;
     bool split_and_decide(const std::function<bool(float)>& progress);
     PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
     PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;
@@ -186,7 +194,12 @@ private:
     PairState decide_box(const SurfacePatch& patch, const LightSample& sample) const;
     PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();
-    std::uint32_t make_group(std::vector<std::uint32_t> roots);
+    void make_groups();
+    std::uint32_t make_group(std::vector<std::uint32_t> roots, std::size_t largest_leaf);
+    void choose_exact_roots();
+    bool is_exact(std::uint32_t node) const { return node >= is_exact_.size() || is_exact_[node] != 0; }
+    bool may_split_more() const;
+    void decide_coarse_roots(BuildProgress& progress);
     // Roots that a mover may shadow from a cluster of samples.
     void candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group, Footprint& roots,
                          std::uint64_t& tests) const;
@@ -215,12 +228,14 @@ private:
     void grow_rows();
 
     VisibilityOptions options_;
+    Error problem_;
     std::span<const LightSample> samples_; // the owner's
     SurfacePatches patches_;
     StaticBlockers static_blockers_;
     std::vector<Cluster> clusters_;
     std::vector<std::uint32_t> cluster_of_; // by sample
     std::vector<Group> groups_;
+    std::vector<std::uint8_t> is_exact_;    // by root; empty: all are
     std::map<EntityBits, Mover> movers_;    // ordered: results never depend on insertion
     std::vector<ecs::Entity> mover_slots_;  // node = static nodes + slot; null entity: free
     std::vector<std::uint8_t> unlit_slots_; // by slot: MoverPlace::lit is false

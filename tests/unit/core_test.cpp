@@ -1,6 +1,7 @@
 #include "engine/core/description.h"
 #include "engine/core/file.h"
 #include "engine/core/jobs.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/octahedral.h"
 #include "engine/core/random.h"
 #include "engine/core/result.h"
@@ -151,6 +152,21 @@ TEST(File, AFailedWriteLeavesTheOldContentAndNoTemporaryFile) {
     EXPECT_FALSE(write_file(folder / "missing" / "x.json", "x"));
     EXPECT_FALSE(read_file(folder));
     std::filesystem::remove_all(folder);
+}
+
+TEST(MemoryLimit, CountsWhatIsAskedForBesideWhatIsThere) {
+    const std::uint64_t by_default = memory_limit();
+    EXPECT_GT(by_default, std::uint64_t(256) << 20);
+    EXPECT_GT(memory_in_use(), std::uint64_t(1) << 20);
+    set_memory_limit(memory_in_use() + (std::uint64_t(200) << 20));
+    EXPECT_TRUE(check_memory(std::uint64_t(100) << 20, "a picture", "--size"));
+    const Status refused = check_memory(std::uint64_t(3) << 30, "a picture of 16384x16384", "--size");
+    set_memory_limit(0);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::memory);
+    for (const char* word : {"a picture of 16384x16384", "3.0 GiB", "--size", "--memory"})
+        EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+    EXPECT_EQ(memory_limit(), by_default);
 }
 
 } // namespace

@@ -238,6 +238,47 @@ TEST(GltfImport, MeshoptBuffers) {
     EXPECT_EQ(world.meshes[0].triangle_count(), 2u);
 }
 
+// What few exporters write, and the format allows.
+TEST(GltfImport, RareButValidFormsAreRead) {
+    const auto imported = [](const auto& change) {
+        GltfBuilder file;
+        file.add_square();
+        static_cast<void>(file.glb()); // adds the buffer
+        change(file.file);
+        World world;
+        const auto report = world.import(file.glb());
+        EXPECT_TRUE(report) << report.error().message;
+        return std::pair(report ? report.value().notes.size() : 99, world.meshes.size());
+    };
+    using Outcome = std::pair<std::size_t, std::uint32_t>; // notes, meshes
+    // Whole numbers with a fraction of zero.
+    EXPECT_EQ(imported([](json& f) {
+                  f["nodes"][0]["mesh"] = 0.0;
+                  f["accessors"][0]["count"] = 4.0;
+                  f["bufferViews"][0]["byteLength"] = 48.0;
+                  f["scene"] = 0.0;
+              }),
+              (Outcome{0, 1}));
+    EXPECT_EQ(imported([](json& f) {
+                  f["buffers"].push_back({{"byteLength", 100}});
+              }).second,
+              1u)
+        << "an unused buffer without a URI";
+    EXPECT_EQ(imported([](json& f) { f["accessors"][1].erase("bufferView"); }), (Outcome{0, 1})) << "indices of zero";
+    EXPECT_EQ(imported([](json& f) { f["accessors"][0].erase("bufferView"); }), (Outcome{0, 1})) << "positions of zero";
+    EXPECT_EQ(imported([](json& f) {
+                  f["meshes"][0]["primitives"].push_back({{"attributes", {{"_CUSTOM", 0}}}});
+              }),
+              (Outcome{1, 1}))
+        << "a primitive without positions is left out, with a note";
+    EXPECT_EQ(imported([](json& f) {
+                  f["buffers"].push_back({{"byteLength", 3}, {"uri", "data:application/octet-stream,a%20b"}});
+                  f["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 3}});
+              }),
+              (Outcome{0, 1}))
+        << "a data URI that is not base64";
+}
+
 // Broken parts that nothing uses do no harm; those that something uses are named.
 TEST(GltfImport, BrokenPartsMatterWhereTheyAreUsed) {
     struct Case {

@@ -49,6 +49,48 @@ TEST(VisibilityDatabase, AfterThousandChangesItEqualsOneFromScratch) {
     EXPECT_GT(database.counters().full, 0u);
 }
 
+// Where there are more pairs than can be tested: the largest patches are as if all were tested, and of the others
+// nothing is claimed that does not hold.
+TEST(VisibilityDatabase, ScenesWithTooManyPairsAreDecidedCoarselyButSafely) {
+    VisibilityWorld world(assets::make_four_pillars, 100);
+    VisibilityOptions options;
+    options.patches.levels = 0;
+    VisibilityDatabase exact, coarse;
+    ASSERT_TRUE(exact.build(world.registry, world.meshes, world.samples, options));
+    const std::uint32_t nodes = exact.node_count();
+    options.max_tests = std::uint64_t(nodes / 2) * 100;
+    ASSERT_TRUE(coarse.build(world.registry, world.meshes, world.samples, options));
+    ASSERT_EQ(coarse.node_count(), nodes);
+    std::uint32_t same_rows = 0, settled = 0;
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+        bool same = true;
+        for (std::uint32_t sample = 0; sample < 100; ++sample) {
+            const PairState is = coarse.static_state(node, sample), should = exact.static_state(node, sample);
+            same = same && is == should;
+            settled += is == PairState::full || is == PairState::unlit;
+            // "Unlit" and "full" are both no light; where both hold, either may be found first.
+            const bool dark = should == PairState::full || should == PairState::unlit;
+            EXPECT_TRUE(is == should || is == PairState::partial ||
+                        ((is == PairState::full || is == PairState::unlit) && dark))
+                << "node " << node << ", sample " << sample << ": " << int(is) << " for " << int(should);
+        }
+        same_rows += same;
+    }
+    EXPECT_GE(same_rows, nodes / 2);
+    EXPECT_GT(settled, 0u);
+}
+
+TEST(VisibilityDatabase, PairsThatNoBufferHoldsAreAnErrorThatNamesThem) {
+    VisibilityWorld world(assets::make_four_pillars, 100);
+    VisibilityOptions options;
+    options.max_row_bytes = 1000;
+    VisibilityDatabase database;
+    EXPECT_FALSE(database.build(world.registry, world.meshes, world.samples, options));
+    EXPECT_EQ(database.problem().code, ErrorCode::memory);
+    EXPECT_NE(database.problem().message.find("100 light samples"), std::string::npos) << database.problem().message;
+    EXPECT_EQ(database.node_count(), 0u);
+}
+
 TEST(VisibilityDatabase, ABuildThatIsStoppedLeavesNothingAndTheNextIsWhole) {
     VisibilityWorld world(assets::make_two_rooms, 60);
     VisibilityDatabase whole, stopped;

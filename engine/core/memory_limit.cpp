@@ -1,0 +1,75 @@
+#include "engine/core/memory_limit.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <string>
+#include <unistd.h>
+
+namespace sunfleck {
+namespace {
+
+std::atomic<std::uint64_t> chosen_limit{0};
+
+// Of a file that starts with a number ("max" is none).
+std::uint64_t number_in(const char* path, std::uint64_t otherwise) {
+    std::ifstream file(path);
+    std::uint64_t value = 0;
+    return file >> value ? value : otherwise;
+}
+
+std::uint64_t free_memory() {
+    constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max() / 4;
+    std::uint64_t available = unknown;
+    std::ifstream file("/proc/meminfo");
+    for (std::string word; file >> word;)
+        if (word == "MemAvailable:" && file >> available)
+            available *= 1024;
+    const std::uint64_t group = number_in("/sys/fs/cgroup/memory.max", unknown);
+    const std::uint64_t taken = number_in("/sys/fs/cgroup/memory.current", 0);
+    return std::min(available, group > taken ? group - taken : 0);
+}
+
+std::string in_gibibytes(std::uint64_t bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f GiB", double(bytes) / double(1u << 30));
+    return text;
+}
+
+} // namespace
+
+void set_memory_limit(std::uint64_t bytes) {
+    chosen_limit = bytes;
+}
+
+std::uint64_t memory_limit() {
+    static const std::uint64_t by_default = memory_in_use() + free_memory() / 4 * 3;
+    const std::uint64_t chosen = chosen_limit;
+    return chosen > 0 ? chosen : by_default;
+}
+
+std::uint64_t memory_in_use() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t pages = 0, resident = 0;
+    if (!(file >> pages >> resident))
+        return 0;
+    return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+Status check_memory(std::uint64_t bytes, std::string_view what, std::string_view setting) {
+    // Nothing of this size is worth a look at files of the system.
+    constexpr std::uint64_t small = std::uint64_t(64) << 20;
+    if (bytes < small)
+        return {};
+    const std::uint64_t used = memory_in_use(), limit = memory_limit();
+    if (used <= limit && bytes <= limit - used)
+        return {};
+    return Error{std::string(what) + " would take " + in_gibibytes(bytes) + " of memory beside the " +
+                     in_gibibytes(used) + " in use; the limit is " + in_gibibytes(limit) + ". Lower " +
+                     std::string(setting) + ", or raise the limit (--memory)",
+                 ErrorCode::memory};
+}
+
+} // namespace sunfleck
