@@ -1,6 +1,8 @@
 // Queries; ray_scene_build.cpp builds what they meet.
 #include "engine/raytrace/ray_scene_data.h"
 
+#include <limits>
+
 namespace sunfleck::raytrace {
 namespace {
 
@@ -13,6 +15,20 @@ void set_ray(RTCRay& target, const Ray& ray) {
     target.mask = 0xffffffffu;
     target.id = ray.salt;
     target.flags = 0;
+}
+
+void set_rays(RTCRay16& query, int (&valid)[packet_size], const ShadowPacket& packet) {
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        valid[i] = (packet.active >> i) & 1u ? -1 : 0;
+        const Ray& ray = packet.rays[i];
+        query.org_x[i] = ray.origin.x, query.org_y[i] = ray.origin.y, query.org_z[i] = ray.origin.z;
+        query.dir_x[i] = ray.direction.x, query.dir_y[i] = ray.direction.y, query.dir_z[i] = ray.direction.z;
+        query.tnear[i] = ray.minimum, query.tfar[i] = ray.maximum;
+        query.time[i] = 0.0f;
+        query.mask[i] = 0xffffffffu;
+        query.id[i] = ray.salt;
+        query.flags[i] = 0;
+    }
 }
 
 } // namespace
@@ -65,17 +81,7 @@ bool RayScene::occluded(const Ray& ray, Scope scope) const {
 std::uint32_t RayScene::occluded(const ShadowPacket& packet, Scope scope) const {
     alignas(64) RTCRay16 query;
     alignas(64) int valid[packet_size];
-    for (std::size_t i = 0; i < packet_size; ++i) {
-        valid[i] = (packet.active >> i) & 1u ? -1 : 0;
-        const Ray& ray = packet.rays[i];
-        query.org_x[i] = ray.origin.x, query.org_y[i] = ray.origin.y, query.org_z[i] = ray.origin.z;
-        query.dir_x[i] = ray.direction.x, query.dir_y[i] = ray.direction.y, query.dir_z[i] = ray.direction.z;
-        query.tnear[i] = ray.minimum, query.tfar[i] = ray.maximum;
-        query.time[i] = 0.0f;
-        query.mask[i] = 0xffffffffu;
-        query.id[i] = ray.salt;
-        query.flags[i] = 0;
-    }
+    set_rays(query, valid, packet);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded16(valid, implementation_->scope_scene(scope), &context, &query);
@@ -84,6 +90,37 @@ std::uint32_t RayScene::occluded(const ShadowPacket& packet, Scope scope) const 
         if (valid[i] && query.tfar[i] < 0.0f)
             result |= 1u << i;
     return result;
+}
+
+// Rays that meet a mover without a shadow go on behind it, one by one.
+std::array<float, packet_size> RayScene::blockers(const ShadowPacket& packet, Scope scope) const {
+    alignas(64) RTCRayHit16 query;
+    alignas(64) int valid[packet_size];
+    set_rays(query.ray, valid, packet);
+    for (std::size_t i = 0; i < packet_size; ++i)
+        query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, implementation_->scope_scene(scope), &context, &query);
+    std::array<float, packet_size> distances;
+    distances.fill(std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < packet_size; ++i) {
+        if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+            continue;
+        distances[i] = query.ray.tfar[i];
+        const std::uint32_t mover = scope == Scope::static_only ? 0 : query.hit.instID[0][i];
+        if (mover == 0 || implementation_->instances[implementation_->static_count + mover - 1].casts_shadow)
+            continue;
+        Ray ray = packet.rays[i];
+        std::optional<Hit> hit{{distances[i], implementation_->static_count + mover - 1}};
+        while (hit && !implementation_->instances[hit->instance].casts_shadow) {
+            ray.minimum = hit->distance * (1.0f + 0x1p-17f);
+            hit = closest_hit(ray, scope);
+        }
+        distances[i] = hit ? hit->distance : std::numeric_limits<float>::infinity();
+    }
+    return distances;
 }
 
 // `position`: where on the triangle, if that is known better than by the weights.

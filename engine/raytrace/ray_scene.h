@@ -84,6 +84,10 @@ public:
     // Bit i is set if ray i is occluded. Same answers as `occluded` one by one.
     std::uint32_t occluded(const ShadowPacket& packet, Scope scope = Scope::everything) const;
 
+    // Of each active ray, how far away the first surface that casts shadows is, as a multiple of its direction;
+    // infinity where there is none.
+    std::array<float, packet_size> blockers(const ShadowPacket& packet, Scope scope = Scope::everything) const;
+
     SurfacePoint surface(const Ray& ray, const Hit& hit) const;
     // The place of an entity's triangle (weights of the second and third corner), where it is now; none if there is no
     // such entity.

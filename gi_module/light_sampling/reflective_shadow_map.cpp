@@ -45,20 +45,33 @@ struct Tracer {
     const ecs::Registry& registry;
     std::uint32_t side;
 
+    // Light passes movers that cast no shadow, such as the glass of a lantern.
+    std::optional<raytrace::SurfacePoint> lit_surface(const raytrace::Ray& emitted) const {
+        raytrace::Ray ray = emitted;
+        while (const auto hit = rays.closest_hit(ray)) {
+            const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+            if (point.casts_shadow)
+                return point;
+            ray.minimum = hit->distance * (1.0f + 0x1p-17f);
+        }
+        return std::nullopt;
+    }
+
     ReflectiveTexel texel(std::uint32_t x, std::uint32_t y) const {
         ReflectiveTexel texel;
         const EmittedRay emitted = ray_of(emitter, x, y, side);
         const float offset = emitted.normal == vec3(0.0f) ? 0.0f : rays.ray_offset_anywhere();
         const raytrace::Ray ray{emitted.origin + offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
-        const auto hit = rays.closest_hit(ray);
-        if (!hit)
+        const std::optional<raytrace::SurfacePoint> met = lit_surface(ray);
+        if (!met)
             return texel;
-        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        const raytrace::SurfacePoint& point = *met;
         texel.on_mover = !scene::is_static(registry, point.entity);
         if (point.entity == emitter.entity || !(texel.on_mover ? surfaces.movers : surfaces.fixed))
             return texel;
         const float lit_side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
         texel.lit = true;
+        texel.entity = point.entity;
         texel.position =
             offset_from_surface(point.position, lit_side * point.geometric_normal, rays, raytrace::Scope::everything);
         texel.normal = lit_side * point.shading_normal;
@@ -70,7 +83,8 @@ struct Tracer {
         texel.diffuse = arriving * lobes.diffuse;
         texel.glossy = arriving * lobes.glossy;
         texel.exponent = lobes.exponent;
-        texel.area = facing_area(emitter, hit->distance, texels) / std::max(cosine, least_cosine);
+        const float distance = glm::length(point.position - ray.origin);
+        texel.area = facing_area(emitter, distance, texels) / std::max(cosine, least_cosine);
         return texel;
     }
 };

@@ -20,6 +20,7 @@ struct ReflectiveTexel {
     float area = 0.0f; // of the surface that the texel shows, m2
     bool lit = false;  // there is a surface
     bool on_mover = false;
+    ecs::Entity entity; // that the surface belongs to
 };
 
 struct ReflectiveShadowMap {

@@ -1,6 +1,7 @@
 // Runs splat_lists.comp and splat_light.comp: adds the light of pixel lights to the sums of a stage's pixels.
 #pragma once
 
+#include "engine/gpu/uploaded_buffer.h"
 #include "gi_module/low_resolution/low_resolution.h"
 #include "gi_module/splatting/splatting_shared.h"
 
@@ -14,12 +15,18 @@ public:
     static Result<std::unique_ptr<SplatKernel>> create(gpu::Device& device, gpu::PipelineStore& pipelines);
     ~SplatKernel();
 
+    // Shadow maps of the frame's lights, by slot, `side` texels a side; none: nothing blocks their light. Once a frame,
+    // before add_passes.
+    Status set_maps(gpu::FrameGraph& graph, std::span<const std::uint16_t> texels, std::uint32_t side, bool filtered,
+                    gpu::FrameResources& resources);
+    // show_... of splatting_shared.h, from the next add_passes on.
+    void set_show(std::uint32_t show) { show_ = show; }
     // For each stage of a frame. The rows last as long as the call.
     Status add_passes(const PixelStage& stage, std::span<const shared::PixelLightRow> lights,
                       gpu::FrameResources& resources);
     // Its memory for a group of pixels.
     static constexpr std::uint64_t bytes_per_group = shared::splat_mask_words * 4;
-    std::uint64_t memory_bytes() const { return masks_.size(); }
+    std::uint64_t memory_bytes() const { return masks_.size() + maps_.buffer().size(); }
 
 private:
     SplatKernel(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
@@ -27,12 +34,16 @@ private:
     Status add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
                      const shared::SplattingConstants& constants);
     Status add_light(const PixelStage& stage, const gpu::UploadSlice& rows, const shared::SplattingConstants& constants,
-                     bool to_image);
+                     bool glossy, bool to_image);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     VkSampler sampler_ = VK_NULL_HANDLE;
     gpu::Buffer masks_;
+    gpu::UploadedBuffer maps_;
+    std::uint32_t map_side_ = 0; // 0: there are none
+    bool filtered_ = false;
+    std::uint32_t show_ = shared::show_no_splats;
 };
 
 } // namespace sunfleck::gi

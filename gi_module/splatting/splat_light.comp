@@ -11,6 +11,10 @@ layout(constant_id = 0) const uint pixels_per_invocation = 8;
 layout(constant_id = 1) const uint lanes = 8;
 layout(local_size_x_id = 1) in;
 layout(constant_id = 2) const uint to_image = 0; // 1: the sums go to the full picture
+layout(constant_id = 3) const uint maps = 0;     // maps_none or maps_texel_buffer
+layout(constant_id = 4) const uint filtered = 0;
+layout(constant_id = 5) const uint glossy = 0; // the batch's lights have lobes
+layout(constant_id = 6) const uint show = show_no_splats;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -20,12 +24,55 @@ layout(set = 0, binding = 4) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 5) readonly buffer Masks { uint masks[]; };
 layout(set = 0, binding = 6) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 7) writeonly uniform image2D output_image;
+layout(set = 0, binding = 8) uniform samplerBuffer map_texels;
 layout(push_constant) uniform Constants { SplattingConstants constants; };
 
-const uint light_class = light_class_surface, maps = 0, filtered = 0, map_bits = 16, stale_maps = 0, simplified_movers = 0;
-float map_side() { return 1.0; }
-float map_value(uint slot, ivec2 texel) { return 0.0; }
+const uint light_class = light_class_surface, map_bits = 16, stale_maps = 0, simplified_movers = 0;
+float map_side() { return float(constants.map_side); }
+float map_value(uint slot, ivec2 texel) {
+    const int side = int(constants.map_side);
+    return texelFetch(map_texels, (int(slot) * side + texel.y) * side + texel.x).r;
+}
 #include "gi_module/shadows/shadowed_light.glsl"
+
+// Eq. 3, as a factor of the intensity on the lobe's axis, with the lobe wider near the light, and clamped as diffuse ones.
+float lobe_factor(PixelLightRow light, Pixel pixel) {
+    const vec3 v = pixel.position - light.row.position_bound.xyz, normal = light.row.normal_offset.xyz;
+    const float squared = max(dot(v, v), 1e-12), distance = sqrt(squared);
+    const vec3 direction = v / distance;
+    const bool faces = dot(pixel.geometric_normal, v) < 0.0 && dot(normal, v) > 0.0;
+    const float cosine = faces ? max(-dot(pixel.normal, direction), 0.0) : 0.0;
+    const float exponent = light.lobe.w, widened = widened_exponent(exponent, distance, light.extent.x);
+    float factor = power_of_cosine(light.lobe.xyz, direction, widened) * cosine / squared;
+    if (widened != exponent) {
+        const float tilt = dot(light.lobe.xyz, normal);
+        factor *= lobe_norm(widened, tilt) / lobe_norm(exponent, tilt);
+    }
+    return min(factor, light.row.position_bound.w);
+}
+
+// What a light adds to a pixel: its light, or what the debug view shows.
+vec3 contribution(LightRow light, LightFactor factor, Pixel pixel) {
+    const vec3 intensity = light.intensity_slot.rgb;
+    const float brightness = max(intensity.r, max(intensity.g, intensity.b));
+    if (show == show_overdraw)
+        return vec3(1.0);
+    if (show == show_splat_occlusion)
+        return brightness * factor.unshadowed * vec3(factor.visibility, 1.0, 0.0);
+    if (show == show_splat_places) {
+        const float radius = 0.01 * distance(pixel.position, camera.position.xyz);
+        return distance(pixel.position, light.position_bound.xyz) < radius ? intensity / max(brightness, 1e-30) : vec3(0.0);
+    }
+    return intensity * (factor.unshadowed * factor.visibility);
+}
+
+vec3 shown(vec3 total) {
+    if (show == show_overdraw)
+        return total / most_overdraw;
+    if (show == show_splat_occlusion)
+        return vec3(total.g > 0.0 ? total.r / total.g : 0.0);
+    return max(total, vec3(show == show_splat_places ? 0.04 : 0.0));
+}
 
 void main() {
     const uint group = gl_WorkGroupID.x;
@@ -53,8 +100,12 @@ void main() {
         while (mask != 0u) {
             const PixelLightRow light = lights[word * 32u + uint(findLSB(mask))];
             mask &= mask - 1u;
-            [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k)
-                sum[k] += light.row.intensity_slot.rgb * light_factor(light.row, surface[k], false).unshadowed;
+            [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+                LightFactor factor = light_factor(light.row, surface[k], true);
+                if (glossy != 0)
+                    factor.unshadowed = lobe_factor(light, surface[k]);
+                sum[k] += contribution(light.row, factor, surface[k]);
+            }
         }
     }
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
@@ -66,7 +117,7 @@ void main() {
             sums[entry] = total;
         } else if (packed != no_pixel) {
             const ivec2 pixel = ivec2(packed & 0xffffu, (packed & ~unlit_pixel) >> 16);
-            imageStore(output_image, pixel, vec4(lit ? max(total.rgb, vec3(0.0)) : vec3(0.0), lit ? 1.0 : 0.0));
+            imageStore(output_image, pixel, vec4(lit ? shown(total.rgb) : vec3(0.0), lit ? 1.0 : 0.0));
         }
     }
 }

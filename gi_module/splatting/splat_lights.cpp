@@ -40,8 +40,11 @@ bool is_bright(vec3 flux) {
     return is_finite(flux) && luminance(flux) > 0.0f;
 }
 
-vec3 reflected_flux(const ReflectiveTexel& texel) {
-    return texel.diffuse + texel.glossy;
+// Of a texel, in a lobe or diffusely; `gloss_apart`: gloss is not diffuse.
+vec3 reflected_flux(const ReflectiveTexel& texel, bool glossy, bool gloss_apart) {
+    if (glossy)
+        return texel.glossy;
+    return gloss_apart ? texel.diffuse : texel.diffuse + texel.glossy;
 }
 
 } // namespace
@@ -66,10 +69,12 @@ void SplatLights::update(const SceneView& scene, const SampleSet& samples, const
         for (const Emitter& emitter : samples.fixed_emitters())
             follow(emitter, false, side, scene, request);
     std::erase_if(maps_, [](const auto& entry) { return !entry.second.used; });
-    divide(request.settings.splats);
-    for (const Source& source : sources_)
-        if (source.dynamic ? request.lit.dynamic : request.lit.fixed)
-            place(source, request);
+    divide(false, request.settings.splats);
+    divide(true, request.settings.glossy_splats);
+    for (const bool glossy : {false, true})
+        for (const Source& source : sources_)
+            if (source.glossy == glossy && (source.dynamic ? request.lit.dynamic : request.lit.fixed))
+                place(source, request);
     vec3 flux(0.0f);
     for (const PixelLight& light : lights_)
         flux += light.flux;
@@ -93,50 +98,51 @@ void SplatLights::follow(const Emitter& emitter, bool dynamic, std::uint32_t sid
     }
     const std::uint32_t random = hash_combine(request.seed, emitter.entity.index * 16 + std::uint32_t(emitter.kind));
     if (dynamic) {
-        add_source(map, true, true, true, random, request);
+        add_sources(map, true, {true, true}, random, request);
         return;
     }
     if (request.sampled.fixed)
-        add_source(map, false, request.movers_are_static, true, random, request);
+        add_sources(map, false, {true, request.movers_are_static}, random, request);
     if (request.sampled.dynamic && !request.movers_are_static)
-        add_source(map, true, true, false, hash_combine(random, 1), request);
+        add_sources(map, true, {false, true}, hash_combine(random, 1), request);
 }
 
-void SplatLights::add_source(const Map& map, bool dynamic, bool texels_of_movers, bool texels_of_fixed,
-                             std::uint32_t random, const SplatRequest& request) {
-    std::vector<float> values(map.texels.texels.size(), 0.0f);
-    bool any = false;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const ReflectiveTexel& texel = map.texels.texels[i];
-        if (!texel.lit || !(texel.on_mover ? texels_of_movers : texels_of_fixed) || !is_bright(reflected_flux(texel)))
+// Lobes are chosen by their peak: flux times exponent.
+void SplatLights::add_sources(const Map& map, bool dynamic, const Texels& texels, std::uint32_t random,
+                              const SplatRequest& request) {
+    const bool gloss_apart = request.settings.glossy_splats > 0;
+    for (const bool glossy : {false, true}) {
+        std::vector<float> values(map.texels.texels.size(), 0.0f);
+        Source source{&map, hash_combine(random, glossy ? 2 : 3), dynamic, glossy, {}, 0.0, 0.0, 0};
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const ReflectiveTexel& texel = map.texels.texels[i];
+            const vec3 flux = reflected_flux(texel, glossy, gloss_apart);
+            if (!texel.lit || !(texel.on_mover ? texels.movers : texels.fixed) || !is_bright(flux))
+                continue;
+            const float weight = luminance(flux) * (glossy ? texel.exponent : 1.0f);
+            source.weight += double(weight);
+            values[i] = request.settings.splat_importance == SplatImportance::none ? 1.0f : weight;
+        }
+        if (source.weight <= 0.0 || (glossy && !gloss_apart))
             continue;
-        values[i] =
-            request.settings.splat_importance == SplatImportance::flux ? luminance(reflected_flux(texel)) : 1.0f;
-        any = true;
+        source.importance = ImportanceMap(values, map.side);
+        sources_.push_back(std::move(source));
     }
-    if (any)
-        sources_.push_back({&map, random, dynamic, ImportanceMap(values, map.side), 0.0, 0});
 }
 
 // In proportion to what the sources reflect, each a run of a sequence of `count` equal shares: sources with at least a
 // share each have a light, and of fainter ones as many as add up.
-void SplatLights::divide(std::uint32_t count) {
+void SplatLights::divide(bool glossy, std::uint32_t count) {
     double total = 0.0;
-    std::vector<double> flux;
-    flux.reserve(sources_.size());
-    for (const Source& source : sources_) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < source.map->texels.texels.size(); ++i)
-            if (source.importance.values()[i] > 0.0f)
-                sum += double(luminance(reflected_flux(source.map->texels.texels[i])));
-        flux.push_back(sum);
-        total += sum;
-    }
+    for (const Source& source : sources_)
+        total += source.glossy == glossy ? source.weight : 0.0;
     double before = double(to_unit_float(hash_combine(division_seed, count)));
-    for (std::size_t s = 0; s < sources_.size(); ++s) {
-        const double share = flux[s] / total * double(count), after = before + share;
-        sources_[s].count = std::uint32_t(std::floor(after)) - std::uint32_t(std::floor(before));
-        sources_[s].share = share;
+    for (Source& source : sources_) {
+        if (source.glossy != glossy)
+            continue;
+        const double share = source.weight / total * double(count), after = before + share;
+        source.count = std::uint32_t(std::floor(after)) - std::uint32_t(std::floor(before));
+        source.share = share;
         before = after;
     }
 }
@@ -159,8 +165,10 @@ void SplatLights::place(const Source& source, const SplatRequest& request) {
         const ReflectiveTexel& texel = source.map->texels.texels[index];
         PixelLight light;
         light.position = texel.position;
-        light.normal = light.axis = texel.normal;
-        light.flux = scale * point.weight * reflected_flux(texel);
+        light.normal = texel.normal;
+        light.axis = source.glossy ? texel.mirror : texel.normal;
+        light.exponent = source.glossy ? texel.exponent : 1.0f;
+        light.flux = scale * point.weight * reflected_flux(texel, source.glossy, settings.glossy_splats > 0);
         light.area = scale * point.weight * texel.area;
         light.dynamic = source.dynamic;
         lights_.push_back(light);

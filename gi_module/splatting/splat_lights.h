@@ -47,21 +47,26 @@ private:
         std::uint32_t side = 0;
         bool used = false;
     };
-    // A part of a map's texels, among which pixel lights are chosen.
+    // A part of a map's texels and of the light that they reflect, among which pixel lights are chosen.
     struct Source {
         const Map* map = nullptr;
         std::uint32_t random = 0; // seed
         bool dynamic = false;
+        bool glossy = false; // what is reflected in a lobe
         ImportanceMap importance;
+        double weight = 0.0;     // what the budget is divided by
         double share = 0.0;      // of the budget, in lights
         std::uint32_t count = 0; // of lights
     };
 
     void follow(const Emitter& emitter, bool dynamic, std::uint32_t side, const SceneView& scene,
                 const SplatRequest& request);
-    void add_source(const Map& map, bool dynamic, bool texels_of_movers, bool texels_of_fixed, std::uint32_t random,
-                    const SplatRequest& request);
-    void divide(std::uint32_t count);
+    struct Texels {
+        bool fixed = false, movers = false;
+    };
+    void add_sources(const Map& map, bool dynamic, const Texels& texels, std::uint32_t random,
+                     const SplatRequest& request);
+    void divide(bool glossy, std::uint32_t count);
     void place(const Source& source, const SplatRequest& request);
 
     std::map<std::pair<std::uint64_t, int>, Map> maps_; // by emitter's entity and kind

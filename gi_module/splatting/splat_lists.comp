@@ -9,6 +9,7 @@
 
 layout(local_size_x = 8) in;
 layout(constant_id = 0) const uint counted = 0; // 1: the number of groups is known to the GPU alone
+layout(constant_id = 1) const uint show = show_no_splats;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -76,7 +77,7 @@ void main() {
         uint mask = 0u;
         const uint first = word * 32u, end = any ? min(first + 32u, constants.light_count) : first;
         for (uint i = first; i < end; ++i)
-            mask |= may_reach(lights[i], bounds) ? 1u << (i - first) : 0u;
+            mask |= show == show_splat_places || may_reach(lights[i], bounds) ? 1u << (i - first) : 0u;
         masks[group * splat_mask_words + word] = mask;
     }
 }

@@ -13,6 +13,10 @@ const TypeDescription& SplattingSettings::description() {
                          "movers reflect (first_bounce.dynamic in the plan); or everybody's",
                          "none", "moving", "all"),
          SUNFLECK_FIELD(S, splats, "", 0, 65536, "Pixel lights of all emitters together; more is smoother and slower"),
+         SUNFLECK_FIELD(
+             S, glossy_splats, "", 0, 65536,
+             "Pixel lights beside those for what glossy surfaces reflect in a lobe about the mirror direction, "
+             "such as caustics; 0: they reflect diffusely"),
          SUNFLECK_FIELD(S, splat_rays, "rays", 16, 1048576,
                         "Texels of all reflective shadow maps together, each a ray"),
          SUNFLECK_CHOICE(S, splat_importance, "What decides where pixel lights are: chance, or reflected flux", "none",
@@ -23,7 +27,17 @@ const TypeDescription& SplattingSettings::description() {
                         "Levels of the importance warping, at most those of the map"),
          SUNFLECK_FIELD(S, splat_cutoff, "", 0, 1,
                         "A pixel light ends where its irradiance falls below this share of the mean irradiance of all "
-                        "pixel lights together on the scene's surface; 0: nowhere")}};
+                        "pixel lights together on the scene's surface; 0: nowhere"),
+         SUNFLECK_CHOICE(S, splat_occlusion,
+                         "What blocks the light of pixel lights: nothing; what is near them, as a factor (ambient "
+                         "occlusion); or all that a shadow map of each shows, movers included",
+                         "none", "ambient", "maps"),
+         SUNFLECK_FIELD(S, splat_map_side, "texels", 4, 128,
+                        "Side of the shadow map of a pixel light, each texel a ray")
+             .only({4, 8, 16, 32, 64, 128}),
+         SUNFLECK_FIELD(S, splat_map_filter, "", 0, 1, "Blends the four nearest texels of those maps"),
+         SUNFLECK_FIELD(S, splat_ambient_reach, "", 0.01, 1000,
+                        "How far ambient occlusion looks, in units of the scene, of which a room is a few wide")}};
     return type;
 }
 

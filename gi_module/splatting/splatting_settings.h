@@ -12,14 +12,22 @@ enum class SplatChoice : std::uint32_t { none, moving, all };
 // What pixel lights are chosen by.
 enum class SplatImportance : std::uint32_t { none, flux };
 
+// What blocks the light of pixel lights: nothing; ambient occlusion, as a factor of their flux; a shadow map of each.
+enum class SplatOcclusion : std::uint32_t { none, ambient, maps };
+
 struct SplattingSettings {
     SplatChoice splat_lights = SplatChoice::none;
     std::uint32_t splats = 256;
+    std::uint32_t glossy_splats = 0;
     std::uint32_t splat_rays = 4096;
     SplatImportance splat_importance = SplatImportance::flux;
     WarpMethod splat_warp = WarpMethod::a;
     std::uint32_t splat_warp_levels = 6;
     float splat_cutoff = 0.0f; // of the mean irradiance
+    SplatOcclusion splat_occlusion = SplatOcclusion::maps;
+    std::uint32_t splat_map_side = 32; // texels
+    bool splat_map_filter = true;
+    float splat_ambient_reach = 1.0f; // units of the scene
 
     static const TypeDescription& description();
 };

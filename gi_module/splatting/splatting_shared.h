@@ -10,16 +10,24 @@ SHARED_BEGIN
 SHARED_CONSTANT uint splats_per_batch = 256u;
 SHARED_CONSTANT uint splat_mask_words = 8u;
 
+// Debug views in place of light.
+SHARED_CONSTANT uint show_no_splats = 0u;
+SHARED_CONSTANT uint show_overdraw = 1u;        // lights that are evaluated for a pixel
+SHARED_CONSTANT uint show_splat_occlusion = 2u; // share of their light that arrives
+SHARED_CONSTANT uint show_splat_places = 3u;    // where the lights are
+SHARED_CONSTANT float most_overdraw = 256.0f;   // white
+
 struct SplattingConstants {
     uint width; // of the picture
     uint height;
     uint group_count; // pixel groups of the low-resolution picture
     uint light_count; // in this batch
+    uint map_side;    // texels of a light's shadow map
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::SplattingConstants) == 16);
+static_assert(sizeof(sunfleck::shared::SplattingConstants) == 20);
 static_assert(sunfleck::shared::splats_per_batch == 32 * sunfleck::shared::splat_mask_words);
 #endif
 #endif

@@ -1,3 +1,3 @@
 sunfleck_technique(splatting
-  SOURCES splatting_settings.cpp splat_lights.cpp splat_kernel.cpp splatting_technique.cpp
+  SOURCES splatting_settings.cpp splat_lights.cpp splat_occlusion.cpp splat_kernel.cpp splatting_technique.cpp
   SHADERS splat_lists.comp splat_light.comp)

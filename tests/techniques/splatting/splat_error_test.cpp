@@ -17,13 +17,14 @@ protected:
         settings.low_resolution = 1;
         settings.bounces = 1;
         settings.with("direct", "none").with("punctual", "none").with("splat_lights", "all");
-        settings.with("splat_rays", "65536");
+        settings.with("splat_rays", "65536").with("splat_occlusion", "none");
     }
     // Every texel a pixel light: a Sobol pattern of as many points has one in each.
     io::Picture limit(float clamp_scale) {
         gi::Settings all = settings;
         all.clamp_scale = clamp_scale;
-        return picture(all.with("splats", "65536").with("splat_importance", "none"));
+        all.with("splat_importance", "none");
+        return picture(all.with("splats", "65536").with("splat_rays", "65536"));
     }
     io::Picture picture(const gi::Settings& now) {
         world->set(now);

@@ -24,12 +24,11 @@ protected:
         set_if_known(settings, "baked_light", "off");
         return settings;
     }
-    // Nothing but the first bounce.
+    // Nothing but the first bounce, without its shadows.
     static gi::Settings alone(int count) {
-        return splatted("all", count)
-            .with("direct", "none")
-            .with("punctual", "none")
-            .with("plan", "later_bounces=none");
+        gi::Settings settings = splatted("all", count);
+        settings.with("direct", "none").with("punctual", "none").with("plan", "later_bounces=none");
+        return settings.with("splat_occlusion", "none");
     }
     static const gi::SplatLights& lights(GpuWorld& world) {
         return dynamic_cast<gi::SplattingTechnique*>(world.renderer->lighting().technique("splatting"))->lights();
@@ -60,8 +59,8 @@ TEST_F(SplatTechnique, ItsSettingFillsCellsOfThePlan) {
     }
 }
 
-// Eq. 2, summed by a program of its own from rays through the pixels' centres. Pixels whose centre lies on an edge may
-// show another surface.
+// Eq. 1 to 3, summed by a program of its own from rays through the pixels' centres. Pixels whose centre lies on an edge
+// may show another surface.
 std::vector<vec3> summed_light(GpuWorld& world, std::span<const gi::PixelLight> lights, float clamp_scale) {
     const viewer::FrameRequest& request = world.request;
     const shared::CameraRow camera =
@@ -78,10 +77,15 @@ std::vector<vec3> summed_light(GpuWorld& world, std::span<const gi::PixelLight> 
         for (const gi::PixelLight& light : lights) {
             const vec3 way = light.position - point.position;
             const float squared = glm::dot(way, way), distance = std::sqrt(squared);
-            const float leaving = -glm::dot(light.normal, way) / distance,
-                        arriving = glm::dot(side * point.shading_normal, way) / distance;
-            if (leaving > 0.0f && arriving > 0.0f && side * glm::dot(point.geometric_normal, way) > 0.0f)
-                sums[i] += light.flux / pi * std::min(leaving * arriving / squared, clamp_scale * pi / light.area);
+            const float arriving = glm::dot(side * point.shading_normal, way) / distance;
+            if (arriving <= 0.0f || side * glm::dot(point.geometric_normal, way) <= 0.0f)
+                continue;
+            // A lobe widens where it is no wider than the surface that it stands for.
+            const float reach =
+                light.exponent > 1.0f ? std::sqrt(0.5f * (light.exponent + 1.0f) * light.area / pi) : 0.0f;
+            const float intensity = shared::pixel_light_intensity(light.axis, light.normal, light.exponent, reach,
+                                                                  -way / distance, distance);
+            sums[i] += light.flux * std::min(intensity * arriving / squared, clamp_scale / light.area);
         }
     }
     return sums;
@@ -105,7 +109,7 @@ TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllPixelLights) {
     world.set(settings);
     const io::Picture picture = world.picture();
     ASSERT_GT(lights(world).lights().size(), 260u);
-    EXPECT_GE(share_of_equal_pixels(picture, summed_light(world, lights(world).lights(), settings.clamp_scale)), 0.99);
+    EXPECT_GE(share_of_equal_pixels(picture, summed_light(world, lights(world).lights(), gi::splat_clamp_scale)), 0.99);
     // With a bound, what is left out is below the threshold: at most that of each light.
     settings.with("splat_cutoff", "0.02");
     world.set(settings);
@@ -123,6 +127,18 @@ TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllPixelLights) {
     EXPECT_LT(removed, 0.3 * all);
 }
 
+// A ring of polished metal: lobes of thousands, and a curved surface whose lights shine past each other.
+TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllLobes) {
+    GpuWorld world(assets::make_ring, "view");
+    gi::Settings settings = alone(100).with("glossy_splats", "500");
+    world.set(settings);
+    const io::Picture picture = world.picture();
+    const auto all = lights(world).lights();
+    EXPECT_GT(std::count_if(all.begin(), all.end(), [](const gi::PixelLight& light) { return light.exponent > 50.0f; }),
+              100);
+    EXPECT_GE(share_of_equal_pixels(picture, summed_light(world, all, gi::splat_clamp_scale)), 0.98);
+}
+
 // At a quarter of the resolution, with repair, in one set of sums with light samples.
 TEST_F(SplatTechnique, LowResolutionStaysNearFull) {
     GpuWorld world(assets::make_arena, "view");
@@ -130,6 +146,7 @@ TEST_F(SplatTechnique, LowResolutionStaysNearFull) {
     world.request.height = 90;
     world.request.step = 10;
     gi::Settings settings = splatted("moving", 128);
+    settings.with("splat_occlusion", "none");
     world.set(settings);
     const io::Picture full = world.picture();
     settings.low_resolution = 4;
@@ -254,7 +271,8 @@ TEST_F(SplatTechnique, AThousandLampsShareOneBudget) {
     world.set(settings);
     const io::Picture picture = world.picture();
     expect_finite(picture);
-    EXPECT_EQ(world.renderer->lighting().counters()["splats"], 64.0);
+    EXPECT_LE(world.renderer->lighting().counters()["splats"], 64.0);
+    EXPECT_GT(world.renderer->lighting().counters()["splats"], 32.0);
     EXPECT_EQ(world.renderer->lighting().counters()["reflective_maps"], double(lamps));
     double flux = 0.0; // of a scene whose unit is not 1 m, in other units
     for (const gi::PixelLight& light : lights(world).lights())
