@@ -1,6 +1,7 @@
 #include "game_demo/demo_settings.h"
 
 #include "engine/core/file.h"
+#include "viewer/picture_settings.h"
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -57,6 +58,9 @@ const TypeDescription& DemoSettings::description() {
          SUNFLECK_FIELD(DemoSettings, transfer, "", 0, 1,
                         "Lights complex moving objects by precomputed radiance transfer, with interreflection and "
                         "soft self-shadowing; slower"),
+         SUNFLECK_FIELD(DemoSettings, antialiasing, "", 0, 1,
+                        viewer::PictureSettings::description().find("antialiasing")->tooltip),
+         SUNFLECK_FIELD(DemoSettings, glare, "", 0, 0.5, viewer::PictureSettings::description().find("glare")->tooltip),
          SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Exposure compensation; higher is brighter"),
          SUNFLECK_FIELD(DemoSettings, field_of_view, "degrees", 40, 110, "Vertical field of view"),
          SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "Speed at which mouse and stick turn the view"),

@@ -39,6 +39,8 @@ struct DemoSettings {
     std::uint32_t light_samples = 200;
     std::uint32_t map_budget = 40;
     bool transfer = false;
+    bool antialiasing = true;
+    float glare = 0.03f;
     float exposure = 0.0f;
     float field_of_view = viewer::usual_field_of_view;
     float sensitivity = 1.0f;

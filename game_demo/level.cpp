@@ -109,6 +109,8 @@ viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t 
     };
     request.width = scaled(width);
     request.height = scaled(height);
+    request.antialiasing = settings.antialiasing;
+    request.glare = settings.glare;
     request.ev100 = ev100_ - settings.exposure;
     return request;
 }

@@ -203,6 +203,8 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
     if (custom)
         settings.preset = Preset::custom;
     changed |= custom;
+    changed |= field(settings, "antialiasing", "Anti-aliasing");
+    changed |= field(settings, "glare", "Glare");
     changed |= field(settings, "exposure", "Exposure");
     changed |= field(settings, "field_of_view", "Field of view");
 }

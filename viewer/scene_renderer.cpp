@@ -50,6 +50,8 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->composition_,
                     render::CompositionPass::create(device, *renderer->pipelines_, display_format));
     renderer->sky_ = std::make_unique<render::SkyImage>(device);
+    SUNFLECK_ASSIGN(renderer->glare_, render::GlarePass::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->antialiasing_, render::AntialiasingPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));
     renderer->debug_lines_ = std::make_unique<render::DebugLines>(std::move(lines));
@@ -59,6 +61,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
 SceneRenderer::~SceneRenderer() {
     static_cast<void>(device_.wait_idle());
     composition_.destroy(device_);
+    glare_.destroy(device_);
 }
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
@@ -169,6 +172,52 @@ void SceneRenderer::draw_samples() {
     }
 }
 
+void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer,
+                                gpu::ResourceId irradiance, const gpu::UploadSlice& camera, gpu::ResourceId output) {
+    render::CompositionInput composition;
+    composition.irradiance = irradiance;
+    composition.view = request.view;
+    composition.tone_map = request.tone_map;
+    composition.ev100 = request.ev100;
+    const bool final = request.tone_map && request.view == shared::view_final;
+    const bool smoothed = request.antialiasing && final;
+    composition.alpha_is_brightness = smoothed;
+    registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
+        composition.sky += environment.radiance;
+        if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
+            composition.sky_rotation = map->rotation;
+    });
+    composition.sky_image = sky_.get();
+    if (final && request.glare > 0.0f) {
+        composition.glare_share = request.glare;
+        composition.glare = glare_.add(*graph_, *gpu_scene_, g_buffer, composition, camera);
+    }
+    const bool enlarged = is_enlarged(request);
+    const bool drawn_with_edges = smoothed && enlarged && request.screen_width == 2 * request.width &&
+                                  request.screen_height == 2 * request.height;
+    const auto picture = [&](const char* name, bool last) {
+        return last ? output : graph_->create_image(name, display_format, request.width, request.height);
+    };
+    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
+    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
+    if (request.show_samples && request.tone_map) {
+        draw_samples();
+        debug_lines_->add(*graph_, g_buffer, camera, current);
+    }
+    if (smoothed) {
+        const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
+        if (drawn_with_edges)
+            antialiasing_.add_codes(*graph_, current, smooth);
+        else
+            antialiasing_.add(*graph_, current, smooth);
+        current = smooth;
+    }
+    if (drawn_with_edges)
+        upscale_.add_with_edges(*graph_, current, output);
+    else if (enlarged)
+        upscale_.add(*graph_, current, output);
+}
+
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
@@ -188,28 +237,8 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
         lighting_->add_passes(*graph_, *gpu_scene_,
                               {g_buffer.depth, g_buffer.normals, g_buffer.surface, g_buffer.width, g_buffer.height},
                               camera_slice));
-    render::CompositionInput composition;
-    composition.irradiance = irradiance;
-    composition.view = request.view;
-    composition.tone_map = request.tone_map;
-    composition.ev100 = request.ev100;
-    registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
-        composition.sky += environment.radiance;
-        if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
-            composition.sky_rotation = map->rotation;
-    });
-    composition.sky_image = sky_.get();
     const gpu::ResourceId output = graph_->import_image(output_);
-    const bool enlarged = is_enlarged(request);
-    const gpu::ResourceId picture =
-        enlarged ? graph_->create_image("small picture", display_format, request.width, request.height) : output;
-    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera_slice, picture);
-    if (request.show_samples && request.tone_map) {
-        draw_samples();
-        debug_lines_->add(*graph_, g_buffer, camera_slice, picture);
-    }
-    if (enlarged)
-        upscale_.add(*graph_, picture, output);
+    add_picture(request, g_buffer, irradiance, camera_slice, output);
     if (overlay)
         SUNFLECK_TRY(overlay(*graph_, output, *resources_));
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();

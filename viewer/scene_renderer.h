@@ -4,8 +4,10 @@
 #include "engine/gpu/submission.h"
 #include "engine/io/image.h"
 #include "engine/io/scene_file.h"
+#include "engine/render/antialiasing.h"
 #include "engine/render/composition.h"
 #include "engine/render/debug_lines.h"
+#include "engine/render/glare.h"
 #include "engine/render/upscale.h"
 #include "gi_module/system.h"
 
@@ -23,6 +25,8 @@ struct FrameRequest {
     bool simulate = true; // false: the caller has moved everything already
     std::uint32_t view = shared::view_final;
     bool tone_map = true;      // false: scene-linear floats, for EXR
+    bool antialiasing = false; // PictureSettings; of the final picture with tone_map
+    float glare = 0.0f;        // the same
     std::string lighting_view; // debug view of the lighting by name (gi::debug_views()), in place of irradiance
     bool show_samples = false; // debug lines at the light samples
     float ev100 = 8.0f;
@@ -94,6 +98,9 @@ private:
     explicit SceneRenderer(gpu::Device& device) : device_(device) {}
     Status make_output(const FrameRequest& request);
     Status update_lighting(const FrameRequest& request, const scene::SceneChanges& changes, std::uint64_t completed);
+    // From the light to output(): composition, anti-aliasing, enlargement.
+    void add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, gpu::ResourceId irradiance,
+                     const gpu::UploadSlice& camera, gpu::ResourceId output);
     void draw_samples();
     shared::CameraRow camera_row(const FrameRequest& request) const;
 
@@ -115,6 +122,8 @@ private:
     render::GBufferPass g_buffer_pass_;
     render::CompositionPass composition_;
     std::unique_ptr<render::SkyImage> sky_;
+    render::GlarePass glare_;
+    render::AntialiasingPass antialiasing_;
     render::UpscalePass upscale_;
     std::unique_ptr<render::DebugLines> debug_lines_;
     gpu::Image output_;

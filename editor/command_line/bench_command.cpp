@@ -19,6 +19,8 @@ Result<BenchTable> run_suite(const BenchOptions& options, std::vector<PlotSeries
         return bench_shadow_maps(options);
     if (options.suite == "convergence")
         return bench_convergence(options, plot);
+    if (options.suite == "picture")
+        return bench_picture(options);
     if (options.suite == "thesis")
         return bench_thesis(options, plot);
     return bench_reference(options);
@@ -29,7 +31,7 @@ Status check_techniques(const std::string& suite) {
     std::vector<std::string_view> needed;
     if (suite != "reference")
         needed.push_back("brute_force");
-    if (suite == "thesis")
+    if (suite == "thesis" || suite == "picture")
         needed.push_back("light_samples");
     const std::vector<std::string_view>& there = gi::Settings::find("direct")->choices;
     for (const std::string_view name : needed)
@@ -54,9 +56,10 @@ Status bench(const BenchOptions& options) {
     SUNFLECK_TRY(check_techniques(options.suite));
     if (!options.part.empty() && options.suite != "thesis")
         return Error{"--part: only the suite 'thesis' has parts"};
-    if (!options.scene.empty() && options.suite != "kernel" && options.suite != "convergence")
+    if (!options.scene.empty() && options.suite != "kernel" && options.suite != "convergence" &&
+        options.suite != "picture")
         return Error{"--scene: the suite '" + options.suite +
-                     "' has scenes of its own (only kernel and convergence take one)"};
+                     "' has scenes of its own (only kernel, convergence and picture take one)"};
     if (!options.scene.empty())
         SUNFLECK_TRY(find_scene(options.scene));
     if (!options.plot.empty() && options.suite != "convergence" && options.suite != "thesis")

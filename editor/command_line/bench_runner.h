@@ -33,6 +33,8 @@ Result<BenchTable> bench_shadow_maps(const BenchOptions& options);
 Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<PlotSeries>& plot);
 // Speed of the path tracer.
 Result<BenchTable> bench_reference(const BenchOptions& options);
+// Edges, stains, crawl and FLIP of the quality presets' displayed pictures.
+Result<BenchTable> bench_picture(const BenchOptions& options);
 // The experiments of chapter 5 of the thesis and of its fig. 4-11 and 4-12.
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "editor/command_line/common.h"
+#include "viewer/picture_settings.h"
 
 namespace sunfleck::command_line {
 
@@ -10,6 +11,7 @@ struct RenderOptions {
     std::string output;
     std::string view = "final";
     std::vector<std::string> settings;
+    viewer::PictureSettings picture;
     std::string statistics;
     std::string trace; // file
     bool print_graph = false;
@@ -25,6 +27,7 @@ struct ReferenceOptions {
     bool antialiasing = false;
     bool unlimited = false;
     bool lambertian = false;
+    bool caustics = true;
     std::string statistics;
     float save_interval = 30.0f; // s
 };

@@ -41,6 +41,25 @@ void add_setting_options(CLI::App& app, std::map<std::string, std::string>& give
     }
 }
 
+// How light becomes a picture, likewise.
+void add_picture_options(CLI::App& app, viewer::PictureSettings& given) {
+    for (const Field& field : viewer::PictureSettings::description().fields) {
+        std::string option = std::string("--") + std::string(field.name);
+        std::replace(option.begin(), option.end(), '_', '-');
+        app.add_option_function<std::string>(
+               option,
+               [&given, &field](const std::string& text) { static_cast<void>(field_from_text(field, &given, text)); },
+               std::string(field.tooltip))
+            ->type_name(allowed_values(field))
+            ->default_str(field_to_text(field, &given))
+            ->check([&field](const std::string& text) {
+                viewer::PictureSettings tried;
+                const Status status = field_from_text(field, &tried, text);
+                return status ? std::string() : status.error().message;
+            });
+    }
+}
+
 constexpr int most_parts = 1'000'000; // scenes or animations of a file
 
 // Output pictures are known by their extension.
@@ -106,6 +125,7 @@ Command make_render_command(CLI::App& program) {
     add_setting_options(*app, options->scene.lighting,
                         {"punctual", "direct", "indirect", "specular", "source", "lights", "direct_share"});
     viewer::add_choice(*app, "--view", options->view, view_names(), "What to show")->capture_default_str();
+    add_picture_options(*app, options->picture);
     app->add_option("--set", options->settings, "Lighting setting; repeatable (see sunfleck info)")
         ->type_name("NAME=VALUE")
         ->check(setting_problem);
@@ -136,6 +156,12 @@ Command make_reference_command(CLI::App& program) {
         ->capture_default_str();
     app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
     app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
+    app->add_option_function<std::string>(
+           "--caustics", [options](const std::string& text) { options->caustics = text == "on"; },
+           "off: light that reaches a surface by way of gloss or glass is left out where a diffuse surface was before "
+           "on the path from the eye: it is what makes fireflies, and no light sample carries it (default on)")
+        ->type_name("on | off")
+        ->check(CLI::IsMember({"on", "off"}));
     app->add_flag("--lambertian", options->lambertian,
                   "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
     viewer::add_name(*app, "--stats", options->statistics, "Write seconds and rays per second as JSON", "FILE");
@@ -171,18 +197,21 @@ Command make_bench_command(CLI::App& program) {
                 "brute_force  frame and pass times for 64, 300 and 1,024 samples at 640x360 and 1024x768\n"
                 "shadow_maps  microseconds per map and per thousand vertices\n"
                 "convergence  error against the path tracer over the number of samples (--plot)\n"
+                "picture      edges, stains, crawl and FLIP of the quality presets' pictures, against brute force\n"
+                "             with 1,024 samples at four times the size\n"
                 "reference    rays per second of the path tracer\n"
                 "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
                 "             (--part movers runs one of its experiments)");
     const auto run_gate = add_gate_commands(*app);
     viewer::add_choice(*app, "SUITE", options->suite,
-                       {"kernel", "brute_force", "shadow_maps", "convergence", "reference", "thesis"},
+                       {"kernel", "brute_force", "shadow_maps", "convergence", "picture", "reference", "thesis"},
                        "Name of the experiment");
     app->add_flag("--json", options->as_json, "Print one JSON object");
     viewer::add_name(*app, "--csv", options->csv, "Write the rows as CSV", "FILE");
     viewer::add_name(*app, "--plot", options->plot, "Write a plot as SVG", "FILE");
     viewer::add_whole(*app, "--repeat", options->repeat, 1, 1000, "Measurements of each row");
-    viewer::add_name(*app, "--scene", options->scene, "Scene, where the suite takes one (kernel, convergence)");
+    viewer::add_name(*app, "--scene", options->scene,
+                     "Scene, where the suite takes one (kernel, convergence, picture)");
     viewer::add_choice(*app, "--part", options->part, thesis_parts(), "One experiment of the thesis");
     viewer::add_name(*app, "--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options, run_gate] {

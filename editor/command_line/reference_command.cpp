@@ -105,6 +105,7 @@ Result<ReferenceSettings> settings_of(const ReferenceOptions& options) {
     settings.bounces = options.unlimited ? unlimited_bounces : lighting.bounces;
     settings.seed = lighting.seed;
     settings.antialiasing = options.antialiasing;
+    settings.caustics = options.caustics;
     settings.view = options.view == "irradiance" ? ReferenceView::irradiance
                     : options.view == "direct"   ? ReferenceView::direct
                     : options.view == "indirect" ? ReferenceView::indirect
@@ -133,6 +134,7 @@ std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettin
                  {"bounces", settings.bounces},
                  {"seed", settings.seed},
                  {"antialiasing", settings.antialiasing},
+                 {"caustics", settings.caustics},
                  {"lambertian", options.lambertian}};
     return hash_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

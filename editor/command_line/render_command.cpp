@@ -61,6 +61,8 @@ Result<viewer::FrameRequest> make_request(const RenderOptions& options, viewer::
     request.height = options.scene.size.height;
     set_view(options.view, request);
     request.tone_map = kind == io::PictureKind::png;
+    request.antialiasing = options.picture.antialiasing;
+    request.glare = options.picture.glare;
     request.ev100 = exposure_of(options.scene, renderer.registry()).value_or(viewer::default_exposure);
     return request;
 }

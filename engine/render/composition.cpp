@@ -17,24 +17,37 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
     final.colour_formats = {display_format};
     for (const std::uint32_t emission : {0, 1})
         for (const std::uint32_t sky : {0, 1}) {
-            views.specialization = final.specialization = {emission, sky};
+            views.specialization = {emission, sky};
             SUNFLECK_ASSIGN(pass.views_[emission][sky], pipelines.compute(views));
-            SUNFLECK_ASSIGN(pass.final_[emission][sky], pipelines.graphics(final));
+            for (const std::uint32_t brightness : {0, 1})
+                for (const std::uint32_t glare : {0, 1}) {
+                    final.specialization = {emission, sky, brightness, glare};
+                    SUNFLECK_ASSIGN(pass.final_[emission][sky][brightness][glare], pipelines.graphics(final));
+                }
         }
     gpu::GraphicsDescription emission;
     emission.vertex_shader = "engine/render/composition_emission.vert";
     emission.fragment_shader = "engine/render/composition_emission.frag";
     emission.attributes = {{0, VK_FORMAT_R32G32B32_SFLOAT, 12}};
     emission.colour_formats = {display_format};
-    SUNFLECK_ASSIGN(pass.emission_, pipelines.graphics(emission));
+    for (const std::uint32_t brightness : {0, 1})
+        for (const std::uint32_t glare : {0, 1}) {
+            emission.specialization = {0, 0, brightness, glare};
+            SUNFLECK_ASSIGN(pass.emission_[brightness][glare], pipelines.graphics(emission));
+        }
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.sampler_), "creating a sampler");
+    sampler.magFilter = sampler.minFilter = VK_FILTER_LINEAR;
+    sampler.addressModeU = sampler.addressModeV = sampler.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &pass.linear_), "creating a sampler");
     return pass;
 }
 
 void CompositionPass::destroy(gpu::Device& device) {
-    device.vk.vkDestroySampler(device.handle(), sampler_, nullptr);
-    sampler_ = VK_NULL_HANDLE;
+    for (VkSampler* sampler : {&sampler_, &linear_}) {
+        device.vk.vkDestroySampler(device.handle(), *sampler, nullptr);
+        *sampler = VK_NULL_HANDLE;
+    }
 }
 
 void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
@@ -45,9 +58,7 @@ void CompositionPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
         add_view(graph, scene, g_buffer, input, camera, output);
 }
 
-namespace {
-
-shared::CompositionConstants make_constants(const GBuffer& g_buffer, const CompositionInput& input) {
+shared::CompositionConstants composition_constants(const GBuffer& g_buffer, const CompositionInput& input) {
     shared::CompositionConstants constants{};
     constants.view = input.view;
     constants.tone_map = input.tone_map ? 1 : 0;
@@ -58,8 +69,11 @@ shared::CompositionConstants make_constants(const GBuffer& g_buffer, const Compo
     constants.sky_green = input.sky.y;
     constants.sky_blue = input.sky.z;
     constants.sky_rotation = input.sky_rotation;
+    constants.glare_share = input.glare_share;
     return constants;
 }
+
+namespace {
 
 bool sky_has_picture(const CompositionInput& input) {
     return input.sky_image != nullptr && *input.sky_image;
@@ -75,10 +89,12 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
     pass.read(input.irradiance, gpu::Usage::sampled)
         .read(g_buffer.albedo, gpu::Usage::sampled)
         .read(emission_image ? g_buffer.emission : g_buffer.surface, gpu::Usage::sampled)
+        .read(input.glare.valid() ? input.glare : g_buffer.albedo, gpu::Usage::sampled)
         .write(output, gpu::Usage::colour_attachment)
         .execute([this, &scene, g_buffer, input, camera, output, emission_image](gpu::PassContext& context) -> Status {
-            const gpu::Pipeline& kernel = *final_[emission_image ? 1 : 0][sky_has_picture(input) ? 1 : 0];
-            const shared::CompositionConstants constants = make_constants(g_buffer, input);
+            const gpu::Pipeline& kernel =
+                *final_[emission_image][sky_has_picture(input)][input.alpha_is_brightness][input.glare.valid()];
+            const shared::CompositionConstants constants = composition_constants(g_buffer, input);
             const auto image = [&](gpu::ResourceId id) {
                 return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
             };
@@ -92,11 +108,13 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
             rendering.pColorAttachments = &target;
             const gpu::DeviceFunctions& vk = context.device.vk;
             // Bound, but not read, where there is none.
-            const gpu::Binding bindings[] = {image(input.irradiance), image(g_buffer.albedo),
+            const gpu::Binding bindings[] = {image(input.irradiance),
+                                             image(g_buffer.albedo),
                                              image(emission_image ? g_buffer.emission : g_buffer.albedo),
                                              input.sky_image != nullptr ? input.sky_image->binding()
                                                                         : image(g_buffer.albedo),
-                                             gpu::Binding::uniform(camera)};
+                                             gpu::Binding::uniform(camera),
+                                             glare_binding(context, g_buffer, input)};
             gpu::begin_rendering(vk, context.commands, rendering, constants.width, constants.height);
             Status status = context.resources.bind(context.commands, kernel, bindings);
             if (status)
@@ -104,15 +122,22 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
             if (status)
                 vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
             if (status && !emission_image)
-                status = draw_emission(context, scene, g_buffer, input.irradiance, camera, constants.exposure);
+                status = draw_emission(context, scene, g_buffer, input, camera);
             vk.vkCmdEndRendering(context.commands);
             return status;
         });
 }
 
+gpu::Binding CompositionPass::glare_binding(gpu::PassContext& context, const GBuffer& g_buffer,
+                                            const CompositionInput& input) const {
+    return gpu::Binding::sampled_image(context.graph.view(input.glare.valid() ? input.glare : g_buffer.albedo),
+                                       linear_);
+}
+
 Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::GpuScene& scene, const GBuffer& g_buffer,
-                                      gpu::ResourceId irradiance, const gpu::UploadSlice& camera,
-                                      float exposure) const {
+                                      const CompositionInput& input, const gpu::UploadSlice& camera) const {
+    const gpu::Pipeline& kernel = *emission_[input.alpha_is_brightness][input.glare.valid()];
+    const float exposure = shared::exposure_factor(input.ev100);
     bool bound = false;
     for (const scene::DrawItem& item : scene.draws()) {
         const shared::DrawConstants& draw = item.constants;
@@ -122,18 +147,20 @@ Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::Gp
             const auto image = [&](gpu::ResourceId id) {
                 return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
             };
-            const gpu::Binding bindings[] = {image(irradiance), image(g_buffer.albedo), image(g_buffer.surface),
-                                             gpu::Binding::uniform(camera)};
-            SUNFLECK_TRY(context.resources.bind(context.commands, *emission_, bindings));
+            const gpu::Binding bindings[] = {image(input.irradiance), image(g_buffer.albedo), image(g_buffer.surface),
+                                             gpu::Binding::uniform(camera), glare_binding(context, g_buffer, input)};
+            SUNFLECK_TRY(context.resources.bind(context.commands, kernel, bindings));
             const VkBuffer positions = scene.positions().handle();
             const VkDeviceSize offset = 0;
             context.device.vk.vkCmdBindVertexBuffers(context.commands, 0, 1, &positions, &offset);
             context.device.vk.vkCmdBindIndexBuffer(context.commands, scene.indices().handle(), 0, VK_INDEX_TYPE_UINT32);
             bound = true;
         }
-        const shared::EmissionConstants constants{
-            {draw.model[0], draw.model[1], draw.model[2]}, vec4(vec3(draw.emission), exposure), draw.surface};
-        SUNFLECK_TRY(context.resources.push(context.commands, *emission_, constants));
+        const shared::EmissionConstants constants{{draw.model[0], draw.model[1], draw.model[2]},
+                                                  vec4(vec3(draw.emission), exposure),
+                                                  draw.surface,
+                                                  input.glare_share};
+        SUNFLECK_TRY(context.resources.push(context.commands, kernel, constants));
         context.device.vk.vkCmdDrawIndexed(context.commands, item.index_count, 1, item.first_index, item.vertex_offset,
                                            0);
     }
@@ -143,7 +170,7 @@ Status CompositionPass::draw_emission(gpu::PassContext& context, const scene::Gp
 void CompositionPass::add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                                const CompositionInput& input, const gpu::UploadSlice& camera,
                                gpu::ResourceId output) const {
-    const shared::CompositionConstants constants = make_constants(g_buffer, input);
+    const shared::CompositionConstants constants = composition_constants(g_buffer, input);
     const bool emission_image = g_buffer.emission.valid();
     // Images that there are not must be bound all the same; others stand in for them, unread.
     const gpu::ResourceId stand_in = g_buffer.albedo;

@@ -9,26 +9,39 @@
 
 layout(constant_id = 0) const uint textured_emission = 0; // emission has an image
 layout(constant_id = 1) const uint sky_has_picture = 0;
+layout(constant_id = 2) const uint alpha_is_brightness = 0;
+layout(constant_id = 3) const uint has_glare = 0;
 
 layout(set = 0, binding = 0) uniform sampler2D irradiance_image;
 layout(set = 0, binding = 1) uniform sampler2D albedo_image;
 layout(set = 0, binding = 2) uniform sampler2D emission_image;
 layout(set = 0, binding = 3) uniform sampler2D sky_image;
 layout(set = 0, binding = 4) uniform Camera { CameraRow camera; };
+layout(set = 0, binding = 5) uniform sampler2D glare_image;
 layout(push_constant) uniform Constants { CompositionConstants constants; };
 
 layout(location = 0) out vec4 out_colour;
 
 #include "engine/render/sky_radiance.glsl"
 
+vec3 glare(vec2 place) {
+    return textureLod(glare_image, place, 0.0).rgb * (constants.glare_share / float(glare_levels));
+}
+
 void main() {
     const ivec2 pixel = ivec2(gl_FragCoord.xy);
     const vec4 texel = texelFetch(albedo_image, pixel, 0);
     const vec3 albedo = unpack_albedo(texel);
     vec3 radiance = albedo * texelFetch(irradiance_image, pixel, 0).rgb * (1.0 / pi);
+    // What shines is scattered by a share, and what others scatter is added.
+    const float kept = has_glare != 0 ? 1.0 - constants.glare_share : 1.0;
     if (textured_emission != 0)
-        radiance += texelFetch(emission_image, pixel, 0).rgb;
-    const vec3 shown = shown_from_radiance(texel.a > albedo_of_nothing ? radiance : sky_radiance(pixel), constants.exposure);
+        radiance += kept * texelFetch(emission_image, pixel, 0).rgb;
+    radiance = texel.a > albedo_of_nothing ? radiance : kept * sky_radiance(pixel);
+    if (has_glare != 0)
+        radiance += glare(gl_FragCoord.xy / vec2(constants.width, constants.height));
+    const vec3 shown = shown_from_radiance(radiance, constants.exposure);
     const bool unlit = abs(texel.a - albedo_unlit) < 0.25; // the base colour itself
-    out_colour = vec4(srgb_from_linear_colour(unlit ? albedo : shown), 1.0);
+    const vec3 colour = srgb_from_linear_colour(unlit ? albedo : shown);
+    out_colour = vec4(colour, alpha_is_brightness != 0 ? display_brightness(colour) : 1.0);
 }

@@ -11,12 +11,17 @@ struct CompositionInput {
     gpu::ResourceId irradiance; // W/m2, without albedo
     std::uint32_t view = shared::view_final;
     bool tone_map = true;
+    bool alpha_is_brightness = false; // of the final tone-mapped picture, for AntialiasingPass; else alpha is 1
     float ev100 = 8.0f;
     vec3 sky{0.0f}; // radiance where nothing is hit
     // Its picture, which `sky` is multiplied by, if it has one.
     const SkyImage* sky_image = nullptr;
     float sky_rotation = 0.0f;
+    // Of the final tone-mapped picture: what is scattered (GlarePass), and the share of what shines that is.
+    gpu::ResourceId glare;
+    float glare_share = 0.0f;
 };
+shared::CompositionConstants composition_constants(const GBuffer& g_buffer, const CompositionInput& input);
 
 class CompositionPass {
 public:
@@ -32,14 +37,16 @@ private:
                    const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
     void add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                   const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
+    // Another image stands in where there is none.
+    gpu::Binding glare_binding(gpu::PassContext& context, const GBuffer& g_buffer, const CompositionInput& input) const;
     Status draw_emission(gpu::PassContext& context, const scene::GpuScene& scene, const GBuffer& g_buffer,
-                         gpu::ResourceId irradiance, const gpu::UploadSlice& camera, float exposure) const;
+                         const CompositionInput& input, const gpu::UploadSlice& camera) const;
 
-    // [emission has an image][the sky has a picture]
+    // [emission has an image][the sky has a picture]; final pictures: [alpha is brightness][glare], too
     const gpu::Pipeline* views_[2][2] = {};
-    const gpu::Pipeline* final_[2][2] = {};
-    const gpu::Pipeline* emission_ = nullptr;
-    VkSampler sampler_ = VK_NULL_HANDLE;
+    const gpu::Pipeline* final_[2][2][2][2] = {};
+    const gpu::Pipeline* emission_[2][2] = {};
+    VkSampler sampler_ = VK_NULL_HANDLE, linear_ = VK_NULL_HANDLE;
 };
 
 } // namespace sunfleck::render

@@ -22,7 +22,12 @@ struct CompositionConstants {
     float sky_red, sky_green,
         sky_blue;       // radiance where nothing is, W/(sr m2); times the sky's picture, if there is one
     float sky_rotation; // rad, of that picture
+    float glare_share;  // of what shines, scattered
 };
+
+// Glare is found at a fraction of the size, and the coarser levels of its pyramid; the image is the sum of them all.
+SHARED_CONSTANT uint glare_block = 8u; // pixels, of the side
+SHARED_CONSTANT uint glare_levels = 4u;
 
 // The albedo image holds square roots, which spread 8 bits about as sRGB does and cost a CPU device much less. Its
 // alpha says what the pixel is, so that the final picture need not read surface ids.
@@ -41,11 +46,12 @@ struct EmissionConstants {
     vec4 model[3];          // as in DrawConstants
     vec4 emission_exposure; // rgb: radiance W/(sr m2); w: exposure_factor(EV100)
     uint surface;           // as in the G-buffer
+    float glare_share;
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::CompositionConstants) == 36);
-static_assert(sizeof(sunfleck::shared::EmissionConstants) == 68);
+static_assert(sizeof(sunfleck::shared::CompositionConstants) == 40);
+static_assert(sizeof(sunfleck::shared::EmissionConstants) == 72);
 #endif
 #endif

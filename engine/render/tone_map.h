@@ -36,6 +36,11 @@ SHARED_FUNCTION vec3 display_from_radiance(vec3 radiance, float exposure) {
     return srgb_from_linear_colour(shown_from_radiance(radiance, exposure));
 }
 
+// Of a display colour, by which anti-aliasing tells edges: every primary counts enough for one beside black to be one.
+SHARED_FUNCTION float display_brightness(vec3 colour) {
+    return 0.3f * colour.x + 0.5f * colour.y + 0.2f * colour.z;
+}
+
 // The radiance that a picture shows as the linear colour `shown`, 0 to 1.
 SHARED_FUNCTION vec3 radiance_from_display(vec3 shown, float exposure) {
     const vec3 y = clamp(shown, vec3(0.0f), vec3(0.999f));

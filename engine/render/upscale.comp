@@ -1,8 +1,12 @@
 #version 460
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_GOOGLE_include_directive : require
+#include "engine/render/edge_code.glsl"
+
 // Twice the size is the usual case: there, four pixels share the sixteen that they are made of.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint doubling = 0;
+layout(constant_id = 1) const uint edges = 0; // the source has edge codes as its alpha
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
 layout(set = 0, binding = 1) uniform writeonly image2D target;
 layout(push_constant) uniform Constants {
@@ -15,9 +19,8 @@ vec4 catmull_rom(float t) {
                       t * t * (t - 1.0));
 }
 
-vec3 load(ivec2 pixel) {
-    return imageLoad(source, clamp(pixel, ivec2(0), constants.source_size - 1)).rgb;
-}
+vec4 load_coded(ivec2 pixel) { return imageLoad(source, clamp(pixel, ivec2(0), constants.source_size - 1)); }
+vec3 load(ivec2 pixel) { return load_coded(pixel).rgb; }
 
 void write_one(ivec2 pixel) {
     if (any(greaterThanEqual(pixel, constants.target_size)))
@@ -42,15 +45,28 @@ void write_one(ivec2 pixel) {
     imageStore(target, pixel, vec4(clamp(sum, lowest, highest), 1.0));
 }
 
+// A quarter of a source pixel through which an edge may run: the quarter to the right and at the bottom if the flags say
+// so. `across`, `down`: neighbours of the source pixel on those sides; `smooth_colour`: where there is no edge.
+vec3 quarter_at_edge(vec4 own, vec3 across, vec3 down, bool to_right, bool to_bottom, vec3 smooth_colour) {
+    const uint bits = edge_bits(own.a), side = edge_side(bits);
+    const bool beside = side == (to_right ? edge_at_right : edge_at_left);
+    const bool below = side == (to_bottom ? edge_at_bottom : edge_at_top);
+    const float share = edge_share(bits, beside ? to_bottom : to_right);
+    const vec3 sharp = beside ? mix(own.rgb, across, share) : below ? mix(own.rgb, down, share) : own.rgb;
+    return bits != 0u ? sharp : smooth_colour;
+}
+
 // The pixels between the middles of four source pixels, a quarter and three quarters of the way.
 void write_four(ivec2 corner) {
     const vec4 quarter = catmull_rom(0.25), rest = catmull_rom(0.75);
     vec3 sums[4] = {vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)};
+    vec4 pixels[4][4];
     vec3 lowest = vec3(1.0), highest = vec3(0.0);
     [[unroll]] for (int y = 0; y < 4; ++y) {
         vec3 left = vec3(0.0), right = vec3(0.0);
         [[unroll]] for (int x = 0; x < 4; ++x) {
-            const vec3 colour = load(corner + ivec2(x - 1, y - 1));
+            pixels[y][x] = load_coded(corner + ivec2(x - 1, y - 1));
+            const vec3 colour = pixels[y][x].rgb;
             left += quarter[x] * colour;
             right += rest[x] * colour;
             if ((x == 1 || x == 2) && (y == 1 || y == 2)) {
@@ -65,8 +81,13 @@ void write_four(ivec2 corner) {
     }
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 pixel = 2 * corner + 1 + ivec2(i & 1, i >> 1);
+        vec3 colour = clamp(sums[i], lowest, highest);
+        if (edges != 0) { // the quarter of pixel (x, y) of the sixteen that is nearest to their middle
+            const int x = 1 + (i & 1), y = 1 + (i >> 1);
+            colour = quarter_at_edge(pixels[y][x], pixels[y][3 - x].rgb, pixels[3 - y][x].rgb, x == 1, y == 1, colour);
+        }
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, constants.target_size)))
-            imageStore(target, pixel, vec4(clamp(sums[i], lowest, highest), 1.0));
+            imageStore(target, pixel, vec4(colour, 1.0));
     }
 }
 

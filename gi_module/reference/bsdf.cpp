@@ -104,6 +104,7 @@ bool Bsdf::sample(vec3 outgoing, const float numbers[3], BsdfSample& result) con
         result.direction = sample_cosine_direction(vec3(0.0f, 0.0f, 1.0f), numbers[0], numbers[1]);
         result.pdf = result.direction.z / pi;
         result.weight = base_;
+        result.diffuse = true;
         return result.pdf > 0.0f;
     }
     if (numbers[2] < microfacet_probability(outgoing)) {
@@ -112,12 +113,19 @@ bool Bsdf::sample(vec3 outgoing, const float numbers[3], BsdfSample& result) con
         result.direction = 2.0f * glm::dot(outgoing, half) * half - outgoing;
     } else {
         result.direction = sample_cosine_direction(vec3(0.0f, 0.0f, 1.0f), numbers[0], numbers[1]);
+        result.diffuse = true;
     }
     result.pdf = density(outgoing, result.direction);
     if (result.pdf <= 0.0f)
         return false;
     result.weight = evaluate(outgoing, result.direction) * (result.direction.z / result.pdf);
     return true;
+}
+
+vec3 Bsdf::evaluate_diffuse(vec3 outgoing, vec3 incoming) const {
+    if (outgoing.z <= 0.0f || incoming.z <= 0.0f)
+        return vec3(0.0f);
+    return coat_ || metal_ ? diffuse(outgoing, incoming) : base_ / pi;
 }
 
 BsdfSample Bsdf::sample_glass(vec3 outgoing, bool entering, float number) const {

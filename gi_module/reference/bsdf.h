@@ -14,6 +14,7 @@ struct BsdfSample {
     vec3 weight{0.0f};    // f * |cos| / pdf
     float pdf = 0.0f;     // solid angle; 0 for delta scattering
     bool delta = false;
+    bool diffuse = false; // chosen by the diffuse part
 };
 
 class Bsdf {
@@ -27,6 +28,8 @@ public:
 
     // f(outgoing, incoming), without the cosine. Both unit, above the surface (z > 0). Reciprocal.
     vec3 evaluate(vec3 outgoing, vec3 incoming) const;
+    // The Lambertian part of it.
+    vec3 evaluate_diffuse(vec3 outgoing, vec3 incoming) const;
     // Density of sample() for `incoming`, per solid angle.
     float density(vec3 outgoing, vec3 incoming) const;
     // numbers: three in [0, 1). False: the path ends here.

@@ -160,7 +160,9 @@ vec3 PathTracer::direct_light(Path& path, const Vertex& vertex) const {
     const vec3 incoming = vertex.frame.to_local(direction);
     if (incoming.z <= 0.0f || glm::dot(direction, vertex.geometric_normal) <= 0.0f)
         return vec3(0.0f);
-    const vec3 scattered = vertex.bsdf.evaluate(vertex.outgoing, incoming) * incoming.z;
+    const vec3 scattered = (path.without_gloss() ? vertex.bsdf.evaluate_diffuse(vertex.outgoing, incoming)
+                                                 : vertex.bsdf.evaluate(vertex.outgoing, incoming)) *
+                           incoming.z;
     if (luminance(scattered) <= 0.0f)
         return vec3(0.0f);
     ++path.rays;

@@ -50,10 +50,22 @@ struct PathTracer::Path {
     std::uint32_t salt = 0; // of its rays
     vec3 throughput{1.0f};
     std::vector<vec3>* by_bounce = nullptr; // if set, contributions are added here, by number of reflections
+    bool caustics = true;                   // ReferenceSettings::caustics
+    bool was_diffuse = false;               // at an earlier vertex
+    vec3 to_emitters{1.0f};                 // throughput for emitters that the scattered ray finds
     bool skip_direct = false;
     bool skip_indirect = false;
     vec3 result{0.0f};
     std::uint64_t rays = 0;
+
+    // At the present vertex, emitters are reflected by its diffuse part alone.
+    bool without_gloss() const { return !caustics && was_diffuse; }
+    // Goes on from a vertex by what its surface does to the light.
+    void scatter(vec3 weight, vec3 weight_for_emitters, bool diffuse) {
+        to_emitters = throughput * weight_for_emitters;
+        throughput *= weight;
+        was_diffuse = was_diffuse || diffuse;
+    }
 
     void add(std::uint32_t reflections, vec3 light) {
         if ((reflections == 0 && skip_direct) || (reflections > 0 && skip_indirect))

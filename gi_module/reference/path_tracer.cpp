@@ -102,8 +102,8 @@ std::optional<raytrace::SurfacePoint> PathTracer::follow(Path& path, const Verte
         ++path.rays;
         const auto hit = rays_.closest_hit(ray);
         if (!hit) {
-            path.add(reflections, path.throughput * environment_found(vertex.position, ray.direction, scattered.pdf,
-                                                                      scattered.delta));
+            path.add(reflections, path.to_emitters * environment_found(vertex.position, ray.direction, scattered.pdf,
+                                                                       scattered.delta));
             return std::nullopt;
         }
         raytrace::SurfacePoint point = rays_.surface(ray, *hit);
@@ -111,7 +111,7 @@ std::optional<raytrace::SurfacePoint> PathTracer::follow(Path& path, const Verte
         if (luminance(emission) > 0.0f) {
             const float other = scattered.delta ? 0.0f : emitter_density(vertex.position, point, ray.direction);
             path.add(reflections,
-                     path.throughput * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
+                     path.to_emitters * emission * (scattered.delta ? 1.0f : power_heuristic(scattered.pdf, other)));
         }
         if (point.casts_shadow)
             return point;
@@ -119,6 +119,15 @@ std::optional<raytrace::SurfacePoint> PathTracer::follow(Path& path, const Verte
         ray.origin = point.on_triangle + side * point.offset * point.geometric_normal;
     }
     return std::nullopt;
+}
+
+// Of a scattered ray, should it find an emitter.
+vec3 PathTracer::weight_for_emitters(const Path& path, const Vertex& vertex, const BsdfSample& scattered) {
+    if (!path.without_gloss())
+        return scattered.weight;
+    if (scattered.delta)
+        return vec3(0.0f);
+    return vertex.bsdf.evaluate_diffuse(vertex.outgoing, scattered.direction) * (scattered.direction.z / scattered.pdf);
 }
 
 void PathTracer::trace(Path& path, Vertex vertex) const {
@@ -131,7 +140,7 @@ void PathTracer::trace(Path& path, Vertex vertex) const {
         const float side = glm::dot(direction, vertex.geometric_normal);
         if (!vertex.bsdf.is_glass() && side <= 0.0f)
             return;
-        path.throughput *= scattered.weight;
+        path.scatter(scattered.weight, weight_for_emitters(path, vertex, scattered), scattered.diffuse);
         const vec3 origin = vertex.position + (side > 0.0f ? vertex.offset : -vertex.offset) * vertex.geometric_normal;
         const auto point = follow(path, vertex, reflections, {origin, direction, 0.0f, 1e30f, path.salt}, scattered);
         if (!point)
@@ -163,6 +172,7 @@ PathTracer::PixelSample PathTracer::pixel_sample(glm::uvec2 pixel, std::uint32_t
     result.covered = emitter == area_emitters_.end() || !emitters_[emitter->second].is_lamp;
     if (!radiance && !result.covered)
         return result;
+    path.caustics = settings.caustics;
     path.skip_direct = settings.view == ReferenceView::indirect;
     path.skip_indirect = settings.view == ReferenceView::direct;
     if (path.skip_indirect)

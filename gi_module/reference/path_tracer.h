@@ -23,6 +23,7 @@ struct ReferenceSettings {
     std::uint32_t bounces = 5; // reflections after the first visible surface; unlimited_bounces: Russian roulette only
     std::uint32_t seed = 1;
     ReferenceView view = ReferenceView::radiance;
+    bool caustics = true;      // off: no emitter is found by way of a glossy or glass surface after a diffuse one
     bool antialiasing = false; // off: through pixel centres, as rasterised; on: box filter
 };
 inline constexpr std::uint32_t unlimited_bounces = 0xffffffffu;
@@ -87,6 +88,7 @@ private:
     static Whereabouts find(const Emitter& emitter);
     std::optional<raytrace::SurfacePoint> follow(Path& path, const Vertex& vertex, std::uint32_t reflections,
                                                  raytrace::Ray ray, const BsdfSample& scattered) const;
+    static vec3 weight_for_emitters(const Path& path, const Vertex& vertex, const BsdfSample& scattered);
     void trace(Path& path, Vertex vertex) const;
     bool scatter(Path& path, const Vertex& vertex, std::uint32_t reflections, BsdfSample& scattered) const;
     bool survives(Path& path) const;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <numeric>
 
 namespace sunfleck::gi::reference {
 namespace {
@@ -55,9 +56,9 @@ TEST(Reference, FurnaceHasItsClosedForm) {
 }
 
 struct Room {
-    Room() {
+    explicit Room(void (*make)(assets::SceneBuilder&) = assets::make_cornell) {
         assets::SceneBuilder builder(registry, meshes);
-        assets::make_cornell(builder);
+        make(builder);
         scene::update_world_transforms(registry);
         rays = raytrace::RayScene::create().value();
         EXPECT_TRUE(rays->update(registry, meshes));
@@ -134,6 +135,48 @@ TEST(Reference, DirectAndIndirectAddUpToIrradiance) {
     }
     EXPECT_NEAR((means[0] + means[1]) / means[2], 1.0, 1e-6);
     EXPECT_GT(means[1], 0.1 * means[2]);
+}
+
+// Sums of a room's picture with caustics and without.
+std::pair<Accumulation, Accumulation> with_and_without_caustics(Room& room, std::uint32_t samples) {
+    std::pair<Accumulation, Accumulation> result;
+    room.settings.caustics = true;
+    EXPECT_TRUE(room.tracer->accumulate(result.first, room.camera, room.settings, samples));
+    room.settings.caustics = false;
+    EXPECT_TRUE(room.tracer->accumulate(result.second, room.camera, room.settings, samples));
+    return result;
+}
+
+double total(const Accumulation& accumulation) {
+    return std::accumulate(accumulation.sums.begin(), accumulation.sums.end(), 0.0);
+}
+
+// A metal ring throws light on the floor by way of its gloss; without caustics that is missing, and all else is there.
+TEST(Reference, CausticsAreWhatGlossThrowsOnDiffuseSurfaces) {
+    Room ring(assets::make_ring);
+    ring.camera.position = vec3(0.0f, 1.0f, 1.2f);
+    ring.camera.target = vec3(0.0f);
+    ring.settings.view = ReferenceView::irradiance;
+    ring.settings.bounces = 1;
+    const auto [with, without] = with_and_without_caustics(ring, 256);
+    // The same random numbers, so that each path finds the same or less.
+    for (std::size_t i = 0; i < with.sums.size(); ++i)
+        ASSERT_LE(without.sums[i], with.sums[i] * (1.0 + 1e-6)) << i;
+    EXPECT_LT(total(without), 0.999 * total(with));
+    EXPECT_GT(total(without), 0.5 * total(with));
+    // Light straight from emitters is none.
+    ring.settings.view = ReferenceView::direct;
+    const auto [direct, direct_without] = with_and_without_caustics(ring, 4);
+    EXPECT_EQ(direct.sums, direct_without.sums);
+}
+
+TEST(Reference, MatteSurfacesThrowNoCaustics) {
+    Room room;
+    room.registry.view<scene::Material>().each(
+        [](ecs::Entity, const scene::Material& material) { EXPECT_FALSE(material.specular); });
+    const auto [with, without] = with_and_without_caustics(room, 8);
+    for (std::size_t i = 0; i < with.sums.size(); ++i) // the order of products differs
+        EXPECT_NEAR(without.sums[i], with.sums[i], 1e-5 * (1.0 + with.sums[i])) << i;
 }
 
 TEST(Bsdf, FresnelOfGlassHasItsKnownValues) {

@@ -1,0 +1,117 @@
+#version 460
+#extension GL_EXT_control_flow_attributes : require
+// Morphological anti-aliasing (see antialiasing.h).
+#extension GL_GOOGLE_include_directive : require
+#include "engine/render/edge_code.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint writes_codes = 0; // 1: the picture as it is, with edge codes as its alpha
+layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
+layout(set = 0, binding = 1) uniform writeonly image2D target;
+layout(push_constant) uniform Constants { ivec2 size; }
+constants;
+
+// Contrast, of display values, below which nothing is done: at least, and relative to the brightest.
+const float least_contrast = 1.0 / 32.0, relative_contrast = 1.0 / 10.0;
+// A line of the edge's stairs is followed so far to either side, in pixels; the last steps are longer ones.
+const int walk_steps = 8;
+const int walk_lengths[walk_steps] = int[](1, 2, 3, 4, 6, 8, 11, 15);
+// Of its difference from its surroundings, what a pixel that stands alone loses at most.
+const float most_blur = 0.5;
+// Shorter lines are those of slopes, which an enlargement draws well by itself.
+const float shortest_coded_run = 2.0;
+
+vec4 load(ivec2 pixel) { return imageLoad(source, clamp(pixel, ivec2(0), constants.size - 1)); }
+float at(ivec2 pixel) { return load(pixel).a; }
+
+// Brightness of a pixel and its eight neighbours.
+struct Neighbourhood {
+    float centre, up, down, left, right, up_left, up_right, down_left, down_right;
+};
+
+// How much the rows differ, or the columns: an edge that lies across is one between rows.
+bool lies_across(Neighbourhood n) {
+    const float rows = abs(n.up_left - 2.0 * n.left + n.down_left) + 2.0 * abs(n.up - 2.0 * n.centre + n.down) +
+                       abs(n.up_right - 2.0 * n.right + n.down_right);
+    const float columns = abs(n.up_left - 2.0 * n.up + n.up_right) + 2.0 * abs(n.left - 2.0 * n.centre + n.right) +
+                          abs(n.down_left - 2.0 * n.down + n.down_right);
+    return rows >= columns;
+}
+
+// From the middle of a pixel to the end of its line of the edge. x: distance; y: by how much the end is brighter than
+// the edge, 0 if none was found.
+vec2 walk(ivec2 pixel, ivec2 along, ivec2 over, float edge, float limit) {
+    vec2 found = vec2(float(walk_lengths[walk_steps - 1]), 0.0);
+    bool on = true;
+    for (int i = 0; i < walk_steps && on; ++i) {
+        const ivec2 place = pixel + along * walk_lengths[i];
+        const float difference = 0.5 * (at(place) + at(place + over)) - edge;
+        on = abs(difference) < limit;
+        if (!on)
+            found = vec2(float(walk_lengths[i]) - 0.5, difference);
+    }
+    return found;
+}
+
+// How far the neighbour over the edge reaches into a pixel.
+struct Cover {
+    float share; // of the pixel
+    float slope; // how that rises along the edge, a pixel
+    float run;   // length of the edge's line, in pixels
+};
+
+// The edge crosses from the middle of one end of its line to the other's, so only the half of the line at the nearer
+// end is covered.
+Cover cover_of(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond) {
+    const float edge = 0.5 * (centre + beyond), limit = 0.25 * abs(beyond - centre);
+    const vec2 before = walk(pixel, -along, over, edge, limit), after = walk(pixel, along, over, edge, limit);
+    const vec2 end = before.x < after.x ? before : after;
+    const float run = before.x + after.x;
+    const bool covered = end.y != 0.0 && (end.y > 0.0) == (beyond > centre);
+    return Cover(covered ? max(0.5 - end.x / run, 0.0) : 0.0, covered ? (before.x < after.x ? -1.0 : 1.0) / run : 0.0,
+                 run);
+}
+
+// Of the two quarters of the pixel at the edge, which are what the neighbour covers first.
+float code_of(ivec2 along, ivec2 over, Cover cover) {
+    const vec2 quarters = clamp(2.0 * (cover.share + vec2(-0.25, 0.25) * cover.slope), 0.0, 1.0);
+    return edge_code(over.x + over.y > 0, along.x == 0, quarters);
+}
+
+void main() {
+    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, constants.size)))
+        return;
+    const vec4 centre = load(pixel);
+    vec3 colour = centre.rgb;
+    Neighbourhood n;
+    n.centre = centre.a;
+    n.up = at(pixel + ivec2(0, -1));
+    n.down = at(pixel + ivec2(0, 1));
+    n.left = at(pixel + ivec2(-1, 0));
+    n.right = at(pixel + ivec2(1, 0));
+    const float high = max(n.centre, max(max(n.up, n.down), max(n.left, n.right)));
+    const float low = min(n.centre, min(min(n.up, n.down), min(n.left, n.right)));
+    const float contrast = high - low;
+    float code = 0.0;
+    // A loop of at most one iteration: unlike a branch, a CPU device skips it where no pixel of a group needs it.
+    for (bool edge = contrast > max(least_contrast, relative_contrast * high); edge; edge = false) {
+        n.up_left = at(pixel + ivec2(-1, -1));
+        n.up_right = at(pixel + ivec2(1, -1));
+        n.down_left = at(pixel + ivec2(-1, 1));
+        n.down_right = at(pixel + ivec2(1, 1));
+        const bool across = lies_across(n);
+        const float one = across ? n.up : n.left, other = across ? n.down : n.right;
+        const bool first = abs(one - n.centre) >= abs(other - n.centre);
+        const ivec2 along = across ? ivec2(1, 0) : ivec2(0, 1);
+        const ivec2 over = (across ? ivec2(0, 1) : ivec2(1, 0)) * (first ? -1 : 1);
+        const Cover cover = cover_of(pixel, along, over, n.centre, first ? one : other);
+        const float mean = (2.0 * (n.up + n.down + n.left + n.right) + n.up_left + n.up_right + n.down_left + n.down_right) / 12.0;
+        const float alone = smoothstep(0.0, 1.0, min(abs(mean - n.centre) / contrast, 1.0));
+        const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run;
+        code = coded ? code_of(along, over, cover) : 0.0;
+        const float share = coded ? 0.0 : max(cover.share, most_blur * alone * alone);
+        colour = mix(colour, load(pixel + over).rgb, share);
+    }
+    imageStore(target, pixel, vec4(colour, writes_codes != 0 ? code : 1.0));
+}

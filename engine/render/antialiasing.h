@@ -1,0 +1,29 @@
+// Smooths the edges of a display picture, whatever they come from: geometry, holes in textures, patterns, shadows. It
+// follows each edge's stairs to where they end, and so knows how much of a pixel lies beyond the edge (A. Reshetov,
+// "Morphological Antialiasing", 2009; along one line of stairs at a time, as in T. Lottes, "FXAA", 2009). Each frame by
+// itself: nothing is left of the frames before.
+#pragma once
+
+#include "engine/gpu/frame_graph.h"
+#include "engine/gpu/pipeline.h"
+
+namespace sunfleck::render {
+
+class AntialiasingPass {
+public:
+    static Result<AntialiasingPass> create(gpu::PipelineStore& pipelines);
+    // Both are storage images of one size with 8 bits a channel; the alpha of `source` is its brightness
+    // (CompositionInput::alpha_is_brightness); `target` is written whole.
+    void add(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const;
+    // For UpscalePass::add_with_edges: edges are left as they are, and alpha says where they run
+    // (edge_code.glsl).
+    void add_codes(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const;
+
+private:
+    void add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline, gpu::ResourceId source,
+             gpu::ResourceId target) const;
+    const gpu::Pipeline* smoothing_ = nullptr;
+    const gpu::Pipeline* coding_ = nullptr;
+};
+
+} // namespace sunfleck::render

@@ -1,0 +1,167 @@
+// The displayed picture: measures of stairs and stains on made-up pictures, and anti-aliasing against supersampling.
+#include "editor/command_line/picture_measures.h"
+#include "engine/render/tone_map.h"
+#include "tests/support/gpu_world.h"
+
+#include <cmath>
+
+namespace sunfleck::tests {
+namespace {
+
+using namespace command_line;
+
+// A picture of `size` x `size` pixels of a function of places in pixels, 0 to `size`.
+template <typename Value>
+io::Picture drawn(std::uint32_t size, const Value& value) {
+    io::Picture picture{size, size, {}};
+    for (std::uint32_t y = 0; y < size; ++y)
+        for (std::uint32_t x = 0; x < size; ++x)
+            picture.pixels.emplace_back(vec3(value(float(x) + 0.5f, float(y) + 0.5f)), 1.0f);
+    return picture;
+}
+
+// Black above a slanted line, grey below it.
+float half_plane(float x, float y) {
+    return y > 20.3f + 0.13f * x ? 0.6f : 0.1f;
+}
+
+TEST(PictureMeasures, StairsAreEdgeErrorsAndBrightnessIsNot) {
+    const io::Picture stairs = drawn(64, half_plane);
+    const io::Picture smooth =
+        box_filtered(drawn(512, [](float x, float y) { return half_plane(x / 8.0f, y / 8.0f); }), 8);
+    ASSERT_EQ(smooth.pixels.size(), stairs.pixels.size());
+    EXPECT_GT(edge_error(stairs, smooth), 0.01);
+    EXPECT_NEAR(edge_error(smooth, smooth), 0.0, 1e-7);
+    io::Picture brighter = smooth;
+    for (vec4& pixel : brighter.pixels)
+        pixel += vec4(0.1f, 0.1f, 0.1f, 0.0f);
+    EXPECT_NEAR(edge_error(brighter, smooth), 0.0, 1e-6);
+}
+
+TEST(PictureMeasures, StainsAreSteepWhereTheReferenceIsFlat) {
+    const io::Picture flat = drawn(64, [](float, float) { return 0.5f; });
+    io::Picture stained = flat;
+    for (std::size_t x = 0; x < 64; ++x) // one line: it is steep on itself and on both sides
+        stained.pixels[32 * 64 + x] -= vec4(4.0f / 255.0f, 4.0f / 255.0f, 4.0f / 255.0f, 0.0f);
+    EXPECT_EQ(stain_share(flat, flat), 0.0);
+    EXPECT_NEAR(stain_share(stained, flat), 3.0 / 64.0, 1e-9);
+    EXPECT_EQ(stain_share(stained, stained), 0.0); // where the reference has it, it is none
+}
+
+TEST(PictureMeasures, CrawlIsWhatChangesDoNotFollow) {
+    const auto line_at = [](float place) {
+        return drawn(32, [=](float x, float) { return std::abs(x - place) < 1.0f ? 1.0f : 0.0f; });
+    };
+    const io::Picture frames[] = {line_at(8.0f), line_at(9.0f)}, still[] = {line_at(8.0f), line_at(8.0f)};
+    EXPECT_NEAR(crawl(frames, frames), 0.0, 1e-9);
+    EXPECT_NEAR(crawl(still, frames), 1.0, 1e-6);
+}
+
+class Antialiasing : public GpuTest {};
+
+struct SmoothedScene {
+    SmoothedScene() : world(assets::make_four_pillars, "view") {
+        gi::Settings settings;
+        settings.lights = 24;
+        settings.shadow_map_resolution = 64;
+        settings.low_resolution = 1;
+        world.set(settings);
+        world.request.view = shared::view_final;
+        world.request.tone_map = true;
+    }
+    io::Picture at(std::uint32_t width, std::uint32_t height, bool antialiasing) {
+        world.request.width = width;
+        world.request.height = height;
+        world.request.antialiasing = antialiasing;
+        return world.picture();
+    }
+    GpuWorld world;
+};
+
+TEST_F(Antialiasing, EdgesComeNearerToASupersampledPicture) {
+    SmoothedScene scene;
+    const io::Picture truth = box_filtered(scene.at(1280, 720, false), 4);
+    const io::Picture stairs = scene.at(320, 180, false), smooth = scene.at(320, 180, true);
+    // 0.65 here; without following the stairs to their ends it would be above 0.8.
+    EXPECT_LT(edge_error(smooth, truth), 0.72 * edge_error(stairs, truth));
+    // Nothing is left of the frames before.
+    EXPECT_EQ(scene.at(320, 180, true).pixels, smooth.pixels);
+}
+
+TEST_F(Antialiasing, LeavesWhatHasNoContrastAsItIs) {
+    SmoothedScene scene;
+    const io::Picture before = scene.at(160, 90, false), after = scene.at(160, 90, true);
+    std::size_t flat = 0;
+    for (std::size_t y = 1; y + 1 < 90; ++y)
+        for (std::size_t x = 1; x + 1 < 160; ++x) {
+            const std::size_t i = y * 160 + x;
+            vec3 low(before.pixels[i]), high = low;
+            for (const std::size_t k : {i - 1, i + 1, i - 160, i + 160}) {
+                low = glm::min(low, vec3(before.pixels[k]));
+                high = glm::max(high, vec3(before.pixels[k]));
+            }
+            if (glm::any(glm::greaterThan(high - low, vec3(1.0f / 32.0f))))
+                continue;
+            ++flat;
+            EXPECT_EQ(before.pixels[i], after.pixels[i]) << x << " " << y;
+        }
+    EXPECT_GT(flat, 160u * 90u / 3u);
+}
+
+TEST_F(Antialiasing, IsEnlargedWithThePicture) {
+    SmoothedScene scene;
+    scene.world.request.screen_width = 320;
+    scene.world.request.screen_height = 180;
+    const io::Picture stairs = scene.at(160, 90, false), smooth = scene.at(160, 90, true);
+    ASSERT_EQ(smooth.width, 320u);
+    scene.world.request.screen_width = 0;
+    const io::Picture truth = box_filtered(scene.at(1280, 720, false), 4);
+    EXPECT_LT(edge_error(smooth, truth), 0.8 * edge_error(stairs, truth));
+}
+
+// A lamp before black: what glare takes from it is found around it, less and less farther away.
+TEST_F(Antialiasing, GlareSpreadsLightAndKeepsItsEnergy) {
+    const auto make = [](assets::SceneBuilder& s) {
+        scene::Material lamp;
+        lamp.base_colour = vec3(0.0f);
+        lamp.emission = vec3(1.0f);
+        s.box("lamp", vec3(-0.1f), vec3(0.1f), lamp);
+        s.camera("view", vec3(0.0f, 0.0f, 2.0f), vec3(0.0f), 40.0f);
+    };
+    GpuWorld world(make, "view");
+    world.request.view = shared::view_final;
+    world.request.tone_map = true;
+    world.request.width = world.request.height = 512;
+    world.request.ev100 = 10.0f; // the lamp is well within the tone curve
+    const auto linear = [](float shown) {
+        return shown <= 0.04045f ? shown / 12.92f : std::pow((shown + 0.055f) / 1.055f, 2.4f);
+    };
+    const auto radiance = [&](const io::Picture& picture, std::size_t x, std::size_t y) {
+        const vec4& pixel = picture.pixels[y * 512 + x];
+        return double(shared::radiance_from_display(vec3(linear(pixel.x)), shared::exposure_factor(10.0f)).x);
+    };
+    const auto sum = [&](const io::Picture& picture) {
+        double result = 0.0;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+            result += radiance(picture, i % 512, i / 512);
+        return result;
+    };
+    const io::Picture sharp = world.picture();
+    world.request.glare = 0.4f;
+    const io::Picture scattered = world.picture();
+    EXPECT_NEAR(sum(scattered) / sum(sharp), 1.0, 0.04); // steps of 8 bits; what leaves the picture
+    EXPECT_NEAR(radiance(sharp, 256, 256), 1.0, 0.02);
+    EXPECT_LT(radiance(scattered, 256, 256), 0.95);
+    EXPECT_EQ(radiance(sharp, 256, 320), 0.0);
+    double last = 1.0;
+    for (const std::size_t away : {50u, 80u, 120u}) {
+        const double here = radiance(scattered, 256 + away, 256);
+        EXPECT_LT(here, last) << away;
+        EXPECT_NEAR(here, radiance(scattered, 255, 256 + away), 0.15 * here + 1e-3) << away;
+        last = here;
+    }
+    EXPECT_GT(last, 0.0);
+}
+
+} // namespace
+} // namespace sunfleck::tests
