@@ -14,9 +14,9 @@ install(FILES engine/core/result.h engine/core/octahedral.h engine/core/shader_l
         DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/sunfleck/engine/core")
 install(FILES README.md CHANGELOG.md docs/scene.schema.json DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 if(SUNFLECK_BUILD_APPLICATIONS)
-  install(TARGETS sunfleck sunfleck_demo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS sunfleck sunfleck_demo sunfleck_editor RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(TARGETS sunfleck_draco sunfleck_image_codec LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  set_target_properties(sunfleck sunfleck_demo PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  set_target_properties(sunfleck sunfleck_demo sunfleck_editor PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(DIRECTORY "${PROJECT_BINARY_DIR}/scenes" DESTINATION "${CMAKE_INSTALL_DATADIR}/sunfleck"
           FILES_MATCHING PATTERN "*.glb" PATTERN "*.json" PATTERN "*.walk")
 endif()

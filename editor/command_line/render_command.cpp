@@ -1,33 +1,41 @@
 // sunfleck render: a picture of a scene by the real-time path.
 #include "editor/command_line/commands.h"
-#include "editor/command_line/trace.h"
 
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "viewer/trace.h"
+#include "viewer/views.h"
 
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::command_line {
 namespace {
 
+// Names that stand for a view with something else: settings, or lines over it.
+const std::map<std::string, std::uint32_t> further_views = {
+    {"direct", shared::view_irradiance}, {"indirect", shared::view_irradiance}, {"samples", shared::view_final}};
+
 // Views of the picture; those of the lighting come from gi::debug_views().
-const std::map<std::string, std::uint32_t> picture_views = {
-    {"final", shared::view_final},         {"irradiance", shared::view_irradiance}, {"direct", shared::view_irradiance},
-    {"indirect", shared::view_irradiance}, {"normals", shared::view_normals},       {"albedo", shared::view_albedo},
-    {"depth", shared::view_depth},         {"surfaces", shared::view_surfaces},     {"motion", shared::view_motion},
-    {"samples", shared::view_final}};
+const std::map<std::string, std::uint32_t>& picture_views() {
+    static const std::map<std::string, std::uint32_t> all = [] {
+        std::map<std::string, std::uint32_t> views = further_views;
+        for (const viewer::PictureView& view : viewer::picture_views())
+            views[std::string(view.name)] = view.code;
+        return views;
+    }();
+    return all;
+}
 
 void set_view(const std::string& name, viewer::FrameRequest& request) {
     for (const gi::DebugView* view : gi::debug_views())
         if (view->name == name) {
             request.lighting_view = name;
-            // Light is shown as light, with its exposure; all else as it is.
-            request.view = view->unit == "W/m2" ? shared::view_irradiance : shared::view_false_colours;
+            request.view = viewer::picture_view_of(*view);
             return;
         }
-    request.view = picture_views.at(name);
+    request.view = picture_views().at(name);
     request.show_samples = name == "samples";
 }
 
@@ -82,7 +90,7 @@ Status expose_automatically(const RenderOptions& options, viewer::SceneRenderer&
 
 struct RenderedFrames {
     Measurement measurement;
-    Trace trace;
+    viewer::Trace trace;
 };
 
 void note_frame(const viewer::FrameStatistics& statistics, bool traced, RenderedFrames& frames) {
@@ -167,8 +175,8 @@ Status render_on_new_device(const RenderOptions& options, const std::filesystem:
 
 std::vector<std::string> view_names() {
     std::vector<std::string> names;
-    names.reserve(picture_views.size() + gi::debug_views().size());
-    for (const auto& [name, view] : picture_views)
+    names.reserve(picture_views().size() + gi::debug_views().size());
+    for (const auto& [name, view] : picture_views())
         names.push_back(name);
     for (const gi::DebugView* view : gi::debug_views())
         names.emplace_back(view->name);

@@ -15,6 +15,11 @@ std::string readable(std::string_view name) {
 
 } // namespace
 
+bool is_part_of_tree(Document& document, const ecs::PoolBase& pool) {
+    return &pool == &pool_of<scene::Name>(document) || &pool == &pool_of<scene::Parent>(document) ||
+           &pool == &pool_of<scene::MeshInstance>(document);
+}
+
 void add_component(Document& document, const Entities& entities, ecs::PoolBase& pool) {
     document.begin("Add " + std::string(pool.description()->name) + " to " + what(document, entities));
     for (const Entity entity : entities)
@@ -72,6 +77,40 @@ Status edit_setting(Document& document, std::string_view name, std::string_view 
     else
         document.cancel();
     return status;
+}
+
+std::optional<Placed> place_of(Document& document, Entity entity) {
+    ecs::Registry& registry = document.registry();
+    if (!registry.alive(entity) || !registry.has<scene::Transform>(entity))
+        return std::nullopt;
+    Placed placed{world_of(document, entity), {}};
+    const auto* instance = registry.try_get<scene::MeshInstance>(entity);
+    if (instance != nullptr && instance->mesh < document.meshes().size())
+        placed.bounds = document.meshes().bounds(instance->mesh);
+    return placed;
+}
+
+bool emits(Document& document, Entity entity) {
+    for (const ecs::PoolBase* pool : document.registry().described_pools())
+        if (pool->contains(entity))
+            for (const Field& field : pool->description()->fields) {
+                if (field.kind != FieldKind::vector3 || !field.unit.starts_with("W"))
+                    continue;
+                const auto* value = static_cast<const char*>(pool->address(pool->position_of(entity.index)));
+                if (*reinterpret_cast<const vec3*>(value + field.offset) != vec3(0.0f))
+                    return true;
+            }
+    return false;
+}
+
+Entities without_geometry(Document& document) {
+    Entities result;
+    ecs::Registry& registry = document.registry();
+    registry.view<scene::Transform>().each([&](Entity entity, const scene::Transform&) {
+        if (document.exists(entity) && !registry.has<scene::MeshInstance>(entity))
+            result.push_back(entity);
+    });
+    return result;
 }
 
 Bounds bounds_of(Document& document, const Entities& entities) {

@@ -138,15 +138,31 @@ Status Document::set_setting(std::string_view name, std::string_view value) {
         SUNFLECK_TRY(settings_.set(name, before));
         return valid;
     }
+    note_setting(name, before);
+    return {};
+}
+
+Status Document::set_settings(const gi::Settings& settings) {
+    assert(gesture_ && "edits belong to a gesture");
+    SUNFLECK_TRY(settings.validate());
+    const gi::Settings before = settings_;
+    settings_ = settings;
+    for (const std::string_view name : gi::Settings::names())
+        if (before.get(name) != settings.get(name))
+            note_setting(name, before.get(name));
+    return {};
+}
+
+// In the gesture; the setting has its new value.
+void Document::note_setting(std::string_view name, const std::string& before) {
     ++revision_;
     ++settings_revision_;
     for (SettingChange& known : gesture_->settings)
         if (known.name == name) {
             known.after = settings_.get(name);
-            return {};
+            return;
         }
     gesture_->settings.push_back({std::string(name), before, settings_.get(name)});
-    return {};
 }
 
 bool Document::gesture_changed() const {

@@ -55,6 +55,11 @@ public:
     const std::vector<std::string>& notes() const { return notes_; }
     // True if there are edits that the file lacks.
     bool unsaved() const { return history_.serial() != saved_serial_ || gesture_changed(); }
+    // The document is no file's any more, and unsaved.
+    void forget_file() {
+        path_.clear();
+        mark_unsaved();
+    }
     // Takes back what save or open said: the file was changed or removed by others.
     void mark_unsaved() { saved_serial_ = ~std::uint64_t(0); }
 
@@ -65,6 +70,8 @@ public:
     // entity. In a gesture only.
     void set(Entity entity, ecs::PoolBase& pool, ecs::Value value);
     Status set_setting(std::string_view name, std::string_view value);
+    // All at once: values that are only right together.
+    Status set_settings(const gi::Settings& settings);
     // A handle without any component, which the gesture is to give some.
     Entity create() { return registry_.create(); }
     // True if something has changed and the history has an entry more.
@@ -116,6 +123,7 @@ private:
     void apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value);
     void apply(const HistoryEntry& entry, bool forward);
     bool gesture_changed() const;
+    void note_setting(std::string_view name, const std::string& before);
     void settle_lamps();
     void name_changed(Entity entity, const void* before, const void* after);
     void name_everything();

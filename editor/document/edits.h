@@ -47,9 +47,24 @@ inline mat4 world_of(Document& document, Entity entity) {
 void set_world(Document& document, Entity entity, const mat4& world);
 // Entities that have no ancestor among `entities`.
 Entities topmost(const Document& document, const Entities& entities);
+// Where an entity is, and its geometry, if it has any, before it is put there.
+struct Placed {
+    mat4 world{1.0f};
+    Bounds bounds; // empty: it has no geometry
+};
+// None: it has no place.
+std::optional<Placed> place_of(Document& document, Entity entity);
+// Whether one of its components has a power of light that is not zero.
+bool emits(Document& document, Entity entity);
+// Those that have a place, but nothing that could be seen there.
+Entities without_geometry(Document& document);
 // Of everything that has geometry, in the world.
 Bounds bounds_of(Document& document, const Entities& entities);
 Bounds bounds_of_all(Document& document);
+
+// Components that make entities a tree with names, or refer to geometry by number: rename, reparent and others change
+// them, so that names stay distinct and numbers mean something; fields of theirs are not edited one by one.
+bool is_part_of_tree(Document& document, const ecs::PoolBase& pool);
 
 // The component's pool in the document by type.
 template <typename T>

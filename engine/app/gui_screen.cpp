@@ -55,7 +55,10 @@ void GuiScreen::add_backdrop(const Backdrop& backdrop, gpu::ResourceId target) {
                 return {};
             VkImageBlit region{};
             region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-            region.srcOffsets[1] = {int(from.width), int(from.height), 1};
+            const VkRect2D whole{{0, 0}, {from.width, from.height}};
+            const VkRect2D& part = backdrop.part.extent.width > 0 ? backdrop.part : whole;
+            region.srcOffsets[0] = {part.offset.x, part.offset.y, 0};
+            region.srcOffsets[1] = {part.offset.x + int(part.extent.width), part.offset.y + int(part.extent.height), 1};
             region.dstOffsets[0] = {to.offset.x, to.offset.y, 0};
             region.dstOffsets[1] = {to.offset.x + int(to.extent.width), to.offset.y + int(to.extent.height), 1};
             context.device.vk.vkCmdBlitImage(context.commands, backdrop.image->handle(),

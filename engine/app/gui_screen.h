@@ -11,6 +11,7 @@ namespace sunfleck::app {
 struct Backdrop {
     const gpu::Image* image = nullptr;
     VkRect2D place{};
+    VkRect2D part{}; // of the image, pixels; empty: all of it
 };
 
 class GuiScreen {
@@ -26,6 +27,8 @@ public:
     // Renders the GUI's current frame to the swapchain's acquired image and presents it. The images are read on the
     // device's queue until wait().
     Status present(std::span<const Backdrop> behind = {});
+    // Of the frames that were presented, those up to this serial are finished, and the pictures behind them free.
+    Result<std::uint64_t> completed() { return submission_->completed(); }
     // Until the GPU has finished what was presented.
     Status wait();
 

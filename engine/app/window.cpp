@@ -84,8 +84,10 @@ bool InputState::hit(Key key) const {
 // Callbacks of the window system.
 struct WindowEvents {
     using Kind = Window::Event::Kind;
+    static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(glfwGetWindowUserPointer(handle)); }
     static void add(GLFWwindow* handle, Window::Event event) {
-        static_cast<Window*>(glfwGetWindowUserPointer(handle))->events_.push_back(std::move(event));
+        of(handle).events_.push_back(std::move(event));
+        ++of(handle).event_count_;
     }
     static void key(GLFWwindow* handle, int key, int, int action, int) {
         if (action != GLFW_REPEAT)
@@ -101,6 +103,8 @@ struct WindowEvents {
     // The window went elsewhere or took another size, or the pointer came in: its next place is no motion.
     static void jump(GLFWwindow* handle, int, int) { add(handle, {Kind::jump}); }
     static void enter(GLFWwindow* handle, int) { add(handle, {Kind::jump}); }
+    static void redraw(GLFWwindow* handle) { ++of(handle).event_count_; }
+    static void resize(GLFWwindow* handle, int, int) { redraw(handle); }
     static void drop(GLFWwindow* handle, int count, const char** paths) {
         add(handle, {Kind::drop, 0, false, 0.0, 0.0, {paths, paths + count}});
     }
@@ -196,6 +200,9 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
     glfwSetScrollCallback(handle, WindowEvents::scroll);
     glfwSetWindowFocusCallback(handle, WindowEvents::focus);
     glfwSetDropCallback(handle, WindowEvents::drop);
+    glfwSetWindowRefreshCallback(handle, WindowEvents::redraw);
+    glfwSetWindowCloseCallback(handle, WindowEvents::redraw);
+    glfwSetFramebufferSizeCallback(handle, WindowEvents::resize);
     window->pending_.focused = true; // without a window manager, no focus event arrives
     return window;
 }

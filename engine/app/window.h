@@ -20,8 +20,9 @@ namespace sunfleck::app {
 // GLFW key codes, followed by mouse buttons, so that both can be bound to actions.
 using Key = int;
 inline constexpr Key no_key = -1, key_space = 32, key_escape = 256, key_enter = 257, key_tab = 258, key_right = 262,
-                     key_left = 263, key_down = 264, key_up = 265, key_f1 = 290, key_left_shift = 340,
-                     key_left_control = 341, first_mouse_button = 400, key_count = 408;
+                     key_left = 263, key_down = 264, key_up = 265, key_delete = 261, key_home = 268, key_f1 = 290,
+                     key_left_shift = 340, key_left_control = 341, key_left_alt = 342, key_right_shift = 344,
+                     key_right_control = 345, key_right_alt = 346, first_mouse_button = 400, key_count = 408;
 // "W", "space", "left shift", "mouse 2".
 std::string key_name(Key key);
 // The inverse; no_key if there is no key of that name.
@@ -74,6 +75,9 @@ public:
     void one_by_one(bool on) { one_by_one_ = on; }
     // Whether events are left for the next poll.
     bool has_more() const { return !events_.empty(); }
+    // How many events came so far, those among them that ask for the window to be drawn again: where the number is the
+    // same, nothing has to be drawn.
+    std::uint64_t event_count() const { return event_count_; }
     // Sleeps until an event arrives, at most this long; for minimised windows.
     void wait(double seconds);
     // Sleeps until an event arrives or another thread calls wake.
@@ -118,6 +122,7 @@ private:
     Pointer pointer_ = Pointer::arrow;
     std::deque<Event> events_;
     bool one_by_one_ = false;
+    std::uint64_t event_count_ = 0;
     int windowed_[4] = {};
     InputState input_, pending_;
     vec2 last_mouse_{0.0f};

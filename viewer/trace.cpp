@@ -1,12 +1,12 @@
-#include "editor/command_line/trace.h"
-
-#include "editor/command_line/common.h"
+#include "viewer/trace.h"
 #include "engine/core/file.h"
 
 #include <nlohmann/json.hpp>
 
-namespace sunfleck::command_line {
+namespace sunfleck::viewer {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 enum Row { cpu_row = 1, gpu_row = 2 }; // threads, as viewers of traces call them
 
@@ -24,7 +24,7 @@ Json event(const std::string& name, Row row, double begin_ms, double end_ms) {
 }
 
 // The two clocks cannot be compared; the GPU cannot begin before the CPU has handed over the frame's work.
-double gpu_begin(const viewer::FrameStatistics& frame) {
+double gpu_begin(const FrameStatistics& frame) {
     for (const gpu::ScopeTime& scope : frame.cpu_scopes)
         if (scope.name == "recording")
             return scope.end_ms;
@@ -33,7 +33,7 @@ double gpu_begin(const viewer::FrameStatistics& frame) {
 
 } // namespace
 
-void Trace::add(const viewer::FrameStatistics& frame) {
+void Trace::add(const FrameStatistics& frame) {
     frames_.push_back({end_ms_, frame});
     end_ms_ += frame.frame_ms;
 }
@@ -52,4 +52,4 @@ Status Trace::write(const std::filesystem::path& path) const {
     return write_file(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump(1) + "\n");
 }
 
-} // namespace sunfleck::command_line
+} // namespace sunfleck::viewer

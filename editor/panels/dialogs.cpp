@@ -1,0 +1,241 @@
+// Questions in front of everything else: which file, and what becomes of unsaved edits.
+#include "editor/panels/panel.h"
+#include "editor/window/commands.h"
+#include "editor/window/opening.h"
+
+#include <algorithm>
+#include <imgui_stdlib.h>
+
+namespace sunfleck::editor {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Folder and name that are being chosen.
+struct FileChoice {
+    Dialog of = Dialog::none;
+    fs::path folder;
+    std::string name;
+    std::vector<fs::path> folders, files;
+    std::string problem;
+};
+
+FileChoice& choice() {
+    static FileChoice only;
+    return only;
+}
+
+bool is_scene(const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name.ends_with(".scene.json") || name.ends_with(".gltf") || name.ends_with(".glb");
+}
+
+void list_folder(const fs::path& folder) {
+    FileChoice& now = choice();
+    std::error_code code;
+    now.folder = folder.lexically_normal();
+    now.folders.clear();
+    now.files.clear();
+    now.problem.clear();
+    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, code)) {
+        if (entry.path().filename().string().front() == '.')
+            continue;
+        if (entry.is_directory(code))
+            now.folders.push_back(entry.path());
+        else if (is_scene(entry.path()))
+            now.files.push_back(entry.path());
+    }
+    if (code)
+        now.problem = code.message();
+    std::sort(now.folders.begin(), now.folders.end());
+    std::sort(now.files.begin(), now.files.end());
+}
+
+std::string stem_of(const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name.substr(0, name.find('.'));
+}
+
+void begin_choice(Session& session) {
+    choice().of = session.dialog;
+    std::error_code code;
+    const fs::path& path = session.document->path();
+    list_folder(path.empty() || is_built_in(path) ? fs::current_path(code) : fs::absolute(path, code).parent_path());
+    choice().name.clear();
+    if (session.dialog == Dialog::save_as)
+        choice().name = path.empty() ? "scene.scene.json" : stem_of(path) + ".scene.json";
+}
+
+void folder_list() {
+    FileChoice& now = choice();
+    ImGui::BeginChild("files", ImVec2(36.0f * ui::unit(), 16.0f * ui::unit()), true);
+    fs::path enter;
+    if (ui::choice("..", false, "The folder above"))
+        enter = now.folder.parent_path();
+    for (const fs::path& folder : now.folders)
+        if (ui::choice(folder.filename().string() + "/", false))
+            enter = folder;
+    for (const fs::path& file : now.files)
+        if (ui::choice(file.filename().string(), file.filename() == now.name))
+            now.name = file.filename().string();
+    ImGui::EndChild();
+    if (!enter.empty())
+        list_folder(enter);
+}
+
+void choose(Session& session) {
+    FileChoice& now = choice();
+    const fs::path path = fs::path(now.name).is_absolute() ? fs::path(now.name) : now.folder / now.name;
+    std::error_code code;
+    if (fs::is_directory(path, code))
+        return list_folder(path);
+    if (session.dialog == Dialog::open) {
+        if (!fs::exists(path, code)) {
+            now.problem = "There is no such file";
+            return;
+        }
+        session.dialog = Dialog::none;
+        return session.open(path);
+    }
+    if (!session.save(path)) {
+        now.problem = session.messages.all().back().text;
+        return;
+    }
+    session.dialog = Dialog::none;
+    if (session.after_unsaved)
+        std::exchange(session.after_unsaved, {})();
+}
+
+void file_dialog(Session& session) {
+    FileChoice& now = choice();
+    ImGui::TextDisabled("%s", now.folder.c_str());
+    folder_list();
+    if (ImGui::IsWindowAppearing())
+        ImGui::SetKeyboardFocusHere();
+    const bool enter = ui::text_box("name", now.name, "Name, or a whole path", 36.0f * ui::unit(), true);
+    if (!now.problem.empty()) {
+        ImGui::PushTextWrapPos(36.0f * ui::unit());
+        ImGui::TextColored(ImVec4(1.0f, 0.5f, 0.42f, 1.0f), "%s", now.problem.c_str());
+        ui::note("problem", now.problem);
+        ImGui::PopTextWrapPos();
+    }
+    const bool saves = session.dialog == Dialog::save_as;
+    if (ui::button(saves ? "Save" : "Open", {}, !now.name.empty(), 8.0f * ui::unit()) || enter)
+        choose(session);
+    ImGui::SameLine();
+    if (ui::button("Cancel", {}, true, 8.0f * ui::unit())) {
+        session.dialog = Dialog::none;
+        session.after_unsaved = {};
+    }
+}
+
+void unsaved_dialog(Session& session) {
+    ImGui::Text("%s has edits that were not saved.", session.file_name().c_str());
+    ImGui::Dummy(ImVec2(0.0f, 0.4f * ui::unit()));
+    const std::filesystem::path& path = session.document->path();
+    const bool in_place = path.string().ends_with(".scene.json") && !is_built_in(path);
+    if (ui::button(in_place ? "Save" : "Save as...", {}, true, 8.0f * ui::unit())) {
+        session.dialog = Dialog::none;
+        if (!in_place)
+            session.dialog = Dialog::save_as; // goes on from there
+        else if (session.save(session.document->path()))
+            std::exchange(session.after_unsaved, {})();
+    }
+    ImGui::SameLine();
+    if (ui::button("Discard", "The edits are lost", true, 8.0f * ui::unit())) {
+        session.dialog = Dialog::none;
+        std::exchange(session.after_unsaved, {})();
+    }
+    ImGui::SameLine();
+    if (ui::button("Cancel", {}, true, 8.0f * ui::unit())) {
+        session.dialog = Dialog::none;
+        session.after_unsaved = {};
+    }
+}
+
+// What would be restored is said before it is.
+void recover_dialog(Session& session) {
+    const Recovered recovered = session.recovered.back();
+    const std::string file = recovered.file.empty() ? "a scene without a file" : recovered.file;
+    ImGui::PushTextWrapPos(36.0f * ui::unit());
+    ImGui::Text("The program ended while %s had unsaved edits (%llu). The last ones:", file.c_str(),
+                static_cast<unsigned long long>(recovered.count));
+    ImGui::PopTextWrapPos();
+    ImGui::BeginChild("edits", ImVec2(36.0f * ui::unit(), 9.0f * ui::unit()), true);
+    for (const std::string& edit : recovered.edits)
+        ImGui::BulletText("%s", edit.c_str());
+    ImGui::EndChild();
+    ImGui::TextDisabled("They open as a scene of their own; no file is changed.");
+    const auto next = [&] {
+        session.recovered.pop_back();
+        if (session.recovered.empty())
+            session.dialog = Dialog::none;
+    };
+    if (ui::button("Recover", {}, true, 8.0f * ui::unit())) {
+        session.recover(recovered);
+        session.dialog = Dialog::none;
+        session.recovered.pop_back();
+    }
+    ImGui::SameLine();
+    if (ui::button("Discard", "The edits are lost", true, 8.0f * ui::unit())) {
+        Recovery::discard(recovered);
+        next();
+    }
+    ImGui::SameLine();
+    if (ui::button("Later", "They are offered again at the next start", true, 8.0f * ui::unit()))
+        next();
+}
+
+const char* title_of(Dialog dialog) {
+    switch (dialog) {
+    case Dialog::open:
+        return "Open a scene";
+    case Dialog::save_as:
+        return "Save the scene";
+    case Dialog::unsaved:
+        return "Unsaved edits";
+    case Dialog::recover:
+        return "Unsaved edits of an earlier run";
+    case Dialog::none:
+        break;
+    }
+    return "";
+}
+
+} // namespace
+
+void draw_dialogs(Session& session) {
+    static Dialog shown = Dialog::none;
+    const ui::Scope scope("dialog");
+    if (session.dialog != shown) {
+        shown = session.dialog;
+        if (shown == Dialog::open || shown == Dialog::save_as)
+            begin_choice(session);
+        if (shown != Dialog::none)
+            ImGui::OpenPopup(title_of(shown));
+    }
+    if (shown == Dialog::none)
+        return;
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    if (!ImGui::BeginPopupModal(title_of(shown), nullptr, ImGuiWindowFlags_AlwaysAutoResize))
+        return;
+    if (shown == Dialog::unsaved)
+        unsaved_dialog(session);
+    else if (shown == Dialog::recover)
+        recover_dialog(session);
+    else
+        file_dialog(session);
+    const bool escape = ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false);
+    if (escape && session.dialog == shown) {
+        session.dialog = Dialog::none;
+        session.after_unsaved = {};
+    }
+    if (session.dialog != shown) {
+        shown = Dialog::none; // another one opens in the next frame
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,121 @@
+// Every setting of the lighting, from the descriptions.
+#include "editor/panels/panel.h"
+#include "editor/window/cost_thread.h"
+#include "editor/window/fields.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+namespace sunfleck::editor {
+namespace {
+
+class Lighting final : public Panel {
+public:
+    void draw(Session& session) override;
+
+private:
+    bool shown(const Field& field) const;
+    void part(Session& session, const gi::Settings::ConstPart& now, const gi::Settings::ConstPart& usual);
+    std::string filter_;
+    bool only_changed_ = false;
+};
+
+// "ShadowSettings" -> "Shadow settings"
+std::string title_of(std::string_view name) {
+    std::string result;
+    for (const char letter : name) {
+        if (std::isupper(static_cast<unsigned char>(letter)) != 0 && !result.empty())
+            result += ' ';
+        result += result.empty() ? letter : char(std::tolower(static_cast<unsigned char>(letter)));
+    }
+    return result;
+}
+
+bool Lighting::shown(const Field& field) const {
+    return filter_.empty() || field.name.find(filter_) != std::string_view::npos ||
+           readable_name(field.name).find(filter_) != std::string::npos;
+}
+
+// What the value costs over the usual one: asked for, or found.
+void cost_row(Session& session, const Field& field, bool changed) {
+    const Cost cost = session.cost != nullptr ? session.cost->cost() : Cost();
+    const bool is_measured = cost.setting == field.name;
+    if (!changed && !is_measured)
+        return;
+    const ui::Scope scope(field.name);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TableNextColumn();
+    if (changed && (!is_measured || cost.finished)) {
+        if (ui::button("Measure",
+                       "What this value costs over the default: both are drawn by turns, for a minute at most"))
+            session.measure_cost(std::string(field.name));
+        ImGui::SameLine();
+    }
+    if (!is_measured)
+        return ImGui::NewLine();
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("%s", cost_text(cost).c_str());
+    ui::note("cost", cost_text(cost));
+    std::string passes;
+    for (const auto& [name, interval] : cost.passes) {
+        char line[120];
+        std::snprintf(line, sizeof line, "%s  %+.2f ms (%.2f to %.2f)\n", name.c_str(), interval.estimate, interval.low,
+                      interval.high);
+        passes += line;
+    }
+    ui::tooltip(passes.empty() ? "No pass changed measurably" : "Passes that changed:\n" + passes);
+    ImGui::PopTextWrapPos();
+}
+
+void Lighting::part(Session& session, const gi::Settings::ConstPart& now, const gi::Settings::ConstPart& usual) {
+    std::vector<const Field*> fields;
+    for (const Field& field : now.type->fields) {
+        const bool changed = field_to_text(field, now.values) != field_to_text(field, usual.values);
+        if (shown(field) && (changed || !only_changed_))
+            fields.push_back(&field);
+    }
+    if (fields.empty())
+        return;
+    const bool open = ImGui::CollapsingHeader(title_of(now.type->name).c_str(), ImGuiTreeNodeFlags_DefaultOpen);
+    ui::note(now.type->name, open ? "open" : "");
+    ui::tooltip(now.type->tooltip);
+    if (!open || !begin_fields(std::string(now.type->name).c_str()))
+        return;
+    for (const Field* field : fields) {
+        FieldSource source;
+        source.field = field;
+        source.objects = {now.values};
+        source.defaults = usual.values;
+        source.gesture = "Set " + readable_name(field->name);
+        source.set = [&](std::size_t, const std::string& text) {
+            return session.document->set_setting(field->name, text);
+        };
+        field_row(session, source);
+        cost_row(session, *field, field_to_text(*field, now.values) != field_to_text(*field, usual.values));
+    }
+    end_fields();
+}
+
+void Lighting::draw(Session& session) {
+    static const gi::Settings usual;
+    const ui::Scope scope("lighting");
+    ui::text_box("search", filter_, "Search settings", -9.0f * ui::unit());
+    ImGui::SameLine();
+    ui::toggle("Changed only", only_changed_, "Only settings that differ from their defaults");
+    ImGui::BeginChild("settings");
+    const auto now = std::as_const(session.document->settings()).parts();
+    const auto defaults = usual.parts();
+    for (std::size_t i = 0; i < now.size(); ++i)
+        part(session, now[i], defaults[i]);
+    ImGui::EndChild();
+}
+
+} // namespace
+
+std::unique_ptr<Panel> make_lighting() {
+    return std::make_unique<Lighting>();
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,193 @@
+// What frames took: their history with median, 95th percentile and budget, and the stages and passes of one of them.
+#include "editor/panels/panel.h"
+#include "engine/core/file.h"
+#include "engine/statistics/summary.h"
+#include "viewer/trace.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace sunfleck::editor {
+namespace {
+
+class Profile final : public Panel {
+public:
+    void draw(Session& session) override;
+
+private:
+    void controls(Session& session);
+    void save(Session& session, bool trace) const;
+    void history(const std::deque<ProfiledFrame>& frames);
+    void graph(const char* name, const std::vector<gpu::ScopeTime>& scopes, double whole);
+    std::uint64_t chosen_ = 0; // number of a frame; 0: the newest
+    float budget_ms_ = 33.3f;
+};
+
+ImU32 colour_of_name(const std::string& name) {
+    std::uint32_t hash = 2166136261u;
+    for (const char letter : name)
+        hash = (hash ^ std::uint8_t(letter)) * 16777619u;
+    float red = 0.0f, green = 0.0f, blue = 0.0f;
+    ImGui::ColorConvertHSVtoRGB(float(hash % 360u) / 360.0f, 0.45f, 0.62f, red, green, blue);
+    return IM_COL32(int(red * 255.0f), int(green * 255.0f), int(blue * 255.0f), 255);
+}
+
+std::string milliseconds(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f ms", value);
+    return text;
+}
+
+std::string table_of(const std::deque<ProfiledFrame>& frames) {
+    std::string text = "frame,row,name,begin_ms,end_ms\n";
+    const auto rows = [&](const ProfiledFrame& frame, const char* row, const std::vector<gpu::ScopeTime>& scopes) {
+        for (const gpu::ScopeTime& scope : scopes)
+            text += std::to_string(frame.number) + "," + row + "," + scope.name + "," + std::to_string(scope.begin_ms) +
+                    "," + std::to_string(scope.end_ms) + "\n";
+    };
+    for (const ProfiledFrame& frame : frames) {
+        rows(frame, "CPU", frame.statistics.cpu_scopes);
+        rows(frame, "GPU", frame.statistics.gpu_scopes);
+    }
+    return text;
+}
+
+// In the folder that the program was started in.
+void Profile::save(Session& session, bool trace) const {
+    std::error_code code;
+    const std::filesystem::path path =
+        std::filesystem::current_path(code) / (trace ? "sunfleck_trace.json" : "sunfleck_frames.csv");
+    Status written;
+    if (trace) {
+        viewer::Trace frames;
+        for (const ProfiledFrame& frame : session.frames)
+            frames.add(frame.statistics);
+        written = frames.write(path);
+    } else {
+        written = write_file(path, table_of(session.frames));
+    }
+    if (session.messages.check(written))
+        session.messages.say("Wrote " + path.string());
+}
+
+void Profile::controls(Session& session) {
+    if (ui::button(session.profiling ? "Pause##pause" : "Go on##pause", "Whether further frames are kept"))
+        session.profiling = !session.profiling;
+    ImGui::SameLine();
+    if (ui::button("Newest", "Follow the newest frame", chosen_ != 0))
+        chosen_ = 0;
+    ImGui::SameLine();
+    if (ui::button("Save trace", "sunfleck_trace.json here, for chrome://tracing or ui.perfetto.dev",
+                   !session.frames.empty()))
+        save(session, true);
+    ImGui::SameLine();
+    if (ui::button("Save CSV", "sunfleck_frames.csv here", !session.frames.empty()))
+        save(session, false);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(7.0f * ui::unit());
+    ImGui::DragFloat("##budget", &budget_ms_, 0.1f, 1.0f, 1000.0f, "budget %.1f ms");
+    ui::note("budget", ui::number_text(double(budget_ms_), false));
+}
+
+// A bar a frame; click one to look at it.
+void Profile::history(const std::deque<ProfiledFrame>& frames) {
+    std::vector<double> times;
+    times.reserve(frames.size());
+    for (const ProfiledFrame& frame : frames)
+        times.push_back(frame.statistics.frame_ms);
+    const double middle = statistics::median(times), high = statistics::percentile(times, 0.95);
+    const double top = std::max(1.15 * high, 1.1 * double(budget_ms_));
+    const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 4.0f * ui::unit());
+    ImGui::InvisibleButton("history", size);
+    ui::note("history", milliseconds(middle) + " median, " + milliseconds(high) + " 95 %");
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(low, ImVec2(low.x + size.x, low.y + size.y), IM_COL32(16, 15, 14, 255));
+    const float wide = size.x / float(ProfiledFrame::most);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const float x = low.x + float(i) * wide, height = float(std::min(times[i] / top, 1.0)) * size.y;
+        const bool chosen = frames[i].number == chosen_;
+        list->AddRectFilled(ImVec2(x, low.y + size.y - height), ImVec2(x + std::max(wide - 0.5f, 1.0f), low.y + size.y),
+                            chosen                          ? IM_COL32(255, 255, 255, 255)
+                            : times[i] > double(budget_ms_) ? IM_COL32(220, 110, 70, 255)
+                                                            : IM_COL32(110, 160, 110, 255));
+    }
+    const auto line = [&](double value, ImU32 colour, const std::string& text) {
+        const float y = low.y + size.y * (1.0f - float(std::min(value / top, 1.0)));
+        list->AddLine(ImVec2(low.x, y), ImVec2(low.x + size.x, y), colour);
+        list->AddText(ImVec2(low.x + size.x - ImGui::CalcTextSize(text.c_str()).x - 4.0f, y - ui::unit()), colour,
+                      text.c_str());
+    };
+    line(double(budget_ms_), IM_COL32(240, 200, 90, 220), "budget");
+    line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high));
+    if (high > 1.4 * middle)
+        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle));
+    if (!ImGui::IsItemHovered())
+        return;
+    const auto index = std::size_t(std::max((ImGui::GetIO().MousePos.x - low.x) / wide, 0.0f));
+    if (index < frames.size()) {
+        ImGui::SetTooltip("frame %llu: %s", static_cast<unsigned long long>(frames[index].number),
+                          milliseconds(times[index]).c_str());
+        if (ImGui::IsMouseClicked(0))
+            chosen_ = frames[index].number;
+    }
+}
+
+// Scopes as they lie in one another; they come in the order of their beginnings.
+void Profile::graph(const char* name, const std::vector<gpu::ScopeTime>& scopes, double whole) {
+    const ui::Scope names(name);
+    const float row = 1.3f * ui::unit(), label_width = 3.0f * ui::unit();
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x - label_width;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddText(low, ImGui::GetColorU32(ImGuiCol_TextDisabled), name);
+    std::vector<double> ends;
+    std::size_t deepest = 0;
+    for (const gpu::ScopeTime& scope : scopes) {
+        while (!ends.empty() && scope.begin_ms >= ends.back())
+            ends.pop_back();
+        const float x = low.x + label_width + width * float(scope.begin_ms / whole);
+        const float end = low.x + label_width + width * float(scope.end_ms / whole);
+        const ImVec2 from(x, low.y + float(ends.size()) * row), to(std::max(end, x + 1.0f), from.y + row - 1.0f);
+        ends.push_back(scope.end_ms);
+        deepest = std::max(deepest, ends.size());
+        list->AddRectFilled(from, to, colour_of_name(scope.name));
+        if (to.x - from.x > 2.0f * ui::unit()) {
+            list->PushClipRect(from, to, true);
+            list->AddText(ImVec2(from.x + 3.0f, from.y), IM_COL32(255, 255, 255, 255), scope.name.c_str());
+            list->PopClipRect();
+        }
+        const std::string time = milliseconds(scope.end_ms - scope.begin_ms);
+        ui::note_place(scope.name, time, from, to);
+        if (ImGui::IsMouseHoveringRect(from, to) && ImGui::IsWindowHovered())
+            ImGui::SetTooltip("%s: %s, from %.2f ms on", scope.name.c_str(), time.c_str(), scope.begin_ms);
+    }
+    ImGui::Dummy(ImVec2(width, float(std::max<std::size_t>(deepest, 1)) * row));
+}
+
+void Profile::draw(Session& session) {
+    const ui::Scope scope("profile");
+    controls(session);
+    if (session.frames.empty())
+        return ImGui::TextDisabled("No frame has been drawn yet");
+    history(session.frames);
+    const ProfiledFrame* frame = &session.frames.back();
+    for (const ProfiledFrame& one : session.frames)
+        if (one.number == chosen_)
+            frame = &one;
+    ImGui::Text("Frame %llu: %s", static_cast<unsigned long long>(frame->number),
+                milliseconds(frame->statistics.frame_ms).c_str());
+    double whole = 1e-3;
+    for (const auto* scopes : {&frame->statistics.cpu_scopes, &frame->statistics.gpu_scopes})
+        for (const gpu::ScopeTime& one : *scopes)
+            whole = std::max(whole, one.end_ms);
+    graph("CPU", frame->statistics.cpu_scopes, whole);
+    graph("GPU", frame->statistics.gpu_scopes, whole);
+}
+
+} // namespace
+
+std::unique_ptr<Panel> make_profile() {
+    return std::make_unique<Profile>();
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,65 @@
+// One line: the newest message, what the lighting is doing, and what a frame takes.
+#include "editor/panels/panel.h"
+#include "editor/window/opening.h"
+
+#include <cstdio>
+
+namespace sunfleck::editor {
+namespace {
+
+void progress(const char* name, const std::string& text, float share) {
+    ImGui::ProgressBar(share, ImVec2(14.0f * ui::unit(), 0.0f), text.c_str());
+    ui::note(name, text);
+    ImGui::SameLine();
+}
+
+void newest_message(Session& session) {
+    if (session.messages.all().empty())
+        return ImGui::TextDisabled("Right button and W A S D: fly. Click: select. F: look at the selection.");
+    const Message& message = session.messages.all().back();
+    const ImVec4 red(1.0f, 0.5f, 0.42f, 1.0f);
+    if (message.kind == Message::Kind::error)
+        ImGui::PushStyleColor(ImGuiCol_Text, red);
+    std::string line = message.text;
+    for (char& letter : line)
+        letter = letter == '\n' ? ' ' : letter;
+    ui::label(line);
+    if (message.kind == Message::Kind::error)
+        ImGui::PopStyleColor();
+    ui::note("message", message.text);
+}
+
+std::string frame_text(const ScenePicture& picture) {
+    char text[120];
+    std::snprintf(text, sizeof text, "EV %.1f   %u x %u   %.1f ms", double(picture.ev100),
+                  picture.image.description().width, picture.image.description().height, picture.frame_ms);
+    return text;
+}
+
+} // namespace
+
+void draw_status_bar(Session& session, const ScenePicture* picture) {
+    const ui::Scope scope("status");
+    const SceneStatus status = session.scene.status();
+    ImGui::SetCursorPosX(0.5f * ui::unit());
+    if (session.opening != nullptr)
+        progress("loading", "Loading", session.opening->share());
+    else if (status.building)
+        progress("building", "Lighting", status.share);
+    const std::string frame = picture != nullptr ? frame_text(*picture) : "no picture yet";
+    const float wide = ImGui::CalcTextSize(frame.c_str()).x + ui::unit();
+    const float right = ImGui::GetWindowWidth() - wide;
+    if (ImGui::BeginChild("message", ImVec2(right - ImGui::GetCursorPosX() - ui::unit(), 0.0f), false,
+                          ImGuiWindowFlags_NoScrollbar))
+        newest_message(session);
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(right);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", frame.c_str());
+    ui::note("frame", frame);
+    ui::note_place("settled", picture != nullptr && picture->settled && !status.busy ? "yes" : "no",
+                   ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,283 @@
+// The picture of the scene: flying, picking, and what is drawn over it.
+#include "editor/panels/panel.h"
+
+#include "editor/document/picking.h"
+#include "editor/window/commands.h"
+#include "editor/window/comparison.h"
+#include "editor/window/field_parts.h"
+#include "editor/window/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::editor {
+namespace {
+
+constexpr ImU32 selected_colour = IM_COL32(255, 176, 64, 255), other_colour = IM_COL32(235, 235, 235, 170);
+constexpr std::size_t most_outlines = 200, most_icons = 500;
+
+// A line in the world, cut where it passes the camera.
+void world_line(const Session& session, vec3 from, vec3 to, ImU32 colour, float width) {
+    const scene::CameraView& view = session.camera.view();
+    const vec2 size = viewport_size(session);
+    const float near = scene::camera_near;
+    const float a = project(view, size, from).z, b = project(view, size, to).z;
+    if (a < near && b < near)
+        return;
+    if (a < near)
+        from += (to - from) * ((near - a) / (b - a));
+    if (b < near)
+        to += (from - to) * ((near - b) / (a - b));
+    const vec3 begin = project(view, size, from), end = project(view, size, to);
+    const vec2 corner = viewport_corner(session);
+    ImGui::GetWindowDrawList()->AddLine(ImVec2(corner.x + begin.x, corner.y + begin.y),
+                                        ImVec2(corner.x + end.x, corner.y + end.y), colour, width);
+}
+
+void outline(const Session& session, const Placed& placed) {
+    const auto corner = [&](int index) {
+        const vec3 pick((index & 1) != 0 ? 1.0f : 0.0f, (index & 2) != 0 ? 1.0f : 0.0f, (index & 4) != 0 ? 1.0f : 0.0f);
+        return vec3(placed.world * vec4(glm::mix(placed.bounds.minimum, placed.bounds.maximum, pick), 1.0f));
+    };
+    for (int index = 0; index < 8; ++index)
+        for (const int axis : {1, 2, 4})
+            if ((index & axis) == 0)
+                world_line(session, corner(index), corner(index | axis), selected_colour, 1.5f);
+}
+
+void grid(Session& session) {
+    const float size = session.scene_size();
+    const float step = std::pow(10.0f, std::floor(std::log10(std::max(size, 1e-6f))) - 1.0f) * 5.0f;
+    const int half = 20;
+    for (int i = -half; i <= half; ++i) {
+        const float place = float(i) * step, end = float(half) * step;
+        const ImU32 colour = i == 0 ? IM_COL32(255, 255, 255, 90) : IM_COL32(255, 255, 255, 36);
+        world_line(session, vec3(place, 0.0f, -end), vec3(place, 0.0f, end), colour, 1.0f);
+        world_line(session, vec3(-end, 0.0f, place), vec3(end, 0.0f, place), colour, 1.0f);
+    }
+}
+
+// Of what has no geometry: the colour of its light, if one of its components has any.
+ImU32 icon_colour(Document& document, Entity entity) {
+    for (const ecs::PoolBase* pool : document.registry().described_pools())
+        if (pool->contains(entity))
+            for (const Field& field : pool->description()->fields)
+                if (is_colour(field) && !field.unit.empty()) {
+                    const vec3 light = colour_of(field, pool->address(pool->position_of(entity.index)));
+                    const vec3 shown = glm::sqrt(light / std::max({light.x, light.y, light.z, 1e-12f})) * 255.0f;
+                    return IM_COL32(int(shown.x), int(shown.y), int(shown.z), 255);
+                }
+    return other_colour;
+}
+
+void icon(Session& session, Entity entity, vec3 place) {
+    Document& document = *session.document;
+    const vec2 corner = viewport_corner(session);
+    const ImVec2 centre(corner.x + place.x, corner.y + place.y);
+    const float radius = 0.42f * ui::unit();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddCircleFilled(centre, radius, IM_COL32(20, 18, 16, 180));
+    list->AddCircleFilled(centre, 0.62f * radius, icon_colour(document, entity));
+    list->AddCircle(centre, radius, document.selected(entity) ? selected_colour : other_colour, 0, 1.5f);
+    ui::note_place("icon " + document.name(entity), document.selected(entity) ? "selected" : "",
+                   ImVec2(centre.x - radius, centre.y - radius), ImVec2(centre.x + radius, centre.y + radius));
+}
+
+struct Icon {
+    Entity entity;
+    vec3 place; // pixels and distance
+};
+
+std::vector<Icon> icons(Session& session) {
+    std::vector<Icon> result;
+    for (const Entity entity : without_geometry(*session.document)) {
+        if (result.size() == most_icons)
+            break;
+        if (session.hidden.count(entity) > 0 || session.locked.count(entity) > 0)
+            continue;
+        const vec3 place =
+            project(session.camera.view(), viewport_size(session), vec3(world_of(*session.document, entity)[3]));
+        if (place.z > scene::camera_near && place.x > 0.0f && place.y > 0.0f && place.x < viewport_size(session).x &&
+            place.y < viewport_size(session).y)
+            result.push_back({entity, place});
+    }
+    return result;
+}
+
+} // namespace
+
+Entity Viewport::icon_at(Session& session, vec2 place) const {
+    if (!session.view.show_icons)
+        return ecs::null_entity;
+    Icon nearest{ecs::null_entity, vec3(0.0f, 0.0f, 1e30f)};
+    for (const Icon& one : icons(session))
+        if (glm::length(vec2(one.place) - place) < 0.6f * ui::unit() && one.place.z < nearest.place.z)
+            nearest = one;
+    return nearest.entity;
+}
+
+void Viewport::click(Session& session) {
+    Document& document = *session.document;
+    const vec2 place = pointer_in_viewport(session);
+    Entity entity = icon_at(session, place);
+    if (entity.is_null())
+        entity = pick(document, session.camera.view().position,
+                      ray_through(session.camera.view(), viewport_size(session), place),
+                      [&](Entity one) { return session.hidden.count(one) > 0 || session.locked.count(one) > 0; })
+                     .entity;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (entity.is_null()) {
+        if (!io.KeyCtrl && !io.KeyShift)
+            document.select({});
+        return;
+    }
+    if (io.KeyCtrl || io.KeyShift)
+        document.toggle(entity);
+    else
+        document.select({entity});
+}
+
+void Viewport::navigate(Session& session, bool hovered) {
+    const app::InputState& input = *session.input;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (flying_) {
+        if (!input.mouse_buttons[1]) {
+            flying_ = false;
+            session.window.capture_pointer(false);
+            return;
+        }
+        session.camera.look(input.mouse_motion);
+        session.camera.fly(input, double(io.DeltaTime), session.scene_size());
+        return;
+    }
+    if (!hovered)
+        return;
+    if (input.hit(app::first_mouse_button + 1) && !io.KeyAlt) {
+        flying_ = true;
+        session.window.capture_pointer(true);
+        return;
+    }
+    const vec2 motion(io.MouseDelta.x, io.MouseDelta.y);
+    if (io.MouseDown[2])
+        session.camera.pan(motion, viewport_size(session).y);
+    if (io.MouseDown[0] && io.KeyAlt)
+        session.camera.orbit(motion);
+    if (io.MouseWheel != 0.0f)
+        session.camera.dolly(io.MouseWheel);
+}
+
+// The line between two pictures, and what they are. True if the pointer is on it.
+bool Viewport::split(Session& session) {
+    Comparison& comparison = *session.comparison;
+    if (!comparison.on())
+        return false;
+    const ImVec4 area = session.viewport_area;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const auto label = [&](float x, const std::string& text) {
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str()), low(x, area.y + area.w - 1.8f * ui::unit());
+        list->AddRectFilled(ImVec2(low.x - 4.0f, low.y - 2.0f), ImVec2(low.x + size.x + 4.0f, low.y + size.y + 2.0f),
+                            IM_COL32(20, 18, 16, 200), 3.0f);
+        list->AddText(low, IM_COL32(255, 255, 255, 255), text.c_str());
+    };
+    const std::string other = comparison.with == CompareWith::reference ? "reference, " + comparison.state()
+                                                                        : "kept settings, " + comparison.state();
+    if (comparison.as != CompareAs::split) {
+        label(area.x + ui::unit(), comparison.as == CompareAs::difference ? "8 x error against " + other
+                                   : comparison.flipped                   ? other
+                                                                          : "scene");
+        return false;
+    }
+    const float x = area.x + comparison.split * area.z;
+    list->AddLine(ImVec2(x, area.y), ImVec2(x, area.y + area.w), IM_COL32(255, 255, 255, 200), 1.5f);
+    label(std::max(x - 4.5f * ui::unit(), area.x + 4.0f), "scene");
+    label(x + ui::unit(), other);
+    ImGui::SetCursorScreenPos(ImVec2(x - 5.0f, area.y + 3.0f * ui::unit()));
+    ImGui::InvisibleButton("split", ImVec2(10.0f, std::max(area.w - 6.0f * ui::unit(), 1.0f)));
+    ui::note("split", ui::number_text(double(comparison.split), false));
+    if (ImGui::IsItemActive())
+        comparison.split = std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.z, 0.02f, 0.98f);
+    if (ImGui::IsItemHovered() || ImGui::IsItemActive())
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    return ImGui::IsItemHovered() || ImGui::IsItemActive();
+}
+
+// Switches in the picture's corner.
+void Viewport::toolbar(Session& session) {
+    const ImVec4 area = session.viewport_area;
+    ImGui::SetCursorScreenPos(ImVec2(area.x + 0.5f * ui::unit(), area.y + 0.5f * ui::unit()));
+    const auto mode = [&](const char* name, GizmoMode one, const char* tip) {
+        const bool on = session.gizmo.mode == one;
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(on ? ImGuiCol_ButtonActive : ImGuiCol_Button));
+        if (ui::button(name, tip))
+            session.gizmo.mode = one;
+        ImGui::PopStyleColor();
+        ImGui::SameLine(0.0f, 2.0f);
+    };
+    mode("Select", GizmoMode::none, "Click to select (Q)");
+    mode("Move", GizmoMode::move, "Drag an arrow, a square or the middle (W); Ctrl snaps");
+    mode("Rotate", GizmoMode::rotate, "Drag a ring (E); Ctrl snaps");
+    mode("Scale", GizmoMode::scale, "Drag a handle, or the middle for all (R); Ctrl snaps");
+    ImGui::SameLine(0.0f, ui::unit());
+    if (ui::button(session.gizmo.local ? "Local##axes" : "World##axes", "Axes of the handles (X)"))
+        session.gizmo.local = !session.gizmo.local;
+    ImGui::SameLine(0.0f, 2.0f);
+    if (ui::button(session.gizmo.snap ? "Snap on##snap" : "Snap off##snap",
+                   "Movements in steps; holding Ctrl is the other way about"))
+        session.gizmo.snap = !session.gizmo.snap;
+    ImGui::SameLine(0.0f, ui::unit());
+    if (ui::button(session.view.playing ? "Stop##play" : "Play##play", "Movers move; stopped, all is as it was edited"))
+        session.commands->run(*session.commands->find("View/Play"), session);
+}
+
+void Viewport::overlay(Session& session) {
+    if (session.view.show_grid)
+        grid(session);
+    Document& document = *session.document;
+    if (session.view.show_icons)
+        for (const Icon& one : icons(session))
+            icon(session, one.entity, one.place);
+    std::size_t outlines = 0;
+    for (const Entity entity : document.selection())
+        if (const std::optional<Placed> placed = place_of(document, entity);
+            placed && !placed->bounds.empty() && ++outlines <= most_outlines)
+            outline(session, *placed);
+}
+
+void Viewport::draw(Session& session, const ScenePicture* picture) {
+    const ui::Scope scope("viewport");
+    const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    session.viewport_area =
+        ImVec4(low.x, low.y, std::max(std::floor(room.x), 1.0f), std::max(std::floor(room.y), 1.0f));
+    ImGui::InvisibleButton("picture", ImVec2(session.viewport_area.z, session.viewport_area.w),
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+    ImGui::SetItemAllowOverlap(); // by the switches over it
+    const bool hovered = ImGui::IsItemHovered();
+    ui::note("picture", picture == nullptr ? "empty" : std::to_string(picture->number));
+    const bool active = ImGui::IsItemActive();
+    ImGui::PushClipRect(low, ImVec2(low.x + room.x, low.y + room.y), true);
+    overlay(session);
+    const bool on_split = split(session);
+    const bool on_gizmo = gizmo_.draw(session, hovered && !flying_ && !on_split) || on_split;
+    ImGui::PopClipRect();
+    if (hovered && ImGui::IsMouseClicked(0)) {
+        pressed_ = ImGui::GetIO().MousePos;
+        press_is_click_ = !ImGui::GetIO().KeyAlt && !on_gizmo;
+    }
+    navigate(session, hovered || active);
+    if (press_is_click_ && ImGui::IsMouseReleased(0)) {
+        press_is_click_ = false;
+        const ImVec2 now = ImGui::GetIO().MousePos;
+        if (std::hypot(now.x - pressed_.x, now.y - pressed_.y) < 5.0f)
+            click(session);
+    }
+    toolbar(session);
+    if (const std::string error = session.scene.status().error; !error.empty()) {
+        ImGui::SetCursorScreenPos(ImVec2(low.x + ui::unit(), low.y + 3.0f * ui::unit()));
+        ImGui::PushTextWrapPos(room.x - ui::unit());
+        ImGui::TextColored(ImVec4(1.0f, 0.5f, 0.42f, 1.0f), "%s", error.c_str());
+        ui::note("error", error);
+        ImGui::PopTextWrapPos();
+    }
+}
+
+} // namespace sunfleck::editor

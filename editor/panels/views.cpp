@@ -1,0 +1,79 @@
+// What the viewport shows: the picture, a part of it, or false colours of the lighting, with their legends.
+#include "viewer/views.h"
+#include "editor/panels/panel.h"
+#include "editor/window/fields.h"
+#include "gi_module/technique.h"
+
+namespace sunfleck::editor {
+namespace {
+
+class Views final : public Panel {
+public:
+    void draw(Session& session) override;
+};
+
+void explain(std::string_view tooltip, std::string_view legend, std::string_view unit) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(tooltip.data(), tooltip.data() + tooltip.size());
+    if (!legend.empty())
+        ImGui::TextDisabled("Colours: %s", std::string(legend).c_str());
+    if (!unit.empty())
+        ImGui::TextDisabled("Unit: %s", std::string(unit).c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void picture_views(Session& session) {
+    ui::heading("Picture");
+    for (const viewer::PictureView& view : viewer::picture_views())
+        if (ui::choice(readable_name(view.name) + "##" + std::string(view.name),
+                       session.view.lighting_view.empty() && session.view.picture == view.code, view.tooltip)) {
+            session.view.lighting_view.clear();
+            session.view.picture = view.code;
+        }
+}
+
+void lighting_views(Session& session) {
+    std::string_view group = "none";
+    for (const gi::DebugView* view : gi::debug_views()) {
+        if (view->group != group) {
+            group = view->group;
+            ui::heading(group.empty() ? "Lighting" : readable_name(group));
+        }
+        if (ui::choice(readable_name(view->name) + "##" + std::string(view->name),
+                       session.view.lighting_view == view->name, view->tooltip)) {
+            session.view.lighting_view = std::string(view->name);
+            session.view.picture = viewer::picture_view_of(*view);
+        }
+    }
+}
+
+void legend(const Session& session) {
+    for (const gi::DebugView* view : gi::debug_views())
+        if (view->name == session.view.lighting_view)
+            return explain(view->tooltip, view->legend, view->unit);
+    for (const viewer::PictureView& view : viewer::picture_views())
+        if (view.code == session.view.picture)
+            return explain(view.tooltip, view.legend, view.unit);
+}
+
+void Views::draw(Session& session) {
+    const ui::Scope scope("views");
+    if (!ImGui::BeginTable("views", 3, ImGuiTableFlags_SizingStretchSame))
+        return;
+    ImGui::TableNextColumn();
+    picture_views(session);
+    ImGui::TableNextColumn();
+    lighting_views(session);
+    ImGui::TableNextColumn();
+    ui::heading("Legend");
+    legend(session);
+    ImGui::EndTable();
+}
+
+} // namespace
+
+std::unique_ptr<Panel> make_views() {
+    return std::make_unique<Views>();
+}
+
+} // namespace sunfleck::editor

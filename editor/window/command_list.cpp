@@ -1,0 +1,242 @@
+// The commands.
+#include "editor/window/commands.h"
+
+#include "editor/document/picking.h"
+#include "editor/window/comparison.h"
+#include "editor/window/opening.h"
+#include "engine/scene/entity_templates.h"
+#include "gi_module/technique.h"
+
+#include <algorithm>
+
+namespace sunfleck::editor {
+namespace {
+
+constexpr bool with_control = true, with_shift = true;
+
+bool has_selection(Session& session) {
+    return !session.document->selection().empty();
+}
+
+Shortcut control(app::Key key, bool shift = false) {
+    return {key, with_control, shift, false};
+}
+
+// Where something new is seen: ahead, but not behind what stands there.
+vec3 place_ahead(Session& session) {
+    const scene::CameraView& view = session.camera.view();
+    const vec3 forward = glm::normalize(view.target - view.position);
+    const float usual = 0.4f * session.scene_size();
+    const Picked hit = pick(*session.document, view.position, forward);
+    return view.position + forward * (hit.entity.is_null() ? usual : std::min(usual, 0.75f * hit.distance));
+}
+
+void save(Session& session) {
+    const std::filesystem::path& path = session.document->path();
+    if (path.string().ends_with(".scene.json") && !is_built_in(path))
+        session.save(path);
+    else
+        session.dialog = Dialog::save_as;
+}
+
+void select_all(Session& session) {
+    Entities all;
+    for (const Entity root : session.document->roots())
+        for (const Entity entity : session.document->family(root))
+            all.push_back(entity);
+    session.document->select(std::move(all));
+}
+
+void unparent(Session& session) {
+    session.messages.check(reparent(*session.document, session.selected_tops(), ecs::null_entity));
+}
+
+void look_at_selection(Session& session) {
+    session.camera.frame(has_selection(session) ? bounds_of(*session.document, session.selected_tops())
+                                                : bounds_of_all(*session.document));
+}
+
+// All lamps but the selected ones are hidden; once more: all are shown.
+void solo(Session& session) {
+    Document& document = *session.document;
+    std::unordered_set<Entity> others;
+    for (const Entity root : document.roots())
+        for (const Entity entity : document.family(root))
+            if (emits(document, entity) && !document.selected(entity))
+                others.insert(entity);
+    if (session.hidden == others)
+        session.hidden.clear();
+    else
+        session.hidden = std::move(others);
+}
+
+void hide_selection(Session& session) {
+    for (const Entity top : session.selected_tops())
+        for (const Entity entity : session.document->family(top))
+            session.hidden.insert(entity);
+}
+
+void lock_selection(Session& session) {
+    for (const Entity entity : session.document->selection())
+        if (session.locked.erase(entity) == 0)
+            session.locked.insert(entity);
+}
+
+} // namespace
+
+void add_file_commands(std::vector<Command>& list) {
+    list.push_back({"File", "New", "An empty scene", control('N'), [](Session& session) {
+                        session.unless_unsaved([&session] { session.take(std::make_shared<Document>()); });
+                    }});
+    list.push_back({"File", "Open...", "A .gltf, .glb or .scene.json file; files may also be dropped on the window",
+                    control('O'), [](Session& session) { session.dialog = Dialog::open; }});
+    list.push_back({"File", "Save", "Writes a .scene.json file, with geometry and settings", control('S'), save});
+    list.push_back({"File", "Save as...", "", control('S', with_shift),
+                    [](Session& session) { session.dialog = Dialog::save_as; }});
+    list.push_back({"File", "Quit", "", control('Q'),
+                    [](Session& session) { session.unless_unsaved([&session] { session.quit = true; }); }});
+}
+
+void add_edit_commands(std::vector<Command>& list) {
+    list.push_back({"Edit", "Undo", "", control('Z'), [](Session& session) { session.document->undo(); },
+                    [](Session& session) { return session.document->history().can_undo(); }});
+    list.push_back({"Edit", "Redo", "", control('Z', with_shift), [](Session& session) { session.document->redo(); },
+                    [](Session& session) { return session.document->history().can_redo(); }});
+    list.push_back({"Edit",
+                    "Delete",
+                    "The selection, with all that is below it",
+                    {app::key_delete},
+                    [](Session& session) { remove(*session.document, session.document->selection()); },
+                    has_selection});
+    list.push_back({"Edit", "Duplicate", "", control('D'),
+                    [](Session& session) { duplicate(*session.document, session.document->selection()); },
+                    has_selection});
+    list.push_back({"Edit", "Group", "Puts the selection under a new entity", control('G'),
+                    [](Session& session) { group(*session.document, session.document->selection()); }, has_selection});
+    list.push_back({"Edit", "Move to top", "Out of what it is below; its place in the world stays",
+                    control('G', with_shift), unparent, has_selection});
+    list.push_back({"Edit", "Select all", "", control('A'), select_all});
+    list.push_back({"Edit",
+                    "Select none",
+                    "",
+                    {app::key_escape},
+                    [](Session& session) { session.document->select({}); },
+                    has_selection});
+}
+
+void add_show_commands(std::vector<Command>& list) {
+    list.push_back({"Show",
+                    "Hide",
+                    "The selection and what is below it, light included; the file keeps it",
+                    {'H'},
+                    hide_selection,
+                    has_selection});
+    list.push_back({"Show",
+                    "Show all",
+                    "",
+                    {'H', false, with_shift},
+                    [](Session& session) { session.hidden.clear(); },
+                    [](Session& session) { return !session.hidden.empty(); }});
+    list.push_back({"Show",
+                    "Solo lamps",
+                    "Light from the selection alone; once more: from all",
+                    {'L'},
+                    solo,
+                    [](Session& session) { return has_selection(session) || !session.hidden.empty(); }});
+    list.push_back({"Show", "Lock", "Clicks in the picture leave locked entities alone; once more: not", control('L'),
+                    lock_selection, has_selection});
+}
+
+void add_gizmo_commands(std::vector<Command>& list) {
+    const auto mode = [&](const char* name, const char* tip, app::Key key, GizmoMode one) {
+        list.push_back({"Tools",
+                        name,
+                        tip,
+                        {key},
+                        [one](Session& session) { session.gizmo.mode = one; },
+                        {},
+                        [one](Session& session) { return session.gizmo.mode == one; }});
+    };
+    mode("Select", "Without handles", 'Q', GizmoMode::none);
+    mode("Move", "Handles that move the selection", 'W', GizmoMode::move);
+    mode("Rotate", "Rings that rotate the selection", 'E', GizmoMode::rotate);
+    mode("Scale", "Handles that scale the selection", 'R', GizmoMode::scale);
+    list.push_back({"Tools",
+                    "Local axes",
+                    "Handles along the axes of what is selected last",
+                    {'X'},
+                    [](Session& session) { session.gizmo.local = !session.gizmo.local; },
+                    {},
+                    [](Session& session) { return session.gizmo.local; }});
+    list.push_back({"Tools",
+                    "Snap",
+                    "Movements in steps; holding Ctrl is the other way about",
+                    {},
+                    [](Session& session) { session.gizmo.snap = !session.gizmo.snap; },
+                    {},
+                    [](Session& session) { return session.gizmo.snap; }});
+}
+
+void add_template_commands(std::vector<Command>& list) {
+    for (const scene::EntityTemplate& source : scene::entity_templates())
+        list.push_back({"Add", std::string(source.name), std::string(source.tooltip), {}, [&source](Session& session) {
+                            add_from(*session.document, source, place_ahead(session), 0.1f * session.scene_size());
+                        }});
+}
+
+void add_view_commands(std::vector<Command>& list) {
+    list.push_back(
+        {"View", "Look at selection", "Or at the whole scene, if nothing is selected", {'F'}, look_at_selection});
+    list.push_back({"View", "Look at everything", "", {app::key_home}, [](Session& session) {
+                        session.camera.frame(bounds_of_all(*session.document));
+                    }});
+    list.push_back({"View",
+                    "Grid",
+                    "Metres on the ground",
+                    {},
+                    [](Session& session) { session.view.show_grid = !session.view.show_grid; },
+                    {},
+                    [](Session& session) { return session.view.show_grid; }});
+    list.push_back({"View",
+                    "Icons",
+                    "Of lamps, cameras and groups, which have no geometry",
+                    {},
+                    [](Session& session) { session.view.show_icons = !session.view.show_icons; },
+                    {},
+                    [](Session& session) { return session.view.show_icons; }});
+    list.push_back({"View",
+                    "Light samples",
+                    "A line for each, in its colour",
+                    {},
+                    [](Session& session) { session.view.show_samples = !session.view.show_samples; },
+                    {},
+                    [](Session& session) { return session.view.show_samples; }});
+    list.push_back({"View",
+                    "Flip",
+                    "The scene, or what it is compared with",
+                    {'T'},
+                    [](Session& session) {
+                        session.comparison->as = CompareAs::flip;
+                        session.comparison->flipped = !session.comparison->flipped;
+                    },
+                    [](Session& session) { return session.comparison->on(); },
+                    [](Session& session) { return session.comparison->flipped; }});
+    list.push_back({"View",
+                    "Play",
+                    "Movers move; stopped, all is as it was edited",
+                    control(app::key_space),
+                    [](Session& session) {
+                        session.view.playing = !session.view.playing;
+                        if (!session.view.playing)
+                            session.scene.rewind();
+                    },
+                    {},
+                    [](Session& session) { return session.view.playing; }});
+    list.push_back({"View",
+                    "Rebuild the lighting",
+                    "From nothing, as when the saved scene is opened",
+                    {app::key_f1 + 4},
+                    [](Session& session) { session.rebuild = true; }});
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,96 @@
+#include "editor/window/commands.h"
+
+#include "editor/window/widgets.h"
+
+#include <algorithm>
+
+namespace sunfleck::editor {
+
+std::string shortcut_text(const Shortcut& shortcut) {
+    if (shortcut.key == app::no_key)
+        return {};
+    std::string key = app::key_name(shortcut.key);
+    key[0] = char(std::toupper(static_cast<unsigned char>(key[0])));
+    return std::string(shortcut.control ? "Ctrl+" : "") + (shortcut.shift ? "Shift+" : "") +
+           (shortcut.alt ? "Alt+" : "") + key;
+}
+
+Shortcut shortcut_from_text(const std::string& text) {
+    Shortcut result;
+    std::string rest = text;
+    const auto take = [&](std::string_view prefix) {
+        if (!rest.starts_with(prefix) || rest.size() == prefix.size())
+            return false;
+        rest.erase(0, prefix.size());
+        return true;
+    };
+    result.control = take("Ctrl+");
+    result.shift = take("Shift+");
+    result.alt = take("Alt+");
+    for (app::Key key = 0; key < app::key_count; ++key)
+        if (shortcut_text({key}) == rest)
+            result.key = key;
+    return result;
+}
+
+Commands::Commands() {
+    add_file_commands(all_);
+    add_edit_commands(all_);
+    add_template_commands(all_);
+    add_show_commands(all_);
+    add_gizmo_commands(all_);
+    add_view_commands(all_);
+}
+
+Command* Commands::find(std::string_view path) {
+    const auto found = std::find_if(all_.begin(), all_.end(), [&](const Command& one) { return one.path() == path; });
+    return found == all_.end() ? nullptr : &*found;
+}
+
+void Commands::run(Command& command, Session& session) {
+    if (!command.is_enabled(session))
+        return;
+    ++command.uses;
+    command.run(session);
+}
+
+void Commands::take_keys(const app::InputState& input, Session& session) {
+    const auto down = [&](app::Key left, app::Key right) { return input.down(left) || input.down(right); };
+    const bool control = down(app::key_left_control, app::key_right_control);
+    const bool shift = down(app::key_left_shift, app::key_right_shift),
+               alt = down(app::key_left_alt, app::key_right_alt);
+    for (const app::Key key : input.went_down) {
+        const Shortcut pressed{key, control, shift, alt};
+        for (Command& command : all_)
+            if (command.shortcut == pressed)
+                return run(command, session);
+    }
+}
+
+void Commands::bind(Command& command, const Shortcut& shortcut) {
+    for (Command& other : all_)
+        if (shortcut.key != app::no_key && other.shortcut == shortcut)
+            other.shortcut = {};
+    command.shortcut = shortcut;
+}
+
+std::vector<std::string> Commands::groups() const {
+    std::vector<std::string> result;
+    for (const Command& command : all_)
+        if (std::find(result.begin(), result.end(), command.group) == result.end())
+            result.push_back(command.group);
+    return result;
+}
+
+void Commands::menu(const std::string& group, Session& session) {
+    for (Command& command : all_) {
+        if (command.group != group)
+            continue;
+        if (ui::menu_item(command.name, shortcut_text(command.shortcut), command.is_enabled(session),
+                          command.is_checked(session)))
+            run(command, session);
+        ui::tooltip(command.tooltip);
+    }
+}
+
+} // namespace sunfleck::editor

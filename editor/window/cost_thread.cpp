@@ -1,0 +1,211 @@
+#include "editor/window/cost_thread.h"
+
+#include "engine/statistics/clipped_sum.h"
+#include "engine/statistics/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sunfleck::editor {
+namespace {
+
+using CostClock = std::chrono::steady_clock;
+
+constexpr int warm_up_frames = 4, frames_of_block = 3;
+constexpr std::size_t fewest_pairs = 10;
+constexpr double longest_seconds = 60.0, precise_share = 0.05; // of the frame: how wide the interval may be
+constexpr double two_sided_95 = 1.959964;
+
+double seconds_of(CostClock::duration duration) {
+    return std::chrono::duration<double>(duration).count();
+}
+
+} // namespace
+
+CostInterval cost_interval(const std::vector<double>& differences) {
+    return {statistics::clipped_centre(differences, 0.0), statistics::clipped_centre(differences, two_sided_95),
+            statistics::clipped_centre(differences, -two_sided_95)};
+}
+
+std::string cost_text(const Cost& cost) {
+    char text[160];
+    if (!cost.error.empty())
+        return cost.error;
+    if (!std::isfinite(cost.frame.low) || !std::isfinite(cost.frame.high) || cost.pairs < 2)
+        return "measuring ...";
+    const double most = std::max(std::abs(cost.frame.low), std::abs(cost.frame.high));
+    if (!cost.frame.includes_zero())
+        std::snprintf(text, sizeof text, "%+.2f ms (%.2f to %.2f) of %.1f ms over %s", cost.frame.estimate,
+                      cost.frame.low, cost.frame.high, cost.frame_ms, cost.from.c_str());
+    else if (most <= precise_share * cost.frame_ms)
+        std::snprintf(text, sizeof text, "no measurable effect over %s (less than %.2f ms)", cost.from.c_str(), most);
+    else
+        std::snprintf(text, sizeof text, "not measurable over %s (%.2f to %.2f ms)", cost.from.c_str(), cost.frame.low,
+                      cost.frame.high);
+    return std::string(text) + (cost.finished ? "" : " ...");
+}
+
+// One comparison on its way.
+struct CostThread::Work {
+    SceneChange scene;
+    std::string setting;
+    gi::Settings from;
+    ViewRequest view;
+    std::vector<double> frame_ms, frame; // with the first value; differences
+    std::map<std::string, std::vector<double>> passes;
+    std::string to_text;
+};
+
+CostThread::CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake)
+    : device_(device), busy_(std::move(busy)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+CostThread::~CostThread() {
+    {
+        const std::scoped_lock lock(mutex_);
+        ends_ = abandoned_ = true;
+    }
+    changed_.notify_one();
+    thread_.join();
+}
+
+void CostThread::measure(SceneChange scene, const std::string& setting, const gi::Settings& from,
+                         const ViewRequest& view) {
+    auto work = std::make_unique<Work>();
+    work->to_text = scene.settings->get(setting);
+    work->scene = std::move(scene);
+    work->setting = setting;
+    work->from = from;
+    work->view = view;
+    {
+        const std::scoped_lock lock(mutex_);
+        cost_ = {};
+        cost_.setting = setting;
+        cost_.from = from.get(setting);
+        cost_.to = work->to_text;
+        next_ = std::move(work);
+        abandoned_ = true; // what is under way
+    }
+    changed_.notify_one();
+}
+
+void CostThread::stop() {
+    const std::scoped_lock lock(mutex_);
+    next_.reset();
+    abandoned_ = true;
+}
+
+Cost CostThread::cost() const {
+    const std::scoped_lock lock(mutex_);
+    return cost_;
+}
+
+// Until the user's own picture is finished. False: there is nothing to wait for any more.
+bool CostThread::wait_for_turn() const {
+    while (!abandoned_ && busy_())
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    return !abandoned_;
+}
+
+Status CostThread::block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times,
+                         double& frame_ms) {
+    viewer::FrameRequest request;
+    request.camera = view.camera;
+    request.width = view.width;
+    request.height = view.height;
+    request.progress = [this](float) { return !abandoned_; };
+    std::vector<double> frames;
+    std::map<std::string, std::vector<double>> passes;
+    for (int i = 0; i < frames_of_block; ++i) {
+        SUNFLECK_TRY(copy.renderer().render_and_wait(request));
+        const viewer::FrameStatistics& statistics = copy.renderer().statistics();
+        frames.push_back(statistics.frame_ms);
+        for (const auto& [name, time] : statistics.gpu_ms)
+            passes[name].push_back(time);
+        for (const auto& [name, time] : statistics.cpu_ms)
+            passes[name + " (CPU)"].push_back(time);
+    }
+    frame_ms = statistics::median(frames);
+    times.clear();
+    for (const auto& [name, values] : passes)
+        times[name] = statistics::median(values);
+    return {};
+}
+
+void CostThread::publish(const Work& work, bool finished) {
+    const std::scoped_lock lock(mutex_);
+    if (next_ != nullptr) // something else is asked for already
+        return;
+    cost_.pairs = work.frame.size();
+    cost_.frame_ms = statistics::median(work.frame_ms);
+    cost_.frame = cost_interval(work.frame);
+    cost_.finished = finished;
+    cost_.passes.clear();
+    for (const auto& [name, differences] : work.passes)
+        if (const CostInterval interval = cost_interval(differences);
+            differences.size() == work.frame.size() && !interval.includes_zero())
+            cost_.passes.emplace_back(name, interval);
+    std::sort(cost_.passes.begin(), cost_.passes.end(),
+              [](const auto& a, const auto& b) { return std::abs(a.second.estimate) > std::abs(b.second.estimate); });
+}
+
+Status CostThread::measure(Work& work) {
+    std::unique_ptr<SceneCopy> copies[2];
+    SceneChange scene = work.scene;
+    for (int i = 0; i < 2; ++i) {
+        SUNFLECK_ASSIGN(copies[i], SceneCopy::create(device_));
+        scene.settings = i == 0 ? work.from : *work.scene.settings;
+        SUNFLECK_TRY(copies[i]->apply(scene));
+        std::map<std::string, double> unused;
+        double frame_ms = 0.0;
+        for (int frame = 0; frame < warm_up_frames && wait_for_turn(); frame += frames_of_block)
+            SUNFLECK_TRY(block(*copies[i], work.view, unused, frame_ms));
+    }
+    const auto began = CostClock::now();
+    for (bool precise = false; !precise && seconds_of(CostClock::now() - began) < longest_seconds;) {
+        std::map<std::string, double> times[2];
+        double frame_ms[2] = {};
+        const int first = int(work.frame.size() % 2); // A B, then B A
+        for (const int turn : {first, 1 - first}) {
+            if (!wait_for_turn())
+                return {};
+            SUNFLECK_TRY(block(*copies[turn], work.view, times[turn], frame_ms[turn]));
+        }
+        work.frame_ms.push_back(frame_ms[0]);
+        work.frame.push_back(frame_ms[1] - frame_ms[0]);
+        for (int i = 0; i < 2; ++i)
+            for (const auto& [name, time] : times[i])
+                work.passes[name].resize(work.frame.size() - 1);
+        for (auto& [name, differences] : work.passes)
+            differences.push_back(times[1][name] - times[0][name]);
+        const CostInterval interval = cost_interval(work.frame);
+        precise = work.frame.size() >= fewest_pairs &&
+                  interval.high - interval.low <= precise_share * statistics::median(work.frame_ms);
+        publish(work, precise);
+        wake_();
+    }
+    publish(work, true);
+    return {};
+}
+
+void CostThread::run() {
+    for (;;) {
+        std::unique_ptr<Work> work;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [this] { return ends_ || next_ != nullptr; });
+            if (ends_)
+                return;
+            work = std::move(next_);
+            abandoned_ = false;
+        }
+        const Status status = measure(*work);
+        if (!status && !abandoned_) {
+            const std::scoped_lock lock(mutex_);
+            cost_.error = status.error().message;
+        }
+        wake_();
+    }
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,63 @@
+// What a setting costs: two copies of the scene, with one value and with the other, are drawn in short blocks by turns
+// (A B B A), so that whatever else the machine does meets both alike. The difference and its interval are those of
+// engine/statistics/clipped_sum.h, one implementation with the frame-time gate.
+#pragma once
+
+#include "editor/window/scene_thread.h"
+
+namespace sunfleck::editor {
+
+// Of a difference, ms: the estimate and its interval at 95 %.
+struct CostInterval {
+    double estimate = 0.0, low = 0.0, high = 0.0;
+    bool includes_zero() const { return low <= 0.0 && high >= 0.0; }
+};
+
+struct Cost {
+    std::string setting, from, to;
+    double frame_ms = 0.0; // with the first value, median
+    CostInterval frame;
+    std::vector<std::pair<std::string, CostInterval>> passes; // whose time changed, the most changed first
+    std::size_t pairs = 0;                                    // of blocks
+    bool finished = false;
+    std::string error;
+};
+
+// The difference of pairs: centre and interval.
+CostInterval cost_interval(const std::vector<double>& differences);
+// "+3.2 ms (2.9 to 3.5)", "no measurable effect (less than 0.4 ms)", or what is under way.
+std::string cost_text(const Cost& cost);
+
+class CostThread {
+public:
+    // `busy`: whether the scene is being drawn for the user, who goes first. `wake`: there is something new.
+    CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake);
+    ~CostThread();
+    CostThread(const CostThread&) = delete;
+    CostThread& operator=(const CostThread&) = delete;
+
+    // Begins to measure, in place of what is being measured. `scene`: everything; its settings are the second ones.
+    void measure(SceneChange scene, const std::string& setting, const gi::Settings& from, const ViewRequest& view);
+    void stop();
+    Cost cost() const;
+
+private:
+    struct Work;
+    void run();
+    Status measure(Work& work);
+    Status block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times, double& frame_ms);
+    bool wait_for_turn() const;
+    void publish(const Work& work, bool finished);
+
+    gpu::Device& device_;
+    const std::function<bool()> busy_;
+    const std::function<void()> wake_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::unique_ptr<Work> next_;
+    Cost cost_;
+    std::atomic<bool> ends_{false}, abandoned_{false};
+    std::thread thread_;
+};
+
+} // namespace sunfleck::editor

@@ -1,0 +1,387 @@
+#include "editor/window/editor.h"
+
+#include "editor/window/comparison.h"
+#include "editor/window/cost_thread.h"
+#include "editor/window/opening.h"
+#include "editor/window/script_files.h"
+#include "editor/window/state_file.h"
+#include "editor/window/style.h"
+#include "engine/app/gui_screen.h"
+#include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
+#include "viewer/built_in_scenes.h"
+
+#include <algorithm>
+#include <deque>
+#include <thread>
+
+namespace sunfleck::editor {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float usual_scale = 0.875f;  // of letters of 16 pixels
+constexpr int frames_after_event = 3;  // until Dear ImGui has settled
+constexpr double longest_sleep = 60.0; // s
+constexpr double flying_interval = 1.0 / 60.0;
+
+class Program {
+public:
+    explicit Program(const Options& options) : options_(options) {}
+
+    Status run() {
+        SUNFLECK_TRY(start());
+        const Status drawn = loop();
+        const Status finished = finish();
+        return drawn ? finished : drawn;
+    }
+
+private:
+    Status start();
+    Status start_scene();
+    void start_recovery();
+    void wake();
+    Status loop();
+    bool something_new();
+    void finish_opening();
+    void keep_edits();
+    void take_dropped(const app::InputState& input);
+    void take_keys(const app::InputState& input);
+    void tell_scene();
+    Status draw(const app::InputState& input);
+    Status present(const std::shared_ptr<ScenePicture>& picture);
+    void ask_before_closing();
+    void after_frame();
+    Status finish();
+    void keep_camera();
+    float scale() const { return options_.scale > 0.0f ? options_.scale : usual_scale * window_->scale(); }
+
+    const Options& options_;
+    std::unique_ptr<app::Window> window_;
+    std::unique_ptr<gpu::Device> device_;
+    std::unique_ptr<app::Swapchain> swapchain_;
+    std::unique_ptr<app::GuiScreen> screen_;
+    std::atomic<bool> woken_{true};
+    std::unique_ptr<SceneThread> scene_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<Layout> layout_;
+    EditorState state_;
+    std::filesystem::path state_path_;
+    ChangeCollector collector_;
+    HiddenFilter hidden_;
+    std::unique_ptr<Recovery> recovery_;
+    std::uint64_t kept_revision_ = 0; // of the document
+    bool kept_unsaved_ = false;
+    std::optional<Recovered> recovered_from_; // until its edits are kept once more, or were saved
+    std::uint64_t writes_before_ = 0;
+    // By the GUI's serial.
+    std::deque<std::pair<std::uint64_t, std::vector<std::shared_ptr<ScenePicture>>>> on_screen_;
+    std::string title_;
+    std::uint64_t events_ = 0;
+    int frames_due_ = frames_after_event;
+    Clock::time_point last_frame_ = Clock::now();
+    ReportFigures figures_;
+};
+
+Status Program::start() {
+    watch_stop_signals();
+    const NamedFile outputs[] = {{"--widgets", options_.widgets}, {"--report", options_.report}};
+    SUNFLECK_TRY(try_outputs(outputs));
+    std::string problem;
+    state_path_ = options_.state_file.empty() ? usual_state_file() : std::filesystem::path(options_.state_file);
+    state_ = load_state(state_path_, problem);
+    SUNFLECK_ASSIGN(window_, app::Window::create("Sunfleck", options_.width, options_.height));
+    window_->one_by_one(true);
+    SUNFLECK_ASSIGN(device_,
+                    gpu::Device::create({options_.device, options_.validation, window_->instance_extensions()}));
+    SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
+    swapchain_->set_vertical_sync(true);
+    SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
+    screen_->gui().use_window(*window_);
+    screen_->gui().set_style(set_style);
+    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard; // keys are commands here
+    SUNFLECK_TRY(start_scene());
+    if (!problem.empty())
+        session_->messages.say(problem, Message::Kind::warning);
+    return {};
+}
+
+void Program::wake() {
+    woken_ = true;
+    app::Window::wake();
+}
+
+// What earlier runs left, and what this one keeps.
+void Program::start_recovery() {
+    const std::filesystem::path folder = state_path_.parent_path() / "recovery";
+    session_->recovered = Recovery::left_behind(folder);
+    if (!session_->recovered.empty())
+        session_->dialog = Dialog::recover;
+    recovery_ = std::make_unique<Recovery>(folder);
+    if (!recovery_->problem().empty())
+        session_->messages.say(recovery_->problem(), Message::Kind::warning);
+}
+
+Status Program::start_scene() {
+    const auto wakes = [this] { wake(); };
+    scene_ = std::make_unique<SceneThread>(*device_, wakes);
+    session_ = std::make_unique<Session>(*window_, *scene_);
+    session_->recent_files = state_.recent_files;
+    session_->comparison = std::make_unique<Comparison>(*device_, *scene_, wakes);
+    session_->preset_folder = state_path_.parent_path() / "presets";
+    session_->make_cost_thread = [this, wakes] {
+        return std::make_unique<CostThread>(
+            *device_, [this] { return scene_->busy(); }, wakes);
+    };
+    for (const auto& [path, keys] : state_.keys)
+        if (Command* command = session_->commands->find(path))
+            session_->commands->bind(*command, shortcut_from_text(keys));
+    start_recovery();
+    layout_ = std::make_unique<Layout>();
+    layout_->restore(state_.layout);
+    session_->take(session_->document);
+    if (options_.scene.empty())
+        return {};
+    const auto path = viewer::find_scene(options_.scene);
+    if (session_->messages.check(path ? Status() : Status(path.error())))
+        session_->open_now(*path);
+    return {};
+}
+
+// Whether the GUI has to be drawn.
+bool Program::something_new() {
+    if (const std::uint64_t events = window_->event_count(); events != events_) {
+        events_ = events;
+        frames_due_ = frames_after_event;
+    }
+    if (woken_.exchange(false))
+        frames_due_ = std::max(frames_due_, 1);
+    if (layout_->flying())
+        frames_due_ = std::max(frames_due_, 1);
+    return frames_due_ > 0 || window_->has_more();
+}
+
+Status Program::loop() {
+    while (!session_->quit && !stop_requested()) {
+        if (!something_new()) {
+            window_->wait(longest_sleep);
+            ++figures_.wake_ups;
+        }
+        const app::InputState& input = window_->poll();
+        finish_opening();
+        take_dropped(input);
+        ask_before_closing();
+        if (!something_new())
+            continue;
+        if (layout_->flying())
+            std::this_thread::sleep_until(last_frame_ + std::chrono::duration_cast<Clock::duration>(
+                                                            std::chrono::duration<double>(flying_interval)));
+        frames_due_ = std::max(frames_due_ - 1, 0);
+        SUNFLECK_TRY(draw(input));
+    }
+    return {};
+}
+
+void Program::finish_opening() {
+    if (session_->opening == nullptr || !session_->opening->finished())
+        return;
+    const std::filesystem::path path = session_->opening->path();
+    auto opened = session_->opening->take();
+    session_->opening.reset();
+    if (!session_->messages.check(opened ? Status() : Status(opened.error())))
+        return;
+    keep_camera();
+    if (const std::optional<Recovered> recovered = std::exchange(session_->recovering, {})) {
+        (*opened)->forget_file();
+        session_->take(std::move(*opened));
+        recovered_from_ = recovered;
+        writes_before_ = recovery_->writes();
+        return session_->messages.say("Recovered " + std::to_string(recovered->count) +
+                                      " unsaved edits; save them under a name of your choice");
+    }
+    session_->take(std::move(*opened));
+    std::error_code code;
+    if (const auto known = state_.cameras.find(std::filesystem::absolute(path, code).string());
+        known != state_.cameras.end())
+        session_->camera.set(known->second);
+    session_->messages.say("Opened " + path.filename().string() + ", " +
+                           std::to_string(session_->document->entity_count()) + " entities");
+}
+
+void Program::keep_camera() {
+    std::error_code code;
+    if (const std::filesystem::path& path = session_->document->path(); !path.empty())
+        state_.cameras[std::filesystem::absolute(path, code).string()] = session_->camera.view();
+}
+
+void Program::take_dropped(const app::InputState& input) {
+    if (input.dropped.empty())
+        return;
+    if (input.dropped.size() > 1)
+        session_->messages.say(std::to_string(input.dropped.size()) + " files were dropped; only the first is opened",
+                               Message::Kind::warning);
+    session_->open(input.dropped.front());
+}
+
+void Program::ask_before_closing() {
+    if (!window_->should_close())
+        return;
+    window_->keep_open();
+    frames_due_ = frames_after_event;
+    session_->unless_unsaved([this] { session_->quit = true; });
+}
+
+void Program::take_keys(const app::InputState& input) {
+    const bool typing = ImGui::GetIO().WantTextInput || ui::editing_number() || layout_->flying() ||
+                        session_->dialog != Dialog::none || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
+    if (!input.focused && session_->document->in_gesture())
+        session_->document->cancel();
+    if (!typing)
+        session_->commands->take_keys(input, *session_);
+}
+
+// What a crash must not take.
+void Program::keep_edits() {
+    if (recovered_from_ && recovery_->writes() > writes_before_)
+        Recovery::discard(*std::exchange(recovered_from_, {}));
+    const Document& document = *session_->document;
+    const bool unsaved = document.unsaved() && !document.in_gesture();
+    if (document.in_gesture() || (document.revision() == kept_revision_ && unsaved == kept_unsaved_))
+        return;
+    kept_revision_ = document.revision();
+    kept_unsaved_ = unsaved;
+    if (!unsaved)
+        return recovery_->saved();
+    constexpr std::size_t most_names = 20;
+    std::vector<std::string> names;
+    const std::size_t position = document.history().position();
+    for (std::size_t i = position - std::min(position, most_names); i < position; ++i)
+        names.push_back(document.history().entries()[i].name);
+    recovery_->unsaved(document.path().string(), std::move(names), std::max<std::size_t>(position, 1));
+}
+
+// Edits and views go to the scene thread.
+void Program::tell_scene() {
+    if (std::exchange(session_->rebuild, false))
+        collector_.start_over();
+    std::optional<SceneChange> change = collector_.collect(session_->document);
+    if (change)
+        recovery_->change(*change);
+    keep_edits();
+    hidden_.apply(session_->document, session_->hidden, change);
+    ViewRequest wanted;
+    wanted.camera = session_->camera.view();
+    wanted.width = std::uint32_t(session_->viewport_area.z * session_->view.scale);
+    wanted.height = std::uint32_t(session_->viewport_area.w * session_->view.scale);
+    wanted.view = session_->view.picture;
+    wanted.lighting_view = session_->view.lighting_view;
+    wanted.show_samples = session_->view.show_samples;
+    wanted.ev100 = session_->view.ev100;
+    wanted.playing = session_->view.playing;
+    wanted.read_back = session_->comparison->on();
+    session_->comparison->follow(
+        change,
+        [this] {
+            SceneChange everything = ChangeCollector::everything(session_->document);
+            HiddenFilter::hide(session_->hidden, everything);
+            return everything;
+        },
+        wanted);
+    if (change)
+        scene_->change(std::move(*change));
+    if (same_view(wanted, session_->shown))
+        return;
+    session_->shown = wanted;
+    scene_->show(wanted);
+}
+
+Status Program::draw(const app::InputState& input) {
+    SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(screen_->serial()));
+    if (!visible) { // minimised, or resized just now
+        frames_due_ = std::max(frames_due_, 1);
+        window_->wait(0.05);
+        return {};
+    }
+    const auto began = Clock::now();
+    const double seconds = std::chrono::duration<double>(began - last_frame_).count();
+    last_frame_ = began;
+    session_->input = &input;
+    const std::shared_ptr<ScenePicture> picture = scene_->picture();
+    session_->note_frame(picture.get());
+    ui::begin_notes(!options_.widgets.empty());
+    ui::begin_number_boxes();
+    const VkExtent2D extent = swapchain_->extent();
+    screen_->gui().begin_frame(input, extent.width, extent.height, std::min(seconds, 0.1), scale());
+    take_keys(input);
+    layout_->draw(*session_, picture.get());
+    screen_->gui().end_frame();
+    tell_scene();
+    SUNFLECK_TRY(present(picture));
+    figures_.note_frame(1e3 * std::chrono::duration<double>(Clock::now() - began).count());
+    after_frame();
+    return {};
+}
+
+Status Program::present(const std::shared_ptr<ScenePicture>& picture) {
+    SUNFLECK_ASSIGN(const std::uint64_t completed, screen_->completed());
+    while (!on_screen_.empty() && on_screen_.front().first <= completed)
+        on_screen_.pop_front();
+    const ImVec4 area = session_->viewport_area;
+    const VkRect2D place{{int(area.x), int(area.y)}, {std::uint32_t(area.z), std::uint32_t(area.w)}};
+    std::vector<std::shared_ptr<ScenePicture>> held;
+    const std::vector<app::Backdrop> backdrops = session_->comparison->backdrops(picture, place, held);
+    on_screen_.emplace_back(screen_->serial(), std::move(held));
+    return screen_->present(backdrops);
+}
+
+void Program::after_frame() {
+    const std::string title = session_->file_name() + (session_->document->unsaved() ? " * - Sunfleck" : " - Sunfleck");
+    if (title != title_)
+        window_->set_title(title_ = title);
+    if (!options_.widgets.empty() && frames_due_ == 0 && !window_->has_more())
+        if (const Status written = write_widgets(options_.widgets, ui::notes()); !written)
+            session_->messages.check(written);
+}
+
+Status Program::finish() {
+    session_->opening.reset();
+    keep_camera();
+    state_.layout = layout_->state();
+    window_->size(state_.width, state_.height);
+    state_.recent_files = session_->recent_files;
+    state_.keys.clear();
+    Commands usual;
+    for (const Command& command : session_->commands->all())
+        if (const Command* known = usual.find(command.path());
+            known == nullptr || !(known->shortcut == command.shortcut))
+            state_.keys[command.path()] = shortcut_text(command.shortcut);
+    const Status kept = save_state(state_path_, state_);
+    Status reported;
+    if (!options_.report.empty())
+        reported = write_report(options_.report, figures_, *session_, device_->validation_messages());
+    if (!session_->quit && session_->document->unsaved()) // a signal, or an error
+        recovery_->leave();
+    else if (recovered_from_)
+        Recovery::discard(*recovered_from_);
+    recovery_.reset();
+    session_->cost.reset();
+    session_->comparison.reset();
+    scene_.reset(); // cancels, and lets go of its pictures once the GUI has
+    SUNFLECK_TRY(device_->wait_idle());
+    on_screen_.clear();
+    SUNFLECK_TRY(kept);
+    SUNFLECK_TRY(reported);
+    if (device_->validation_messages() > 0)
+        return Error{"validation printed messages (see above)"};
+    return {};
+}
+
+} // namespace
+
+Status run(const Options& options) {
+    Program program(options);
+    return program.run();
+}
+
+} // namespace sunfleck::editor

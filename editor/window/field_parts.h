@@ -1,0 +1,24 @@
+// Described values as the numbers that are shown: angles in degrees, rotations as three angles.
+#pragma once
+
+#include "engine/core/description.h"
+
+namespace sunfleck::editor {
+
+// 0: it is not made of numbers.
+int number_of_parts(const Field& field);
+// The unit that is shown, and how many of it are one of the description's.
+std::string shown_unit(const Field& field);
+double shown_factor(const Field& field);
+// In the unit that is shown.
+double read_part(const Field& field, const void* object, int part);
+// The value as text, with one part replaced. `object` is not changed.
+std::string text_with_part(const Field& field, const void* object, int part, double value);
+// Values of light or colour, which have a colour picker.
+bool is_colour(const Field& field);
+vec3 colour_of(const Field& field, const void* object);
+std::string colour_text(vec3 colour);
+// Tooltip, range, unit and default.
+std::string field_help(const Field& field, const void* defaults);
+
+} // namespace sunfleck::editor

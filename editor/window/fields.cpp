@@ -1,0 +1,231 @@
+#include "editor/window/fields.h"
+
+#include "editor/window/colour_box.h"
+#include "editor/window/field_parts.h"
+#include "editor/window/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+namespace sunfleck::editor {
+namespace {
+
+using Phase = ui::NumberEdit::Phase;
+constexpr ImU32 changed_colour = IM_COL32(240, 178, 80, 255);
+
+bool same_text(const FieldSource& source) {
+    if (source.objects.size() == 1)
+        return true;
+    const std::string first = field_to_text(*source.field, source.objects[0]);
+    return std::all_of(source.objects.begin() + 1, source.objects.end(),
+                       [&](const void* object) { return field_to_text(*source.field, object) == first; });
+}
+
+bool same_part(const FieldSource& source, int part) {
+    const double first = read_part(*source.field, source.objects[0], part);
+    return std::all_of(source.objects.begin() + 1, source.objects.end(),
+                       [&](const void* object) { return read_part(*source.field, object, part) == first; });
+}
+
+// All objects, within the gesture that is open.
+Status set_all(const FieldSource& source, const std::function<std::string(const void*)>& text) {
+    // Setting may move the objects: all texts come first.
+    std::vector<std::string> texts;
+    texts.reserve(source.objects.size());
+    for (const void* object : source.objects)
+        texts.push_back(text(object));
+    for (std::size_t i = 0; i < texts.size(); ++i)
+        SUNFLECK_TRY(source.set(i, texts[i]));
+    return {};
+}
+
+void edit_number(Session& session, const FieldSource& source, int part, const ui::NumberEdit& edit) {
+    Document& document = *session.document;
+    const auto put = [&](double value) {
+        return set_all(source, [&](const void* object) { return text_with_part(*source.field, object, part, value); });
+    };
+    switch (edit.phase) {
+    case Phase::began:
+        return document.begin(source.gesture);
+    case Phase::dragged:
+        // A value that the field does not take (a multiple is needed, say) leaves the one before.
+        if (document.in_gesture())
+            static_cast<void>(put(edit.value));
+        return;
+    case Phase::ended:
+        document.commit();
+        return;
+    case Phase::cancelled:
+        return document.cancel();
+    case Phase::typed: {
+        char* end = nullptr;
+        const double value = std::strtod(edit.text.c_str(), &end);
+        const bool is_number = end != edit.text.c_str() && *end == '\0' && std::isfinite(value);
+        return apply_field_text(session, source, [&](const void* object) {
+            return is_number ? text_with_part(*source.field, object, part, value) : edit.text;
+        });
+    }
+    case Phase::none:
+        return;
+    }
+}
+
+void number_cells(Session& session, const FieldSource& source, int parts, float width) {
+    const Field& field = *source.field;
+    const float gap = 0.25f * ui::unit();
+    static const char* names[] = {"x", "y", "z"};
+    for (int part = 0; part < parts; ++part) {
+        ui::NumberLook look;
+        look.value = read_part(field, source.objects[0], part);
+        const bool ranged = field.kind != FieldKind::quaternion && field.maximum < unbounded;
+        look.minimum = ranged ? field.minimum * shown_factor(field) : 0.0;
+        look.maximum = ranged ? field.maximum * shown_factor(field) : 0.0;
+        look.whole = field.kind == FieldKind::integer || field.kind == FieldKind::unsigned_integer;
+        look.mixed = !same_part(source, part);
+        look.unit = shown_unit(field);
+        look.width = (width - gap * float(parts - 1)) / float(parts);
+        if (part > 0)
+            ImGui::SameLine(0.0f, gap);
+        edit_number(session, source, part, ui::number_box(parts == 1 ? "value" : names[part], look));
+    }
+}
+
+void choice_cell(Session& session, const FieldSource& source, float width) {
+    const Field& field = *source.field;
+    const bool mixed = !same_text(source);
+    const std::string now = field_to_text(field, source.objects[0]);
+    ImGui::SetNextItemWidth(width);
+    const bool is_open = ImGui::BeginCombo("##value", mixed ? "mixed" : readable_name(now).c_str());
+    ui::note("value", mixed ? "mixed" : now);
+    if (!is_open)
+        return;
+    for (const std::string_view choice : field.choices)
+        if (ui::choice(readable_name(choice) + "##" + std::string(choice), choice == now))
+            apply_field_text(session, source, [&](const void*) { return std::string(choice); });
+    ImGui::EndCombo();
+}
+
+void boolean_cell(Session& session, const FieldSource& source) {
+    const bool mixed = !same_text(source);
+    bool on = field_to_text(*source.field, source.objects[0]) == "true";
+    ImGui::PushItemFlag(ImGuiItemFlags_MixedValue, mixed);
+    const bool changed = ImGui::Checkbox("##value", &on);
+    ImGui::PopItemFlag();
+    ui::note("value", mixed ? "mixed" : on ? "on" : "off");
+    if (changed)
+        apply_field_text(session, source, [&](const void*) { return on ? "true" : "false"; });
+}
+
+// Text is taken when it is complete: at Enter, or when something else is clicked.
+void text_cell(Session& session, const FieldSource& source, float width) {
+    static ImGuiID editing = 0;
+    static std::string text;
+    const ImGuiID id = ImGui::GetID("##value");
+    const std::string now = same_text(source) ? field_to_text(*source.field, source.objects[0]) : std::string();
+    std::string shown = editing == id ? text : now;
+    ImGui::SetNextItemWidth(width);
+    const bool enter = ImGui::InputText("##value", &shown, ImGuiInputTextFlags_EnterReturnsTrue);
+    ui::note("value", shown);
+    if (ImGui::IsItemActive()) {
+        editing = id;
+        text = shown;
+    }
+    if (editing != id || ImGui::IsItemActive())
+        return;
+    editing = 0;
+    const bool escape = ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false) && !enter;
+    if (!escape && text != now)
+        apply_field_text(session, source, [&](const void*) { return text; });
+}
+
+// A dot where the value is not the usual one; clicked, it is.
+void reset_cell(Session& session, const FieldSource& source) {
+    if (source.defaults == nullptr)
+        return;
+    const std::string usual = field_to_text(*source.field, source.defaults);
+    if (same_text(source) && field_to_text(*source.field, source.objects[0]) == usual)
+        return;
+    ImGui::SameLine(0.0f, 0.2f * ui::unit());
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float side = ImGui::GetFrameHeight();
+    const bool pressed = ImGui::InvisibleButton("reset", ImVec2(0.8f * ui::unit(), side));
+    const float radius = (ImGui::IsItemHovered() ? 0.3f : 0.2f) * ui::unit();
+    ImGui::GetWindowDrawList()->AddCircleFilled(ImVec2(low.x + 0.4f * ui::unit(), low.y + 0.5f * side), radius,
+                                                changed_colour);
+    ui::note("reset");
+    ui::tooltip("Reset to " + (usual.empty() ? "nothing" : usual));
+    if (pressed)
+        apply_field_text(session, source, [&](const void*) { return usual; });
+}
+
+void cells(Session& session, const FieldSource& source) {
+    const Field& field = *source.field;
+    float width = ImGui::GetContentRegionAvail().x - ui::unit();
+    const int parts = number_of_parts(field);
+    if (is_colour(field)) {
+        colour_cell(session, source);
+        ImGui::SameLine(0.0f, 0.25f * ui::unit());
+        width -= ImGui::GetFrameHeight() + 0.25f * ui::unit();
+    }
+    if (parts > 0)
+        return number_cells(session, source, parts, width);
+    switch (field.kind) {
+    case FieldKind::boolean:
+        return boolean_cell(session, source);
+    case FieldKind::choice:
+        return choice_cell(session, source, width);
+    case FieldKind::text:
+        return text_cell(session, source, width);
+    default:
+        ui::label("(entity)");
+    }
+}
+
+} // namespace
+
+void apply_field_text(Session& session, const FieldSource& source,
+                      const std::function<std::string(const void*)>& text) {
+    Document& document = *session.document;
+    document.begin(source.gesture);
+    const Status status = set_all(source, text);
+    if (session.messages.check(status))
+        document.commit();
+    else
+        document.cancel();
+}
+
+std::string readable_name(std::string_view name) {
+    std::string result(name);
+    std::replace(result.begin(), result.end(), '_', ' ');
+    if (!result.empty())
+        result[0] = char(std::toupper(static_cast<unsigned char>(result[0])));
+    return result;
+}
+
+bool begin_fields(const char* id) {
+    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp))
+        return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.40f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.60f);
+    return true;
+}
+
+void end_fields() {
+    ImGui::EndTable();
+}
+
+void field_row(Session& session, const FieldSource& source) {
+    const ui::Scope scope(source.field->name);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ui::label(readable_name(source.field->name), field_help(*source.field, source.defaults));
+    ui::note("name");
+    ImGui::TableNextColumn();
+    cells(session, source);
+    reset_cell(session, source);
+}
+
+} // namespace sunfleck::editor

@@ -1,0 +1,71 @@
+// What a crash must not take: unsaved edits are written to a folder of the run's own, behind the user's back and on a
+// thread of their own, and offered by the next run. The user's files are never touched.
+//
+//     FOLDER/RUN/lock              held while the program lives
+//     FOLDER/RUN/edits.scene.json  the scene with all edits, and its geometry
+//     FOLDER/RUN/about.json        which file it was, and what was done to it
+//
+// A scene is written again a moment after each edit, but so that writing takes a quarter of the time at most.
+#pragma once
+
+#include "editor/window/scene_copy.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace sunfleck::editor {
+
+struct Recovered {
+    std::filesystem::path folder, scene; // of the run; of its edits
+    std::string file;                    // that was edited; empty: it had never been saved
+    std::vector<std::string> edits;      // the last ones
+    std::uint64_t count = 0;             // of all
+};
+
+class Recovery {
+public:
+    // Makes a folder of its own in `folder`; where that cannot be, nothing is kept, and problem() says why.
+    explicit Recovery(const std::filesystem::path& folder);
+    // The program ends as it should: what was kept is removed.
+    ~Recovery();
+    Recovery(const Recovery&) = delete;
+    Recovery& operator=(const Recovery&) = delete;
+
+    // The program ends with unsaved edits that nobody gave up (a signal): they are for the next run.
+    void leave();
+    const std::string& problem() const { return problem_; }
+    // All changes of the document, in order.
+    void change(const SceneChange& change);
+    // What is unsaved now; nothing: what was kept is removed.
+    void unsaved(const std::string& file, std::vector<std::string> edits, std::uint64_t count);
+    void saved() { unsaved({}, {}, 0); }
+    // How often a scene was written.
+    std::uint64_t writes() const { return writes_; }
+
+    // What runs that are gone have left, oldest first; what nothing can be made of is removed.
+    static std::vector<Recovered> left_behind(const std::filesystem::path& folder);
+    static void discard(const Recovered& recovered);
+
+private:
+    struct Copy;
+    void run();
+    void write(std::unique_ptr<Copy>& copy);
+    void remove_files() const;
+
+    std::filesystem::path own_;
+    std::string problem_;
+    int lock_ = -1;
+
+    std::mutex mutex_; // of all until the next comment
+    std::condition_variable changed_;
+    SceneChange next_;
+    Recovered about_;
+    bool has_work_ = false, stop_ = false, leave_ = false;
+
+    std::atomic<std::uint64_t> writes_{0};
+    std::thread thread_;
+};
+
+} // namespace sunfleck::editor

@@ -1,0 +1,163 @@
+#include "editor/window/scene_copy.h"
+
+#include "engine/core/file.h"
+
+namespace sunfleck::editor {
+
+void SceneChange::add(SceneChange later) {
+    if (later.everything || source == nullptr) {
+        *this = std::move(later);
+        return;
+    }
+    handles = later.handles;
+    updates.insert(updates.end(), std::make_move_iterator(later.updates.begin()),
+                   std::make_move_iterator(later.updates.end()));
+    meshes.insert(meshes.end(), std::make_move_iterator(later.meshes.begin()),
+                  std::make_move_iterator(later.meshes.end()));
+    textures.insert(textures.end(), std::make_move_iterator(later.textures.begin()),
+                    std::make_move_iterator(later.textures.end()));
+    if (later.settings)
+        settings = std::move(later.settings);
+    revision = later.revision;
+}
+
+namespace {
+
+// What is told of a hidden entity: what is below it needs its place.
+bool is_told_of_hidden(const ecs::PoolBase& pool) {
+    const TypeDescription* type = pool.description();
+    return type == &scene::Name::description() || type == &scene::Parent::description() ||
+           type == &scene::Transform::description();
+}
+
+void tell_all(Document& document, Entity entity, SceneChange& change) {
+    if (!document.exists(entity))
+        return;
+    for (const ecs::PoolBase* pool : document.registry().all_pools())
+        if (!pool->is_derived() && pool->is_copyable() && pool->contains(entity))
+            change.updates.push_back({entity, pool, document.registry().value(*pool, entity)});
+}
+
+SceneChange nothing_of(const std::shared_ptr<Document>& document) {
+    SceneChange change;
+    change.source = document;
+    change.handles = document->handle_count();
+    change.revision = document->revision();
+    return change;
+}
+
+// A mover stands where its path has brought it. The document knows where it starts.
+void put_back_in_place(ecs::Registry& registry, ecs::Entity entity, bool place_is_new) {
+    const scene::MoverOrigin* origin = registry.try_get<scene::MoverOrigin>(entity);
+    if (origin == nullptr)
+        return;
+    if (!place_is_new)
+        registry.emplace_or_replace<scene::Transform>(entity, scene::Transform(origin->transform));
+    registry.remove<scene::MoverOrigin>(entity);
+}
+
+} // namespace
+
+void apply_updates(const std::vector<Update>& updates, ecs::Registry& registry) {
+    for (const Update& update : updates) {
+        if (!registry.alive(update.entity)) {
+            if (update.value == nullptr)
+                continue;
+            registry.create_as(update.entity);
+        }
+        ecs::PoolBase& pool = registry.counterpart(*update.pool);
+        put_back_in_place(registry, update.entity, pool.description() == &scene::Transform::description());
+        registry.set_value(pool, update.entity, update.value.get());
+        // Nothing else is derived from a place that is gone.
+        if (!registry.has<scene::Transform>(update.entity) && registry.has<scene::WorldTransform>(update.entity))
+            registry.remove<scene::WorldTransform>(update.entity);
+    }
+    scene::update_world_transforms(registry);
+}
+
+void HiddenFilter::hide(const std::unordered_set<Entity>& hidden, SceneChange& change) {
+    for (Update& update : change.updates)
+        if (hidden.count(update.entity) > 0 && !is_told_of_hidden(*update.pool))
+            update.value = nullptr;
+}
+
+void HiddenFilter::apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
+                         std::optional<SceneChange>& change) {
+    if (hidden != hidden_ && !change)
+        change = nothing_of(document);
+    if (!change)
+        return;
+    if (!change->everything) {
+        for (const Entity entity : hidden_)
+            if (hidden.count(entity) == 0)
+                tell_all(*document, entity, *change);
+        for (const Entity entity : hidden)
+            if (hidden_.count(entity) == 0)
+                tell_all(*document, entity, *change);
+    }
+    hide(hidden, *change);
+    hidden_ = hidden;
+}
+
+SceneChange ChangeCollector::everything(const std::shared_ptr<Document>& document) {
+    SceneChange change = nothing_of(document);
+    change.everything = true;
+    for (const Entity entity : document->registry().entities())
+        tell_all(*document, entity, change);
+    for (std::uint32_t i = 0; i < document->meshes().size(); ++i)
+        change.meshes.push_back(document->meshes()[i]);
+    for (std::uint32_t i = 0; i < document->textures().size(); ++i)
+        change.textures.push_back(document->textures()[i]);
+    change.settings = document->settings();
+    return change;
+}
+
+std::optional<SceneChange> ChangeCollector::collect(const std::shared_ptr<Document>& document) {
+    if (known_ == document.get() && revision_ == document->revision())
+        return std::nullopt;
+    SceneChange change = nothing_of(document);
+    change.everything = known_ != document.get();
+    if (change.everything)
+        *this = {};
+    change.updates = change.everything ? document->all_updates() : document->take_updates();
+    for (; meshes_ < document->meshes().size(); ++meshes_)
+        change.meshes.push_back(document->meshes()[meshes_]);
+    for (; textures_ < document->textures().size(); ++textures_)
+        change.textures.push_back(document->textures()[textures_]);
+    if (settings_revision_ != document->settings_revision())
+        change.settings = document->settings();
+    settings_revision_ = document->settings_revision();
+    revision_ = document->revision();
+    known_ = document.get();
+    return change;
+}
+
+Result<std::unique_ptr<SceneCopy>> SceneCopy::create(gpu::Device& device) {
+    std::unique_ptr<SceneCopy> copy(new SceneCopy());
+    SUNFLECK_ASSIGN(copy->renderer_, viewer::SceneRenderer::create(device));
+    copy->renderer_->lighting().set_cache_folder(user_cache_folder());
+    return copy;
+}
+
+bool SceneCopy::takes(const SceneChange& change) const {
+    return change.everything ? reserved_ == 0 : change.handles <= reserved_;
+}
+
+Status SceneCopy::apply(const SceneChange& change) {
+    if (change.everything) {
+        reserved_ = 2 * change.handles + 4096;
+        renderer_->registry().reserve_handles(reserved_);
+    }
+    for (const scene::Mesh& mesh : change.meshes)
+        renderer_->meshes().add(mesh);
+    for (const scene::Texture& texture : change.textures)
+        renderer_->textures().add(texture);
+    apply_updates(change.updates, renderer_->registry());
+    if (!change.meshes.empty() || !change.textures.empty() || change.everything)
+        SUNFLECK_TRY(renderer_->upload_meshes());
+    if (change.settings)
+        SUNFLECK_TRY(renderer_->lighting().set_settings(*change.settings));
+    return {};
+}
+
+} // namespace sunfleck::editor

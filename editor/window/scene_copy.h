@@ -1,0 +1,72 @@
+// The scene that is shown: a copy of the document's entities in a renderer of its own, which only the scene thread
+// touches. What a renderer or a simulation adds or moves stays in the copy.
+#pragma once
+
+#include "editor/document/document.h"
+#include "viewer/scene_renderer.h"
+
+namespace sunfleck::editor {
+
+// What a document tells its copy. Later changes are added to earlier ones that were not taken yet.
+struct SceneChange {
+    std::shared_ptr<const void> source; // the document, whose pools the updates point to
+    bool everything = false;            // the copy starts from nothing
+    std::uint32_t handles = 0;          // Document::handle_count
+    std::vector<Update> updates;
+    std::vector<scene::Mesh> meshes;      // added since the last change
+    std::vector<scene::Texture> textures; // likewise
+    std::optional<gi::Settings> settings; // where they changed
+    std::uint64_t revision = 0;           // of the document
+
+    void add(SceneChange later);
+};
+
+// Gathers what a document has not told yet.
+class ChangeCollector {
+public:
+    // Nothing if nothing changed.
+    std::optional<SceneChange> collect(const std::shared_ptr<Document>& document);
+    // Everything there is, for a copy that knows nothing yet.
+    static SceneChange everything(const std::shared_ptr<Document>& document);
+    // The next change is everything there is.
+    void start_over() { known_ = nullptr; }
+
+private:
+    const Document* known_ = nullptr;
+    std::uint64_t revision_ = 0, settings_revision_ = 0;
+    std::uint32_t meshes_ = 0, textures_ = 0;
+};
+
+// Hides entities from copies that show the scene: they are told where those are, and nothing else.
+class HiddenFilter {
+public:
+    // Of what has changed in `document`, if anything has, and in what is hidden. `change`: from the collector.
+    void apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
+               std::optional<SceneChange>& change);
+    static void hide(const std::unordered_set<Entity>& hidden, SceneChange& change);
+
+private:
+    std::unordered_set<Entity> hidden_;
+};
+
+// Brings a registry up to the document, under the same handles, which must have been reserved. Movers that have gone
+// along their paths stand where they start again.
+void apply_updates(const std::vector<Update>& updates, ecs::Registry& registry);
+
+class SceneCopy {
+public:
+    // The device must outlive it.
+    static Result<std::unique_ptr<SceneCopy>> create(gpu::Device& device);
+
+    // Whether a change fits into this copy; if not, a new copy has to be made and told everything.
+    bool takes(const SceneChange& change) const;
+    Status apply(const SceneChange& change);
+    viewer::SceneRenderer& renderer() { return *renderer_; }
+
+private:
+    SceneCopy() = default;
+    std::unique_ptr<viewer::SceneRenderer> renderer_;
+    std::uint32_t reserved_ = 0;
+};
+
+} // namespace sunfleck::editor

@@ -1,0 +1,118 @@
+// Draws the scene on a thread of its own, so that the GUI never waits for it: a copy of the document, its lighting and
+// the pictures of the viewport. Frames are drawn only where something asks for them; where nothing changes any more,
+// the thread sleeps.
+//
+// All functions may be called from the GUI thread; none of them waits for a frame.
+#pragma once
+
+#include "editor/window/scene_copy.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+namespace sunfleck::editor {
+
+// What the viewport shows.
+struct ViewRequest {
+    scene::CameraView camera;
+    std::uint32_t width = 0, height = 0; // pixels; 0: nothing is drawn
+    std::uint32_t view = shared::view_final;
+    std::string lighting_view; // FrameRequest::lighting_view
+    bool show_samples = false;
+    std::optional<float> ev100; // in place of the scene's, or of what the picture asks for
+    bool playing = false;       // movers move
+    bool read_back = false;     // settled pictures have their pixels on the CPU, too
+};
+
+// A finished picture, in its blit-source state. Its memory is used again when nobody holds it.
+struct ScenePicture {
+    gpu::Image image;
+    scene::CameraView camera;
+    std::uint64_t revision = 0; // of the document
+    std::uint64_t number = 0;   // of the frame
+    std::uint64_t step = 0;     // of the simulation
+    bool settled = false;       // nothing more comes unless something changes
+    float ev100 = 0.0f;
+    double frame_ms = 0.0;
+    viewer::FrameStatistics statistics;
+    std::shared_ptr<const io::Picture> pixels; // display values, of settled pictures where they were asked for
+};
+
+// What the thread does, for the status bar and --report.
+struct SceneStatus {
+    bool busy = false;     // it draws, or has something to draw
+    bool building = false; // lighting that takes long
+    float share = 0.0f;    // of that, done
+    std::string error;     // why there is no picture; empty: there is
+    std::uint64_t frames = 0, builds = 0, cancelled = 0;
+    double longest_frame_ms = 0.0;
+};
+
+class SceneThread {
+public:
+    // `wake` is called from the thread whenever there is something new to show. The device must outlive this.
+    SceneThread(gpu::Device& device, std::function<void()> wake);
+    // Cancels what it does.
+    ~SceneThread();
+    SceneThread(const SceneThread&) = delete;
+    SceneThread& operator=(const SceneThread&) = delete;
+
+    void change(SceneChange change);
+    void show(const ViewRequest& request);
+    // Movers go on by so many steps of simulation, once.
+    void step(std::uint32_t steps);
+    // Movers stand where they start.
+    void rewind();
+    // The newest picture; null before the first one.
+    std::shared_ptr<ScenePicture> picture() const;
+    SceneStatus status() const;
+    // SceneStatus::busy, at once and from any thread.
+    bool busy() const { return busy_; }
+
+private:
+    void run();
+    bool has_work() const;
+    bool take_work();
+    Status apply_change();
+    void frame();
+    Status draw(const viewer::FrameRequest& request, ScenePicture* picture);
+    Status expose(viewer::FrameRequest& request);
+    Status draw_picture();
+    viewer::FrameRequest frame_request();
+    bool go_on(float share);
+    Result<std::shared_ptr<ScenePicture>> free_picture();
+    void publish(std::shared_ptr<ScenePicture> picture);
+    void fail(const Error& error);
+
+    gpu::Device& device_;
+    const std::function<void()> wake_;
+
+    mutable std::mutex mutex_; // of all until the next comment
+    std::condition_variable changed_;
+    SceneChange next_change_;
+    ViewRequest next_view_;
+    bool view_changed_ = false, rewind_ = false;
+    std::uint32_t steps_ = 0;
+    std::shared_ptr<ScenePicture> newest_;
+    SceneStatus status_;
+
+    std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false};
+    // Of the thread alone.
+    std::unique_ptr<SceneCopy> copy_;
+    SceneChange change_; // not applied yet
+    ViewRequest view_;
+    std::vector<std::shared_ptr<ScenePicture>> pictures_;
+    std::chrono::steady_clock::time_point build_began_, last_frame_;
+    std::uint64_t step_ = 0, revision_ = 0, number_ = 0;
+    double owed_steps_ = 0.0;
+    int frames_left_ = 0;
+    bool failed_ = false, exposure_is_old_ = true;
+    std::atomic<bool> cancelled_{false};
+    double told_ = 0.0; // s after the build began
+    float automatic_ev100_ = 0.0f;
+    std::thread thread_;
+};
+
+} // namespace sunfleck::editor

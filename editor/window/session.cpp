@@ -1,0 +1,123 @@
+#include "editor/window/session.h"
+
+#include "editor/window/commands.h"
+#include "editor/window/comparison.h"
+#include "editor/window/cost_thread.h"
+#include "editor/window/opening.h"
+#include "viewer/scene_renderer.h"
+
+#include <algorithm>
+
+namespace sunfleck::editor {
+namespace {
+
+constexpr std::size_t most_messages = 500, most_recent = 12;
+
+} // namespace
+
+void Messages::say(std::string text, Message::Kind kind) {
+    all_.push_back({kind, std::move(text), ++count_});
+    if (all_.size() > most_messages)
+        all_.pop_front();
+}
+
+bool Messages::check(const Status& status) {
+    if (!status)
+        say(status.error().message, Message::Kind::error);
+    return bool(status);
+}
+
+Session::Session(app::Window& the_window, SceneThread& the_scene)
+    : window(the_window), scene(the_scene), document(std::make_shared<Document>()),
+      commands(std::make_unique<Commands>()) {}
+
+Session::~Session() = default;
+
+void Session::take(std::shared_ptr<Document> opened) {
+    document = std::move(opened);
+    view.playing = false;
+    hidden.clear();
+    locked.clear();
+    const auto seen = viewer::find_camera(document->registry(), bounds_of_all(*document), "");
+    if (seen)
+        camera.set(*seen);
+    for (const std::string& note : document->notes())
+        messages.say(note, Message::Kind::warning);
+    if (!document->path().empty()) {
+        const std::string path = std::filesystem::absolute(document->path()).string();
+        std::erase(recent_files, path);
+        recent_files.insert(recent_files.begin(), path);
+        recent_files.resize(std::min(recent_files.size(), most_recent));
+    }
+}
+
+void Session::open(const std::filesystem::path& path) {
+    unless_unsaved([this, path] { open_now(path); });
+}
+
+void Session::open_now(const std::filesystem::path& path) {
+    recovering.reset();
+    opening = std::make_unique<Opening>(path, app::Window::wake);
+}
+
+void Session::measure_cost(const std::string& setting) {
+    if (cost == nullptr)
+        cost = make_cost_thread();
+    SceneChange everything = ChangeCollector::everything(document);
+    HiddenFilter::hide(hidden, everything);
+    everything.settings = document->settings();
+    gi::Settings usual = document->settings();
+    if (messages.check(usual.set(setting, gi::Settings().get(setting))) && messages.check(usual.validate()))
+        cost->measure(std::move(everything), setting, usual, shown);
+}
+
+void Session::recover(const Recovered& one) {
+    recovering = one;
+    opening = std::make_unique<Opening>(one.scene, app::Window::wake);
+}
+
+bool Session::save(const std::filesystem::path& path) {
+    std::error_code code;
+    const bool same_file = path == document->path();
+    if (!messages.check(document->save(path)))
+        return false;
+    messages.say("Saved " + path.string());
+    if (!same_file) {
+        recent_files.insert(recent_files.begin(), std::filesystem::absolute(path, code).string());
+        recent_files.resize(std::min(recent_files.size(), most_recent));
+    }
+    return true;
+}
+
+void Session::unless_unsaved(std::function<void()> action) {
+    if (!document->unsaved())
+        return action();
+    after_unsaved = std::move(action);
+    dialog = Dialog::unsaved;
+}
+
+float Session::scene_size() {
+    if (size_revision_ != document->revision()) {
+        size_revision_ = document->revision();
+        const vec3 extent = bounds_of_all(*document).extent();
+        size_ = std::cbrt(std::max(extent.x, 1e-3f) * std::max(extent.y, 1e-3f) * std::max(extent.z, 1e-3f));
+        if (document->entity_count() == 0 || extent == vec3(0.0f))
+            size_ = 5.0f;
+    }
+    return size_;
+}
+
+void Session::note_frame(const ScenePicture* picture) {
+    if (picture == nullptr || !profiling || (!frames.empty() && frames.back().number == picture->number))
+        return;
+    frames.push_back({picture->number, picture->statistics});
+    frames.back().statistics.frame_ms = picture->frame_ms;
+    if (frames.size() > ProfiledFrame::most)
+        frames.pop_front();
+}
+
+std::string Session::file_name() const {
+    return document->path().empty() ? "untitled" : document->path().filename().string();
+}
+
+} // namespace sunfleck::editor

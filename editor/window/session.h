@@ -1,0 +1,139 @@
+// What is open in the editor, and what panels share. Panels change the document through gestures and the rest here; the
+// program's loop (editor.h) sees to it that the scene thread follows.
+//
+// On the GUI thread only.
+#pragma once
+
+#include "editor/document/edits.h"
+#include "editor/window/camera.h"
+#include "editor/window/recovery.h"
+#include "editor/window/scene_thread.h"
+#include "engine/app/window.h"
+
+#include <deque>
+#include <imgui.h>
+
+namespace sunfleck::editor {
+
+class Commands;
+class Comparison;
+class CostThread;
+class Opening;
+
+struct Message {
+    enum class Kind { note, warning, error } kind = Kind::note;
+    std::string text;
+    std::uint64_t number = 0; // from 1
+};
+
+// What the user is told: the newest in the status bar, all in a panel.
+class Messages {
+public:
+    void say(std::string text, Message::Kind kind = Message::Kind::note);
+    // An error, if there is one; true if there was none.
+    bool check(const Status& status);
+    const std::deque<Message>& all() const { return all_; }
+    std::uint64_t count() const { return count_; }
+
+private:
+    std::deque<Message> all_; // the newest hundreds
+    std::uint64_t count_ = 0;
+};
+
+// What the viewport shows besides the scene's own look.
+struct ViewOptions {
+    std::string lighting_view; // of gi::debug_views(); empty: none
+    std::uint32_t picture = shared::view_final;
+    bool show_samples = false, show_grid = false, show_icons = true;
+    float scale = 1.0f; // rendered pixels for each of the screen's, along a side
+    std::optional<float> ev100;
+    bool playing = false;
+};
+
+enum class GizmoMode { none, move, rotate, scale };
+struct GizmoOptions {
+    GizmoMode mode = GizmoMode::move;
+    bool local = false;                                               // along the axes of what is selected last
+    bool snap = false;                                                // always; holding Ctrl is the other way about
+    float snap_length = 0.1f, snap_angle = 15.0f, snap_factor = 0.1f; // m, degrees, 1
+};
+
+// A component that was copied.
+struct CopiedComponent {
+    std::string type;
+    ecs::Value value;
+};
+
+// What a frame of the scene took.
+struct ProfiledFrame {
+    static constexpr std::size_t most = 300; // that are kept
+    std::uint64_t number = 0;
+    viewer::FrameStatistics statistics;
+};
+
+// Questions that stand in the way of everything else until they are answered.
+enum class Dialog { none, open, save_as, unsaved, recover };
+
+class Session {
+public:
+    Session(app::Window& the_window, SceneThread& the_scene);
+    ~Session();
+
+    app::Window& window;
+    SceneThread& scene;
+    std::shared_ptr<Document> document;
+    Camera camera;
+    ViewOptions view;
+    GizmoOptions gizmo;
+    Messages messages;
+    CopiedComponent copied;
+    std::unique_ptr<Commands> commands;
+    std::unique_ptr<Comparison> comparison; // from the program
+    std::filesystem::path preset_folder;
+    std::unique_ptr<CostThread> cost; // null before something was measured
+    std::unique_ptr<Opening> opening; // a file that loads; null: none does
+    std::vector<std::string> recent_files;
+    std::deque<ProfiledFrame> frames;  // newest last
+    bool profiling = true;             // further frames are kept
+    std::unordered_set<Entity> hidden; // not shown, and not lit by; of no concern to the document
+    std::unordered_set<Entity> locked; // not selected by clicks in the picture
+
+    Dialog dialog = Dialog::none;
+    std::function<void()> after_unsaved; // what the user wanted when there were unsaved edits
+    std::vector<Recovered> recovered;    // edits of runs that are gone; the last is offered first
+    std::optional<Recovered> recovering; // that loads
+    bool quit = false, rebuild = false;  // what the loop is to do next
+
+    const app::InputState* input = nullptr; // of this frame
+    ViewRequest shown;                      // what the scene thread was told last
+    ImVec4 viewport_area{0, 0, 0, 0};       // x, y, width, height: pixels of the window
+
+    // Replaces the document, as it is when it has been opened.
+    void take(std::shared_ptr<Document> opened);
+    // Begins to load; asks first if there is something to lose.
+    void open(const std::filesystem::path& path);
+    void open_now(const std::filesystem::path& path);
+    // Begins to measure what the setting's value costs over its default.
+    void measure_cost(const std::string& setting);
+    std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
+    // The unsaved edits of a run that is gone.
+    void recover(const Recovered& recovered);
+    // False: it was not saved, which has been said.
+    bool save(const std::filesystem::path& path);
+    // Runs `action` now, or when the user has dealt with unsaved edits.
+    void unless_unsaved(std::function<void()> action);
+    // Side of a cube that the scene would fit in, m; for things whose size nothing else says.
+    float scene_size();
+    // "room.scene.json", or "untitled".
+    std::string file_name() const;
+    // Keeps what the newest picture took.
+    void note_frame(const ScenePicture* picture);
+    // What is selected, without what is below something that is.
+    Entities selected_tops() { return topmost(*document, document->selection()); }
+
+private:
+    std::uint64_t size_revision_ = 0;
+    float size_ = 1.0f;
+};
+
+} // namespace sunfleck::editor

@@ -1,0 +1,24 @@
+// What is kept from run to run: layout, files that were opened, where their cameras stood, and changed keys.
+#pragma once
+
+#include "editor/window/commands.h"
+#include "editor/window/layout.h"
+
+#include <map>
+
+namespace sunfleck::editor {
+
+struct EditorState {
+    Layout::State layout;
+    std::uint32_t width = 0, height = 0; // of the window; 0: not known
+    std::vector<std::string> recent_files;
+    std::map<std::string, std::string> keys;          // changed ones: a command's path, its shortcut
+    std::map<std::string, scene::CameraView> cameras; // by file
+};
+
+std::filesystem::path usual_state_file();
+// `problem`: why it could not be read; the rest is as usual then.
+EditorState load_state(const std::filesystem::path& path, std::string& problem);
+Status save_state(const std::filesystem::path& path, const EditorState& state);
+
+} // namespace sunfleck::editor

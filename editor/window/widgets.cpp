@@ -1,0 +1,144 @@
+#include "editor/window/widgets.h"
+
+#include <cstdio>
+#include <imgui_stdlib.h>
+
+namespace sunfleck::editor::ui {
+namespace {
+
+struct Notebook {
+    bool wanted = false;
+    std::string prefix;
+    std::vector<Note> notes;
+};
+
+Notebook& notebook() {
+    static Notebook only;
+    return only;
+}
+
+bool overlaps(ImVec2 low, ImVec2 high, ImVec2 clip_low, ImVec2 clip_high) {
+    return low.x < clip_high.x && low.y < clip_high.y && high.x > clip_low.x && high.y > clip_low.y;
+}
+
+// What one sees of a name: what comes before "##".
+std::string_view visible(std::string_view name) {
+    return name.substr(0, name.find("##"));
+}
+
+} // namespace
+
+void begin_notes(bool wanted) {
+    notebook().wanted = wanted;
+    notebook().notes.clear();
+    notebook().prefix.clear();
+}
+
+const std::vector<Note>& notes() {
+    return notebook().notes;
+}
+
+void note_place(std::string_view name, std::string_view value, ImVec2 low, ImVec2 high) {
+    if (!notebook().wanted)
+        return;
+    const ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 clip_low = list->GetClipRectMin(), clip_high = list->GetClipRectMax();
+    if (!overlaps(low, high, clip_low, clip_high))
+        return;
+    low = ImVec2(std::max(low.x, clip_low.x), std::max(low.y, clip_low.y));
+    high = ImVec2(std::min(high.x, clip_high.x), std::min(high.y, clip_high.y));
+    notebook().notes.push_back({notebook().prefix + std::string(name), std::string(value), low, high});
+}
+
+void note(std::string_view name, std::string_view value) {
+    if (notebook().wanted)
+        note_place(name, value, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+}
+
+Scope::Scope(std::string_view name) : length_(notebook().prefix.size()) {
+    ImGui::PushID(name.data(), name.data() + name.size());
+    notebook().prefix.append(name).push_back('/');
+}
+
+Scope::~Scope() {
+    ImGui::PopID();
+    notebook().prefix.resize(length_);
+}
+
+void tooltip(std::string_view text) {
+    if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(24.0f * unit());
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool button(const std::string& name, std::string_view tip, bool enabled, float width) {
+    ImGui::BeginDisabled(!enabled);
+    const bool pressed = ImGui::Button(name.c_str(), ImVec2(width, 0.0f));
+    ImGui::EndDisabled();
+    note(visible(name), enabled ? "" : "disabled");
+    tooltip(tip);
+    return pressed;
+}
+
+bool toggle(const std::string& name, bool& on, std::string_view tip) {
+    const bool changed = ImGui::Checkbox(name.c_str(), &on);
+    note(visible(name), on ? "on" : "off");
+    tooltip(tip);
+    return changed;
+}
+
+bool menu_item(const std::string& name, const std::string& shortcut, bool enabled, bool checked) {
+    const bool chosen = ImGui::MenuItem(name.c_str(), shortcut.c_str(), checked, enabled);
+    note(visible(name), !enabled ? "disabled" : checked ? "on" : "");
+    return chosen;
+}
+
+bool choice(const std::string& name, bool chosen, std::string_view tip) {
+    const bool pressed = ImGui::Selectable(name.c_str(), chosen);
+    note(visible(name), chosen ? "chosen" : "");
+    tooltip(tip);
+    return pressed;
+}
+
+bool text_box(const std::string& name, std::string& text, const char* hint, float width, bool enter) {
+    ImGui::SetNextItemWidth(width);
+    const bool changed =
+        ImGui::InputTextWithHint(("##" + name).c_str(), hint, &text, enter ? ImGuiInputTextFlags_EnterReturnsTrue : 0);
+    note(name, text);
+    return changed;
+}
+
+void label(const std::string& text, std::string_view tip, bool dim) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    std::string shown = text;
+    while (shown.size() > 4 && ImGui::CalcTextSize(shown.c_str()).x > room) {
+        std::size_t end = shown.size() - (shown.ends_with("...") ? 4 : 1);
+        while (end > 1 && (std::uint8_t(shown[end]) & 0xc0u) == 0x80u)
+            --end;
+        shown = shown.substr(0, end) + "...";
+    }
+    if (dim)
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(shown.c_str());
+    if (dim)
+        ImGui::PopStyleColor();
+    tooltip(shown == text ? std::string(tip) : text + (tip.empty() ? "" : "\n") + std::string(tip));
+}
+
+void heading(const std::string& text) {
+    ImGui::Dummy(ImVec2(0.0f, 0.2f * unit()));
+    ImGui::TextColored(ImVec4(0.95f, 0.72f, 0.38f, 1.0f), "%s", text.c_str());
+    ImGui::Separator();
+}
+
+void text(const std::string& name, const std::string& value) {
+    ImGui::TextUnformatted(value.c_str());
+    note(name, value);
+}
+
+} // namespace sunfleck::editor::ui

@@ -1,0 +1,77 @@
+// The widgets of which panels are made: Dear ImGui's, with tooltips, and with a note of name, place and value of each
+// visible one, so that scripts find them (--widgets FILE).
+//
+// Names are paths: "inspector/Material/roughness". Use between Gui::begin_frame and end_frame, on the GUI thread.
+#pragma once
+
+#include <cstdint>
+#include <imgui.h>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sunfleck::editor::ui {
+
+struct Note {
+    std::string name, value;
+    ImVec2 low, high; // pixels
+};
+
+// Forgets the notes of the last frame; `wanted`: whether any are made.
+void begin_notes(bool wanted);
+const std::vector<Note>& notes();
+// Of the item that was submitted last.
+void note(std::string_view name, std::string_view value = {});
+void note_place(std::string_view name, std::string_view value, ImVec2 low, ImVec2 high);
+
+// Names within it begin with "name/".
+class Scope {
+public:
+    explicit Scope(std::string_view name);
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+private:
+    std::size_t length_;
+};
+
+// Height of a letter, pixels: the measure of all else.
+inline float unit() {
+    return ImGui::GetFontSize();
+}
+
+// Shown while the pointer rests on the last item. Wrapped.
+void tooltip(std::string_view text);
+bool button(const std::string& name, std::string_view tip = {}, bool enabled = true, float width = 0.0f);
+bool toggle(const std::string& name, bool& on, std::string_view tip = {});
+bool menu_item(const std::string& name, const std::string& shortcut, bool enabled, bool checked = false);
+// A row to be clicked, as wide as there is room.
+bool choice(const std::string& name, bool chosen, std::string_view tip = {});
+// True while the text changes; with `enter`, when Enter was pressed.
+bool text_box(const std::string& name, std::string& text, const char* hint, float width, bool enter = false);
+// Text that does not fit is cut with dots; the whole is in the tooltip.
+void label(const std::string& text, std::string_view tip = {}, bool dim = false);
+void heading(const std::string& text);
+void text(const std::string& name, const std::string& value); // a line whose value scripts may read
+
+// --- Numbers: dragged, or clicked and typed --------------------------------------------------------------------------
+struct NumberLook {
+    double value = 0.0, minimum = 0.0, maximum = 0.0; // in the unit that is shown
+    bool whole = false, mixed = false, enabled = true;
+    std::string unit;
+    float width = 0.0f;
+};
+struct NumberEdit {
+    enum class Phase { none, began, dragged, ended, cancelled, typed } phase = Phase::none;
+    double value = 0.0; // of `dragged`
+    std::string text;   // of `typed`
+};
+NumberEdit number_box(const std::string& name, const NumberLook& look);
+// At the start of a frame: boxes that are not drawn any more are left.
+void begin_number_boxes();
+// A number is being typed or dragged.
+bool editing_number();
+std::string number_text(double value, bool whole);
+
+} // namespace sunfleck::editor::ui
