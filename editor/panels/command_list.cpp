@@ -67,6 +67,9 @@ void CommandPanel::draw(Session& session) {
     ImGui::TextDisabled("Flying: hold the right button; W A S D, Q and E, shift, wheel");
     ImGui::BeginChild("rows");
     if (ImGui::BeginTable("rows", 3, ImGuiTableFlags_SizingFixedFit)) {
+        ImGui::TableSetupColumn("command");
+        ImGui::TableSetupColumn("keys");
+        ImGui::TableSetupColumn("tooltip", ImGuiTableColumnFlags_WidthStretch);
         for (Command& command : session.commands->all())
             if (filter_.empty() || contains(command.path() + command.tooltip, filter_))
                 row(session, command);

@@ -37,6 +37,7 @@ void Compare::choose(Session& session) {
     ui::heading("Compare with");
     option("Nothing", CompareWith::nothing, comparison.with, "The scene alone");
     option("Reference", CompareWith::reference, comparison.with, "The path tracer, which works while the scene rests");
+    ImGui::NewLine();
     ImGui::BeginDisabled(!comparison.kept());
     option("Kept settings", CompareWith::kept_settings, comparison.with, "The same scene, lit with the settings kept");
     ImGui::EndDisabled();
@@ -77,9 +78,10 @@ void Compare::figures(Session& session) const {
 
 void Compare::presets(Session& session) {
     ui::heading("Presets");
-    ui::text_box("preset", name_, "Name of a preset", 12.0f * ui::unit());
+    ui::text_box("preset", name_, "Name of a preset", 9.0f * ui::unit());
     ImGui::SameLine();
-    if (ui::button("Save preset", "Keeps the settings that differ from their defaults under this name", !name_.empty()))
+    if (ui::button("Save##preset", "Keeps the settings that differ from their defaults under this name",
+                   !name_.empty()))
         if (session.messages.check(save_preset(session.preset_folder, name_, session.document->settings())))
             session.messages.say("Saved the preset '" + name_ + "'");
     for (const std::string& name : preset_names(session.preset_folder)) {

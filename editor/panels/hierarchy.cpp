@@ -132,8 +132,10 @@ void Hierarchy::select(Session& session, std::size_t index) {
 }
 
 void Hierarchy::rename_box(Session& session, Entity entity) {
-    if (rename_frames_++ == 0)
+    if (rename_frames_++ == 0) {
         ImGui::SetKeyboardFocusHere();
+        ui::ask_for_quiet_frames();
+    }
     ImGui::SetNextItemWidth(-1.0f);
     const bool enter = ImGui::InputText("##rename", &new_name_,
                                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);

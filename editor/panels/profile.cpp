@@ -111,16 +111,16 @@ void Profile::history(const std::deque<ProfiledFrame>& frames) {
                             : times[i] > double(budget_ms_) ? IM_COL32(220, 110, 70, 255)
                                                             : IM_COL32(110, 160, 110, 255));
     }
-    const auto line = [&](double value, ImU32 colour, const std::string& text) {
+    const auto line = [&](double value, ImU32 colour, const std::string& text, float place) {
         const float y = low.y + size.y * (1.0f - float(std::min(value / top, 1.0)));
         list->AddLine(ImVec2(low.x, y), ImVec2(low.x + size.x, y), colour);
-        list->AddText(ImVec2(low.x + size.x - ImGui::CalcTextSize(text.c_str()).x - 4.0f, y - ui::unit()), colour,
-                      text.c_str());
+        const float room = size.x - ImGui::CalcTextSize(text.c_str()).x - 8.0f;
+        list->AddText(ImVec2(low.x + 4.0f + place * room, std::max(y - ui::unit(), low.y)), colour, text.c_str());
     };
-    line(double(budget_ms_), IM_COL32(240, 200, 90, 220), "budget");
-    line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high));
+    line(double(budget_ms_), IM_COL32(240, 200, 90, 220), "budget", 0.5f);
+    line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high), 1.0f);
     if (high > 1.4 * middle)
-        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle));
+        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.75f);
     if (!ImGui::IsItemHovered())
         return;
     const auto index = std::size_t(std::max((ImGui::GetIO().MousePos.x - low.x) / wide, 0.0f));

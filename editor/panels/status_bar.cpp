@@ -46,6 +46,7 @@ void draw_status_bar(Session& session, const ScenePicture* picture) {
         progress("loading", "Loading", session.opening->share());
     else if (status.building)
         progress("building", "Lighting", status.share);
+    const bool settled = picture != nullptr && picture->settled && !status.busy && session.opening == nullptr;
     const std::string frame = picture != nullptr ? frame_text(*picture) : "no picture yet";
     const float wide = ImGui::CalcTextSize(frame.c_str()).x + ui::unit();
     const float right = ImGui::GetWindowWidth() - wide;
@@ -58,8 +59,7 @@ void draw_status_bar(Session& session, const ScenePicture* picture) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", frame.c_str());
     ui::note("frame", frame);
-    ui::note_place("settled", picture != nullptr && picture->settled && !status.busy ? "yes" : "no",
-                   ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    ui::note_place("settled", settled ? "yes" : "no", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
 }
 
 } // namespace sunfleck::editor

@@ -81,7 +81,8 @@ void amount_row(Session& session, const FieldSource& source, vec3 value, float i
         look.width = 9.0f * ui::unit();
         const ui::NumberEdit edit = ui::number_box(name, look);
         ImGui::SameLine();
-        ui::label(name, "The brightest component; colours keep their ratios");
+        ImGui::TextUnformatted(name);
+        ui::tooltip("The brightest component; colours keep their ratios");
         const double given = edit.phase == ui::NumberEdit::Phase::typed ? std::atof(edit.text.c_str()) : edit.value;
         if (edit.phase == ui::NumberEdit::Phase::typed)
             set_colour(session, source, colour * float(given / factor));
@@ -104,7 +105,8 @@ void temperature_row(Session& session, const FieldSource& source, float intensit
     look.width = 9.0f * ui::unit();
     const ui::NumberEdit edit = ui::number_box("Temperature", look);
     ImGui::SameLine();
-    ui::label("Temperature", "Colour of a black body: candle 1,900 K, bulb 2,700 K, noon 5,500 K, blue sky 10,000 K");
+    ImGui::TextUnformatted("Temperature");
+    ui::tooltip("Colour of a black body: candle 1,900 K, bulb 2,700 K, noon 5,500 K, blue sky 10,000 K");
     const bool typed = edit.phase == ui::NumberEdit::Phase::typed;
     if (!typed && edit.phase != ui::NumberEdit::Phase::dragged)
         return;

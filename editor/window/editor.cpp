@@ -78,6 +78,7 @@ private:
     // By the GUI's serial.
     std::deque<std::pair<std::uint64_t, std::vector<std::shared_ptr<ScenePicture>>>> on_screen_;
     std::string title_;
+    app::InputState still_input_;
     std::uint64_t events_ = 0;
     int frames_due_ = frames_after_event;
     Clock::time_point last_frame_ = Clock::now();
@@ -164,15 +165,16 @@ bool Program::something_new() {
 
 Status Program::loop() {
     while (!session_->quit && !stop_requested()) {
-        if (!something_new()) {
+        const bool quiet = ui::take_quiet_frame();
+        if (!quiet && !something_new()) {
             window_->wait(longest_sleep);
             ++figures_.wake_ups;
         }
-        const app::InputState& input = window_->poll();
+        const app::InputState& input = quiet ? (still_input_ = window_->input().still()) : window_->poll();
         finish_opening();
         take_dropped(input);
         ask_before_closing();
-        if (!something_new())
+        if (!something_new() && !quiet)
             continue;
         if (layout_->flying())
             std::this_thread::sleep_until(last_frame_ + std::chrono::duration_cast<Clock::duration>(
@@ -263,6 +265,9 @@ void Program::keep_edits() {
 
 // Edits and views go to the scene thread.
 void Program::tell_scene() {
+    // An empty scene that is about to be replaced needs no picture.
+    if (session_->opening != nullptr && session_->document->entity_count() == 0 && !session_->document->unsaved())
+        return;
     if (std::exchange(session_->rebuild, false))
         collector_.start_over();
     std::optional<SceneChange> change = collector_.collect(session_->document);

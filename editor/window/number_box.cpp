@@ -28,6 +28,7 @@ BoxState& state() {
 }
 
 void begin_typing(ImGuiID id, const NumberLook& look) {
+    ask_for_quiet_frames();
     state().typing = id;
     state().seen = true;
     state().frames = 0;

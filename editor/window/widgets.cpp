@@ -130,6 +130,21 @@ void label(const std::string& text, std::string_view tip, bool dim) {
     tooltip(shown == text ? std::string(tip) : text + (tip.empty() ? "" : "\n") + std::string(tip));
 }
 
+namespace {
+int quiet_frames = 0;
+}
+
+void ask_for_quiet_frames() {
+    quiet_frames = 3;
+}
+
+bool take_quiet_frame() {
+    if (quiet_frames == 0)
+        return false;
+    --quiet_frames;
+    return true;
+}
+
 void heading(const std::string& text) {
     ImGui::Dummy(ImVec2(0.0f, 0.2f * unit()));
     ImGui::TextColored(ImVec4(0.95f, 0.72f, 0.38f, 1.0f), "%s", text.c_str());

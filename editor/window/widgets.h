@@ -55,6 +55,12 @@ void label(const std::string& text, std::string_view tip = {}, bool dim = false)
 void heading(const std::string& text);
 void text(const std::string& name, const std::string& value); // a line whose value scripts may read
 
+// Text that is about to take the keys does so a frame or two after the click that asked for it: until then letters
+// would be lost, so that no further input is taken.
+void ask_for_quiet_frames();
+// Whether the next frame is to be one without further input.
+bool take_quiet_frame();
+
 // --- Numbers: dragged, or clicked and typed --------------------------------------------------------------------------
 struct NumberLook {
     double value = 0.0, minimum = 0.0, maximum = 0.0; // in the unit that is shown

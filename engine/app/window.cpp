@@ -81,6 +81,16 @@ bool InputState::hit(Key key) const {
     return std::find(went_down.begin(), went_down.end(), key) != went_down.end();
 }
 
+InputState InputState::still() const {
+    InputState result = *this;
+    result.went_down.clear();
+    result.text.clear();
+    result.dropped.clear();
+    result.mouse_motion = vec2(0.0f);
+    result.scroll = 0.0f;
+    return result;
+}
+
 // Callbacks of the window system.
 struct WindowEvents {
     using Kind = Window::Event::Kind;

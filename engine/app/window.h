@@ -53,6 +53,8 @@ struct InputState {
 
     bool down(Key key) const { return key >= 0 && key < key_count && keys[std::size_t(key)]; }
     bool hit(Key key) const;
+    // What is held and where the pointer is, without what has just happened.
+    InputState still() const;
 };
 
 enum class Pointer { arrow, text, hand, horizontal, vertical, cross };

@@ -10,7 +10,8 @@ constexpr float usual_intensity = 40.0f;
 
 void place(ecs::Registry& registry, ecs::Entity entity, const quat& rotation = quat(1.0f, 0.0f, 0.0f, 0.0f)) {
     Transform transform;
-    transform.rotation = rotation;
+    // Without negative zeros, which files do not keep.
+    transform.rotation = quat(rotation.w + 0.0f, rotation.x + 0.0f, rotation.y + 0.0f, rotation.z + 0.0f);
     registry.emplace<Transform>(entity, transform);
 }
 
