@@ -1,18 +1,118 @@
-// What the editor's sources promise.
-#include "engine/core/file.h"
+// The editor's window, driven by X events.
+#include "tests/editor/driven_editor.h"
+
 #include "engine/scene/components.h"
 #include "gi_module/technique.h"
-#include "test_places.h"
+#include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
+#include <fstream>
+#include <regex>
 #include <set>
 
 namespace sunfleck {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::DrivenEditor;
+
+class EditorWindow : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!DrivenEditor::possible())
+            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+        folder = fs::path(testing::TempDir()) / ("sunfleck_editor_" + std::to_string(getpid()));
+        fs::remove_all(folder);
+        editor = std::make_unique<DrivenEditor>(folder);
+    }
+    void TearDown() override {
+        if (HasFailure() && editor != nullptr)
+            std::printf("%s\n", editor->log().c_str());
+        editor.reset();
+        fs::remove_all(folder);
+    }
+    // Lets the menu fall and chooses.
+    void menu(const std::string& group, const std::string& entry) {
+        ASSERT_TRUE(editor->click("menu/" + group));
+        ASSERT_TRUE(editor->click("menu/" + group + "/" + entry)) << group << ": " << entry;
+    }
+    fs::path folder;
+    std::unique_ptr<DrivenEditor> editor;
+};
+
+// Small and quick: a room of some boxes, with few samples and small maps.
+constexpr const char* small_scene = "cornell";
+
+TEST_F(EditorWindow, AClickInThePictureSelectsAndAHandleMoves) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("viewport/picture"));
+    ASSERT_TRUE(editor->wait_until([&] { return editor->find("inspector/name").has_value(); }));
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->appears("viewport/gizmo y"));
+    const double height = std::stod(editor->value("inspector/Transform/position/y"));
+    ASSERT_TRUE(editor->drag("viewport/gizmo y", 0, -60));
+    EXPECT_TRUE(
+        editor->wait_until([&] { return std::stod(editor->value("inspector/Transform/position/y")) > height + 0.05; }));
+    const auto report = editor->end();
+    EXPECT_EQ(report["edits"], 1) << "a drag is one entry of the history";
+    EXPECT_EQ(report["validation_messages"], 0);
+}
+
+// Unsaved edits survive a crash: the next run offers them, and touches no file.
+TEST_F(EditorWindow, ACrashLosesNoEdit) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->enter("inspector/Material/roughness/value", "0.25"));
+    ASSERT_TRUE(editor->wait_for("inspector/Material/roughness/value", "0.25"));
+    const auto kept = [&] {
+        for (const auto& entry : fs::recursive_directory_iterator(folder / "recovery"))
+            if (entry.path().filename() == "about.json")
+                return true;
+        return false;
+    };
+    ASSERT_TRUE(editor->wait_until(kept));
+    editor->crash();
+    editor->start({});
+    ASSERT_TRUE(editor->click("dialog/Recover"));
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    EXPECT_TRUE(editor->wait_for("inspector/Material/roughness/value", "0.25"));
+    EXPECT_EQ(editor->value("menu/title"), "untitled *");
+    editor->key("ctrl+q");
+    ASSERT_TRUE(editor->click("dialog/Discard"));
+    EXPECT_EQ(editor->wait_for_end(), 0);
+    EXPECT_TRUE(fs::is_empty(folder / "recovery")) << "a run that ends as it should leaves nothing";
+}
+
+// Nothing is drawn while nothing happens, and pointers over panels draw no scene.
+TEST_F(EditorWindow, RestsWhileNothingHappens) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    editor->point_at(30, 300);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const auto processor = [&] {
+        std::ifstream file("/proc/" + std::to_string(editor->process()) + "/stat");
+        std::string word, line;
+        std::getline(file, line);
+        std::istringstream rest(line.substr(line.rfind(')') + 2));
+        std::vector<std::string> words;
+        while (rest >> word)
+            words.push_back(word);
+        return double(std::stol(words[11]) + std::stol(words[12])) / double(sysconf(_SC_CLK_TCK));
+    };
+    const std::string picture = editor->value("viewport/picture");
+    const double began = processor();
+    const int seconds = tests::by_size(5, 60);
+    std::this_thread::sleep_for(std::chrono::seconds(seconds));
+    EXPECT_LE(processor() - began, 0.005 * seconds + 0.011)
+        << "one tick of the clock more than half a percent of a core";
+    for (int x = 20; x < 200; x += 5)
+        editor->point_at(x, 200 + x);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    EXPECT_EQ(editor->value("viewport/picture"), picture) << "the pointer over panels draws no scene";
+    editor->end();
+}
 
 // Files of panels and of what they share: what they show comes from descriptions and registries.
 TEST(EditorSources, PanelsNameNoComponentTechniqueOrSetting) {
