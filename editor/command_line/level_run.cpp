@@ -4,6 +4,7 @@
 #include "engine/core/hash.h"
 #include "gi_module/technique.h"
 #include "viewer/exposure.h"
+#include "viewer/picture_settings.h"
 #include "viewer/quality.h"
 
 #include <algorithm>
@@ -86,6 +87,9 @@ Status LevelRun::load(const LevelOptions& options) {
     request_.width = size_.width;
     request_.height = size_.height;
     request_.simulate = false;
+    const viewer::PictureSettings picture; // as the demo draws it
+    request_.antialiasing = picture.antialiasing;
+    request_.glare = picture.glare;
     request_.camera.vertical_field_of_view = glm::radians(viewer::usual_field_of_view);
     request_.ev100 = viewer::scene_exposure(renderer_->registry()).value_or(viewer::default_exposure);
     return {};

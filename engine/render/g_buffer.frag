@@ -39,9 +39,14 @@ void main() {
     if (pattern_kind != pattern_none) {
         const uint row = surface_row(draw.surface);
         const vec4 pattern = rows[row].pattern;
+        const mat3 to_local = mat3(rows[row].inverse_model);
         const vec3 local = (rows[row].inverse_model * vec4(in_position, 1.0)).xyz;
-        const vec3 local_normal = mat3(rows[row].inverse_model) * normalize(geometric);
-        albedo = mix(albedo, pattern.rgb, pattern_share(pattern_kind, pattern.w, local, local_normal));
+        const vec3 local_normal = to_local * normalize(geometric);
+        // Not derivatives of `local`: beside a triangle's edge a device may not read buffers, and they would be wrong.
+        const vec3 across = to_local * dFdx(in_position), down = to_local * dFdy(in_position);
+        const vec3 footprint = sqrt(across * across + down * down);
+        albedo = mix(albedo, pattern.rgb,
+                     filtered_pattern_share(pattern_kind, pattern.w, local, local_normal, footprint));
     }
     out_albedo = pack_albedo(albedo, (draw.surface & surface_unlit) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;

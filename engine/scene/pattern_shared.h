@@ -69,5 +69,71 @@ SHARED_FUNCTION float pattern_share(uint kind, float scale, vec3 position, vec3 
     return 0.0f;
 }
 
+// --- Filtered: the mean over what a pixel shows -------------------------------------------------------------------
+// Means over [x - width/2, x + width/2], from integrals; widths below this are as good as none.
+SHARED_CONSTANT float least_pattern_width = 1e-4f;
+
+// Of a wave that is 1 in [0, 1), -1 in [1, 2), and so on.
+SHARED_FUNCTION float square_wave_integral(float x) {
+    return 1.0f - abs(x - 2.0f * floor(0.5f * x) - 1.0f);
+}
+SHARED_FUNCTION float square_wave_mean(float place, float width) {
+    const float w = max(width, least_pattern_width),
+                x = place - 2.0f * floor(0.5f * place); // small: no digits are lost
+    return (square_wave_integral(x + 0.5f * w) - square_wave_integral(x - 0.5f * w)) / w;
+}
+
+// Of lines at the integers, 1 within `reach` of them and else 0; soft: falling from 1 in the middle to 0 there.
+SHARED_FUNCTION float line_integral(float x, float reach, bool soft) {
+    const float nearest = floor(x + 0.5f);
+    const float beside = max(-reach, min(x - nearest, reach));
+    return soft ? reach * nearest + beside - beside * abs(beside) / (2.0f * reach) : 2.0f * reach * nearest + beside;
+}
+SHARED_FUNCTION float line_mean(float place, float reach, float width, bool soft) {
+    const float w = max(width, least_pattern_width), x = place - floor(place);
+    return (line_integral(x + 0.5f * w, reach, soft) - line_integral(x - 0.5f * w, reach, soft)) / w;
+}
+
+// Rectangles of unit size with joints, each of its own tone, `tones` at most; the same over pixels that show several.
+SHARED_FUNCTION float joints_and_tones(vec2 place, vec2 width, vec2 reach, float tones, float layer) {
+    const float joints = 1.0f - (1.0f - line_mean(place.x, reach.x, width.x, false)) *
+                                    (1.0f - line_mean(place.y, reach.y, width.y, false));
+    const float many = min(max(max(width.x, width.y) - 0.5f, 0.0f), 1.0f);
+    const float tone = tones * pattern_noise(floor(place.x), floor(place.y), layer);
+    const float mixed = tone + (0.5f * tones - tone) * many;
+    return mixed + (1.0f - mixed) * joints;
+}
+
+// pattern_share over a pixel: `footprint`, by axis of the mesh's space, is how far it reaches there.
+SHARED_FUNCTION float filtered_pattern_share(uint kind, float scale, vec3 position, vec3 normal, vec3 footprint) {
+    const vec3 p = position / scale, w = footprint / scale;
+    if (kind == pattern_checker)
+        return 0.5f - 0.5f * square_wave_mean(p.x + 0.001f, w.x) * square_wave_mean(p.y + 0.001f, w.y) *
+                          square_wave_mean(p.z + 0.001f, w.z);
+    if (kind == pattern_marble) {
+        // The vein's phase in halves of a turn, and how far a pixel reaches in it; veins are lines of that.
+        const float bent = pattern_smooth_noise(p) + 0.5f * pattern_smooth_noise(2.1f * p);
+        const float phase = (3.1f * (p.x + p.y + p.z) + 5.0f * bent) / 3.14159265f;
+        const float reach = 0.1082f, width = 2.0f * max(max(w.x, w.y), w.z);
+        const float sharp = 1.0f - min(1.0f, 3.0f * abs(sin(3.14159265f * phase)));
+        return sharp + (line_mean(phase, reach, width, true) - sharp) * min(width / reach, 1.0f);
+    }
+    const vec3 facing = abs(normal);
+    vec2 at = vec2(p.x, p.z), width = vec2(w.x, w.z);
+    if (facing.y < max(facing.x, facing.z)) {
+        at = facing.x > facing.z ? vec2(p.z, p.y) : vec2(p.x, p.y);
+        width = facing.x > facing.z ? vec2(w.z, w.y) : vec2(w.x, w.y);
+    }
+    if (kind == pattern_planks)
+        return joints_and_tones(vec2(at.x / 8.0f + 0.37f * floor(at.y), at.y), vec2(width.x / 8.0f, width.y),
+                                vec2(0.03f / 8.0f, 0.03f), 0.55f, 1.0f);
+    if (kind == pattern_bricks) {
+        const float row = floor(at.y * 2.0f);
+        return joints_and_tones(vec2(at.x + 0.5f * (row - 2.0f * floor(0.5f * row)), at.y * 2.0f),
+                                vec2(width.x, width.y * 2.0f), vec2(0.03f, 0.06f), 0.3f, 2.0f);
+    }
+    return 0.0f;
+}
+
 SHARED_END
 #endif

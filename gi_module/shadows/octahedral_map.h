@@ -150,6 +150,25 @@ SHARED_FUNCTION vec2 texel_vote(float on_plane, float receiver, float window, fl
     return vec2(lit ? 1.0f : 0.0f, on_surface || !lit ? 1.0f : 0.0f);
 }
 
+// The same on hemisphere maps, with the tolerances of their unfiltered look-up: x: 1 if lit, y: 1 if dark. `head_on`:
+// stored value up to which a blocker is too near to the receiver to be told from the other wall of a corner;
+// `simplified`: by how much a mover's surface may lie before its place, where maps have it in simplified form.
+struct HemisphereTolerance {
+    float window;
+    float slack;
+    float step;
+    float head_on;
+    float simplified;
+};
+SHARED_FUNCTION vec2 hemisphere_texel_vote(float on_plane, float receiver, HemisphereTolerance tolerance,
+                                           float stored) {
+    float window = tolerance.window, step = tolerance.step;
+    float held = min(clamp(on_plane, receiver - window, receiver + window) + tolerance.simplified, 1.0f) + step;
+    bool lit = held >= stored && stored >= min(on_plane, 1.0f) - tolerance.slack - step;
+    bool dark = stored > max(held + tolerance.slack, tolerance.head_on);
+    return vec2(lit ? 1.0f : 0.0f, dark ? 1.0f : 0.0f);
+}
+
 // Blend of four votes: of the texels at corner + (i & 1, i >> 1), with the receiver at `place`, 0 to 1, between them.
 SHARED_FUNCTION float count_votes(vec4 lit, vec4 vote, vec2 place) {
     vec4 weight = vec4((1.0f - place.x) * (1.0f - place.y), place.x * (1.0f - place.y), (1.0f - place.x) * place.y,

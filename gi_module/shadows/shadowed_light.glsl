@@ -50,17 +50,10 @@ float filtered_visibility(uint slot, float scale, vec3 place, vec3 normal, float
     return count_votes(lit, vote, position - floor(position));
 }
 
-// The stored values of four texels: corner + (i & 1, i >> 1).
-vec4 map_values(uint slot, ivec2 corner) {
-    return vec4(map_value(slot, corner), map_value(slot, corner + ivec2(1, 0)), map_value(slot, corner + ivec2(0, 1)),
-                map_value(slot, corner + ivec2(1, 1)));
-}
-
 // The same on a hemisphere's map, which nearly all samples have: the plane's value at a texel centre, -k n.c with c =
 // (x, y, 1 - |x| - |y|), is a function of x plus one of y, and the four centres have three x and three y between them.
-// The rules are those of texel_vote and count_votes, for four texels at once.
 float filtered_hemisphere_visibility(uint slot, vec3 place, vec3 normal, float plane_distance, float bias, float reach,
-                                     float lag) {
+                                     float simplified, float lag) {
     const float side = map_side(), texel = 1.0 / side; // in x and y; twice that in u and v
     const vec2 position = map_texel(place.xy) - 0.5;
     const vec2 corner = clamp(floor(position), vec2(0.0), vec2(side - 2.0));
@@ -69,18 +62,19 @@ float filtered_hemisphere_visibility(uint slot, vec3 place, vec3 normal, float p
     const vec3 y = 0.5 * (uv.x - uv.y) + vec3(-texel, 0.0, texel);
     const vec3 n = normal * (shadow_near / max(plane_distance, 1e-9));
     const vec3 of_x = n.z * abs(x) - n.x * x, of_y = n.z * abs(y) - n.y * y - n.z;
-    const vec4 on_plane = min(of_x.xyyz + of_y.yzxy, 1.0);
-    const float step = depth_step(map_bits) + lag, slack = shadow_filter_slack * reach;
-    const float window = shadow_filter_window * bias;
-    const vec4 held = min(clamp(on_plane, place.z - window, place.z + window), 1.0) + step;
-    const vec4 stored = map_values(slot, ivec2(corner));
-    const vec2 within = clamp(position - corner, 0.0, 1.0);
-    const vec4 weight = vec4(1.0 - within.x, within.x, 1.0 - within.x, within.x) *
-                        vec4(1.0 - within.yy, within.yy);
-    // Texels that are neither have no vote.
-    const float lit = dot(weight, vec4(lessThanEqual(stored, held)) * vec4(greaterThanEqual(stored, on_plane - slack - step)));
-    const float dark = dot(weight, vec4(greaterThan(stored, held + slack)));
-    return lit + dark > 0.0 ? lit / (lit + dark) : 1.0;
+    const vec4 on_plane = of_x.xyyz + of_y.yzxy;
+    const float step = depth_step(map_bits) + lag;
+    const HemisphereTolerance tolerance =
+        HemisphereTolerance(shadow_filter_window * bias, shadow_filter_slack * reach, step,
+                            place.z + shadow_head_on_slack * reach + step, simplified * bias);
+    vec4 lit, dark;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const float stored = map_value(slot, ivec2(corner) + ivec2(i & 1, i >> 1));
+        const vec2 votes = hemisphere_texel_vote(on_plane[i], place.z, tolerance, stored);
+        lit[i] = votes.x;
+        dark[i] = votes.y;
+    }
+    return count_votes(lit, lit + dark, clamp(position - corner, 0.0, 1.0));
 }
 
 // Extra bias for a receiver on a mover in a stale map: the mover's old image in the map may be nearer to the light by
@@ -163,7 +157,7 @@ float map_visibility(LightRow light, Pixel pixel) {
     const float receiver = shadow_near * place.z;
     if (hemisphere)
         return filtered_hemisphere_visibility(slot, vec3(place.xy, receiver), normal, plane_distance, bias,
-                                              reach * receiver, lag);
+                                              reach * receiver, simplified_movers != 0 ? pixel.on_mover : 0.0, lag);
     return filtered_visibility(slot, scale, vec3(place.xy, receiver), normal, plane_distance, bias, reach * receiver, lag);
 }
 

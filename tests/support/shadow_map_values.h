@@ -70,10 +70,14 @@ struct ShadowMapValues {
             const float receiver = shadow_near * result.place.z;
             const float on_plane =
                 value_on_plane(to_light_space(light, normal), -glm::dot(normal, v), centre(light, t));
-            const vec2 said = texel_vote(on_plane, receiver, shadow_filter_window * bias,
-                                         shadow_filter_slack * reach * receiver, depth_step(bits), value(light, t));
+            const float step = depth_step(bits);
+            const HemisphereTolerance tolerance{shadow_filter_window * bias, shadow_filter_slack * reach * receiver,
+                                                step, receiver * (1.0f + shadow_head_on_slack * reach) + step, 0.0f};
+            const vec2 said = hemisphere[light] ? hemisphere_texel_vote(on_plane, receiver, tolerance, value(light, t))
+                                                : texel_vote(on_plane, receiver, tolerance.window, tolerance.slack,
+                                                             step, value(light, t));
             filter_lit[i] = said.x;
-            vote[i] = said.y;
+            vote[i] = hemisphere[light] ? said.x + said.y : said.y;
         }
         result.filtered = count_votes(filter_lit, vote, at - 0.5f - corner);
         return result;
