@@ -197,7 +197,8 @@ const std::vector<BuiltInScene>& built_in_scenes() {
                                                    {"classroom", make_classroom},
                                                    {"office", make_office},
                                                    {"atrium", make_atrium},
-                                                   {"lantern_house", make_lantern_house}};
+                                                   {"lantern_house", make_lantern_house},
+                                                   {"lantern_game", make_lantern_game}};
     return list;
 }
 

@@ -29,6 +29,7 @@ void make_office(SceneBuilder& scene);    // the same with two
 void make_atrium(SceneBuilder& scene);    // 250,000 triangles, 60 materials
 
 void make_lantern_house(SceneBuilder& scene); // the demo's level
+void make_lantern_game(SceneBuilder& scene);  // the game's: doors that open to reflected light
 
 // A furnace of another albedo and emission.
 void make_furnace_of(SceneBuilder& scene, float albedo, float emission);

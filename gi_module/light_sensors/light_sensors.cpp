@@ -182,10 +182,11 @@ void LightSensors::mark_touched(const Bounds& box) {
 }
 
 void LightSensors::mark_lit_by(const Emitter& emitter) {
+    const EmitterReach reach(emitter);
     for (Sensor& sensor : sensors_) {
         const float noticed = noticed_share * sensor.place.scale;
         for (std::size_t i = 0; i < sensor.paths.size(); ++i)
-            if (strongest_irradiance(emitter, sensor.paths[i].vertices) > noticed)
+            if (sensor.pending[i] == 0 && reach.strongest(sensor.paths[i].vertices) > noticed)
                 mark(sensor, i);
     }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sunfleck::gi {
 
@@ -17,19 +18,23 @@ void SensorScene::take(std::vector<Emitter> emitters) {
     }
 }
 
-float strongest_irradiance(const Emitter& emitter, const Bounds& box) {
-    if (emitter.kind == EmitterKind::directional || emitter.kind == EmitterKind::environment)
-        return std::numeric_limits<float>::infinity();
-    Bounds place;
-    place.add(vec3(emitter.matrix[3]));
+EmitterReach::EmitterReach(const Emitter& emitter)
+    : radius_(std::max(0.5f * std::hypot(emitter.width, emitter.height), emitter.radius)),
+      everywhere_(emitter.kind == EmitterKind::directional || emitter.kind == EmitterKind::environment) {
+    if (emitter.corners.empty())
+        place_.add(vec3(emitter.matrix[3]));
     for (const vec3 corner : emitter.corners)
-        place.add(corner);
-    const float reach = std::max(0.5f * std::hypot(emitter.width, emitter.height), emitter.radius);
-    const vec3 apart = glm::max(vec3(0.0f), glm::max(box.minimum - place.maximum, place.minimum - box.maximum));
-    const float distance = std::max(glm::length(apart) - reach, 0.0f), squared = distance * distance;
+        place_.add(corner);
     const vec3 strength = emitter.is_delta() ? emitter.intensity : emitter.radiance * emitter.area;
-    const float most = std::max({strength.x, strength.y, strength.z});
-    return squared > 0.0f ? most / squared : std::numeric_limits<float>::infinity();
+    strength_ = std::max({strength.x, strength.y, strength.z});
+}
+
+float EmitterReach::strongest(const Bounds& box) const {
+    if (everywhere_)
+        return std::numeric_limits<float>::infinity();
+    const vec3 apart = glm::max(vec3(0.0f), glm::max(box.minimum - place_.maximum, place_.minimum - box.maximum));
+    const float distance = std::max(glm::length(apart) - radius_, 0.0f);
+    return distance > 0.0f ? strength_ / (distance * distance) : std::numeric_limits<float>::infinity();
 }
 
 ArrivingLight light_from(const Emitter& emitter, const EmittedPoint& point, vec3 receiver) {

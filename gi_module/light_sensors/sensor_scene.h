@@ -18,9 +18,20 @@ struct SensorScene {
     void take(std::vector<Emitter> emitters);
 };
 
-// An upper bound of the irradiance, W/m2, that the emitter can give to a surface anywhere in the box, were nothing in
-// its way. Infinite for suns and skies.
-float strongest_irradiance(const Emitter& emitter, const Bounds& box);
+// How far an emitter's light can matter.
+class EmitterReach {
+public:
+    explicit EmitterReach(const Emitter& emitter);
+    // An upper bound of the irradiance, W/m2, that the emitter can give to a surface anywhere in the box, were nothing
+    // in its way. Infinite for suns and skies.
+    float strongest(const Bounds& box) const;
+
+private:
+    Bounds place_;
+    float radius_ = 0.0f;   // of what may stick out of the place
+    float strength_ = 0.0f; // W/m2 at 1 m, at most
+    bool everywhere_ = false;
+};
 
 // Light that a point on the emitter sends to a receiver, as if nothing were in its way: irradiance on a surface that
 // faces it, W/m2. For area emitters the whole area's, as if all of it were where the point is.

@@ -1,0 +1,34 @@
+// The checkpoints of a level on disk: the newest, and the one before it. Writes are atomic, so that whatever interrupts
+// one leaves the last good checkpoint.
+#pragma once
+
+#include "game_demo/game/saved_game.h"
+
+#include <filesystem>
+
+namespace sunfleck::demo {
+
+class CheckpointFiles {
+public:
+    // The folder is made when something is written.
+    CheckpointFiles(std::filesystem::path folder, std::string level);
+
+    Status save(const GameWorld& world) const;
+    // Loads the newest that is good; false if there is none. What is not good is renamed to end in ".damaged", and
+    // `message` says so, in one line.
+    bool load(GameWorld& world, std::string& message) const;
+    bool any() const;
+
+    std::filesystem::path newest() const { return newest_; }
+    std::filesystem::path older() const { return older_; }
+
+private:
+    std::filesystem::path folder_;
+    std::string level_;
+    std::filesystem::path newest_, older_;
+};
+
+// Where the game keeps its checkpoints: $XDG_DATA_HOME/sunfleck or ~/.local/share/sunfleck; empty without either.
+std::filesystem::path checkpoint_folder();
+
+} // namespace sunfleck::demo

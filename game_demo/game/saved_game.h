@@ -1,0 +1,15 @@
+// A game as text, for checkpoints: JSON with a version and a checksum. Entities are told by their names.
+#pragma once
+
+#include "game_demo/game/game_world.h"
+
+namespace sunfleck::demo {
+
+// `level`: the name of the scene.
+std::string save_game(const GameWorld& world, const std::string& level);
+// Into a world of the same level; its world hash is then what it was when the text was made. An error says what is
+// wrong with the text (damage, another level, a later version); the world may be half of each then and must be
+// restarted.
+Status load_game(GameWorld& world, const std::string& level, const std::string& text);
+
+} // namespace sunfleck::demo

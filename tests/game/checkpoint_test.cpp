@@ -1,0 +1,112 @@
+// Checkpoints: the world after loading, and files that were harmed or whose writer was killed.
+#include "engine/core/file.h"
+#include "game_demo/game/checkpoint_files.h"
+#include "tests/game/played_game.h"
+#include "tests/support/test_size.h"
+
+#include <csignal>
+#include <filesystem>
+#include <functional>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace sunfleck::demo {
+namespace {
+
+using tests::Played;
+
+struct Folder {
+    Folder() : path(std::filesystem::temp_directory_path() / ("sunfleck_checkpoints_" + std::to_string(getpid()))) {
+        std::filesystem::remove_all(path);
+    }
+    ~Folder() { std::filesystem::remove_all(path); }
+    std::filesystem::path path;
+};
+
+std::uint64_t hash_of(Played& played) {
+    return played.world->simulation().world_hash(played.registry);
+}
+
+TEST(GameCheckpoints, AWorldIsTheSameAfterLoading) {
+    const Folder folder;
+    const CheckpointFiles files(folder.path, "lantern_game");
+    Played played;
+    played.enter("area red wall");
+    for (std::uint32_t k = 0; k < 700; ++k)
+        played.step(tests::aimless(3, k));
+    ASSERT_TRUE(files.save(*played.world));
+    Played other;
+    std::string message;
+    ASSERT_TRUE(files.load(*other.world, message)) << message;
+    EXPECT_EQ(message, "");
+    EXPECT_EQ(hash_of(other), hash_of(played));
+    EXPECT_EQ(other.world->area_entity(), played.world->area_entity());
+    EXPECT_EQ(other.world->simulation().carries_lantern(), played.world->simulation().carries_lantern());
+}
+
+// Damages the newest of two checkpoints by `harm`; the older one is loaded, and the newest set aside.
+void expect_older(const std::function<std::string(std::string)>& harm, const std::string& why) {
+    const Folder folder;
+    const CheckpointFiles files(folder.path, "lantern_game");
+    Played played, other;
+    ASSERT_TRUE(files.save(*played.world));
+    const std::uint64_t older = hash_of(played);
+    played.step({50, 0, 30, 0, 0});
+    ASSERT_TRUE(files.save(*played.world));
+    ASSERT_TRUE(write_file(files.newest(), harm(read_file(files.newest()).value())));
+    std::string message;
+    ASSERT_TRUE(files.load(*other.world, message)) << why;
+    EXPECT_EQ(hash_of(other), older) << why;
+    EXPECT_NE(message.find(why), std::string::npos) << message;
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0);
+    EXPECT_FALSE(std::filesystem::exists(files.newest()));
+    EXPECT_TRUE(std::filesystem::exists(files.newest().string() + ".damaged"));
+}
+
+TEST(GameCheckpoints, WhatIsNotGoodIsSetAside) {
+    expect_older([](std::string text) { return text.substr(0, text.size() / 2); }, "not a saved game");
+    expect_older(
+        [](std::string text) {
+            char& digit = text[text.find("\"steps\"") + 9];
+            digit = digit == '7' ? '8' : '7';
+            return text;
+        },
+        "checksum");
+    expect_older([](const std::string&) { return std::string("\0\1\2", 3); }, "not a saved game");
+    expect_older(
+        [](std::string text) {
+            const std::string mark = "\"sunfleck_game\": 1";
+            return text.replace(text.find(mark), mark.size(), "\"sunfleck_game\": 2");
+        },
+        "later version");
+    expect_older(
+        [](std::string text) {
+            const std::string mark = "\"lantern_game\"";
+            return text.replace(text.find(mark), mark.size(), "\"other_level\"");
+        },
+        "another level");
+}
+
+TEST(GameCheckpoints, KilledWritersLeaveAGoodOne) {
+    const Folder folder;
+    const CheckpointFiles files(folder.path, "lantern_game");
+    Played played;
+    ASSERT_TRUE(files.save(*played.world));
+    for (std::uint32_t kill_number = 0; kill_number < tests::by_size(10u, 200u); ++kill_number) {
+        const pid_t child = fork();
+        if (child == 0)
+            for (;;)
+                (void)files.save(*played.world).has_value();
+        usleep(useconds_t(2000 + hash_combine(kill_number, 5) % 20000));
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        Played other;
+        std::string message;
+        ASSERT_TRUE(files.load(*other.world, message));
+        EXPECT_EQ(message, "");
+        EXPECT_EQ(hash_of(other), hash_of(played));
+    }
+}
+
+} // namespace
+} // namespace sunfleck::demo

@@ -1,0 +1,82 @@
+// A game that is played without pictures.
+#pragma once
+
+#include "assets/test_rooms.h"
+#include "engine/core/random.h"
+#include "game_demo/game/solution.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+namespace sunfleck::tests {
+
+inline constexpr std::uint64_t steps_a_minute = 3600;
+
+struct Played {
+    explicit Played(const gi::SensorSettings& settings = {}, bool white_panels = false) {
+        assets::SceneBuilder builder(registry, meshes);
+        assets::make_lantern_game(builder);
+        if (white_panels)
+            for (const char* name : {"red panel", "green block", "red sheet", "blue sheet"})
+                registry.patch<scene::Material>(scene::find_by_name(registry, name),
+                                                [](scene::Material& m) { m.base_colour = vec3(0.7f); });
+        scene::update_world_transforms(registry);
+        world = demo::GameWorld::create(registry, meshes, nullptr, settings).value();
+    }
+
+    void step(const simulation::StepInput& input) {
+        ASSERT_TRUE(world->step(input));
+        hashes.push_back(world->simulation().world_hash(registry));
+        registry.view<scene::LightSensor, scene::SensorReading, scene::Name>().each(
+            [&](ecs::Entity, const scene::LightSensor&, const scene::SensorReading& reading, const scene::Name& name) {
+                float& best = most[name.name];
+                best = std::max(best, reading.share);
+            });
+        milliseconds = std::max(milliseconds, world->sensors().milliseconds());
+        sum_of_milliseconds += world->sensors().milliseconds();
+    }
+
+    // The person stands at the entry of the area of this name, with the lantern in hand.
+    const scene::GameArea& enter(const std::string& name) {
+        const ecs::Entity entity = scene::find_by_name(registry, name);
+        const auto& area = registry.get<scene::GameArea>(entity);
+        world->simulation().hand_lantern(registry, scene::find_by_name(registry, "lantern"));
+        world->simulation().place_player(vec3(scene::world_matrix(registry, entity)[3]) + area.entry,
+                                         area.entry_facing);
+        step({});
+        return area;
+    }
+
+    // Plays the solution to its end, or so many steps.
+    void solve(std::uint64_t limit = 15 * steps_a_minute) {
+        demo::Solution solution(*world);
+        while (!solution.ended() && hashes.size() < limit)
+            step(solution.next());
+        problem = solution.problem();
+    }
+
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    std::unique_ptr<demo::GameWorld> world;
+    std::vector<std::uint64_t> hashes;
+    std::map<std::string, float> most; // share that each sensor read at most
+    std::string problem;
+    double milliseconds = 0.0, sum_of_milliseconds = 0.0;
+};
+
+// Goes about without aim.
+inline simulation::StepInput aimless(std::uint32_t seed, std::uint32_t step) {
+    const std::uint32_t stride = hash_combine(seed, step / 40);
+    simulation::StepInput input;
+    input.forward = to_unit_float(hash_combine(stride, 1)) < 0.8f ? 100 : -60;
+    input.right = std::int32_t(to_unit_float(hash_combine(stride, 2)) * 120.0f) - 60;
+    input.turn = std::int32_t(to_unit_float(hash_combine(stride, 3)) * 800.0f) - 400;
+    input.look_up = std::int32_t(to_unit_float(hash_combine(stride, 4)) * 100.0f) - 50;
+    const float act = to_unit_float(hash_combine(seed, 7919u + step));
+    if (act < 0.022f)
+        input.buttons = act < 0.02f ? simulation::button_use : simulation::button_put_down;
+    return input;
+}
+
+} // namespace sunfleck::tests
