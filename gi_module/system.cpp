@@ -124,7 +124,7 @@ Status System::find_view() {
 
 Status System::update_samples(const SceneView& scene, bool static_changed) {
     const StageTimer timer(cpu_times_, "light samples");
-    samples_.update(scene, settings_.sample_request(plan_), settings_);
+    samples_.update(scene, settings_.sample_request(plan_), settings_, restart_);
     const MapPolicy policy{wants_visibility(), any_in_use(&TechniqueEntry::needs_full_maps)};
     SUNFLECK_TRY(shadows_->configure(settings_, policy, samples_.size(), resources_));
     samples_.update_rows(scene, settings_, shadows_->slots(), input_.indirect_scale);

@@ -43,11 +43,26 @@ bool BlockedPaths::crosses(const Box& box, vec3 from, vec3 to) {
     return enter < leave;
 }
 
-bool BlockedPaths::crosses_path(const Box& box, const LightSample& sample) {
-    for (std::uint32_t leg = 0; leg < sample.path_vertex_count; ++leg)
+bool BlockedPaths::crosses_path(const Box& box, const LightSample& sample, std::uint32_t first_leg) {
+    for (std::uint32_t leg = first_leg; leg < sample.path_vertex_count; ++leg)
         if (crosses(box, sample.path[leg], leg + 1 < sample.path_vertex_count ? sample.path[leg + 1] : sample.position))
             return true;
     return false;
+}
+
+// A box does not block the light that leaves itself, but may stand in its way later.
+bool BlockedPaths::blocks(const LightSample& sample) const {
+    return std::any_of(boxes_.begin(), boxes_.end(), [&](const auto& entry) {
+        return crosses_path(entry.second, sample, sample.dynamic && entry.first == sample.emitter ? 1 : 0);
+    });
+}
+
+void BlockedPaths::check(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {
+    for (const std::uint32_t i : changed) {
+        const std::uint8_t now = blocks(samples[i]) ? 1 : 0;
+        count_ = count_ + now - blocked_[i];
+        blocked_[i] = now;
+    }
 }
 
 bool BlockedPaths::follow_one(const scene::DrawableChange& change, const scene::MeshStore& meshes) {
@@ -92,8 +107,7 @@ void BlockedPaths::update(const scene::SceneChanges& changes, const scene::MeshS
     generation_ = generation;
     blocked_.assign(samples.size(), 0);
     for (std::size_t i = 0; i < samples.size(); ++i)
-        blocked_[i] = std::any_of(boxes_.begin(), boxes_.end(),
-                                  [&](const auto& entry) { return crosses_path(entry.second, samples[i]); });
+        blocked_[i] = blocks(samples[i]) ? 1 : 0;
     count_ = std::size_t(std::count(blocked_.begin(), blocked_.end(), std::uint8_t(1)));
 }
 

@@ -21,6 +21,8 @@ public:
     // where such a box came, went or moved.
     void update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
                 std::span<const LightSample> samples, std::uint64_t generation);
+    // Looks at some samples again, which have changed since.
+    void check(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
     bool is_blocked(std::uint32_t sample) const { return sample < blocked_.size() && blocked_[sample] != 0; }
     std::size_t count() const { return count_; }
 
@@ -35,7 +37,8 @@ private:
     };
     static bool is_large_box(const scene::Mesh& mesh, const Bounds& bounds, const mat4& matrix);
     static bool crosses(const Box& box, vec3 from, vec3 to);
-    static bool crosses_path(const Box& box, const LightSample& sample);
+    static bool crosses_path(const Box& box, const LightSample& sample, std::uint32_t first_leg);
+    bool blocks(const LightSample& sample) const;
 
     bool follow(const scene::SceneChanges& changes, const scene::MeshStore& meshes);
     bool follow_one(const scene::DrawableChange& change, const scene::MeshStore& meshes);

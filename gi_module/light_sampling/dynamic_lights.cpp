@@ -26,6 +26,7 @@ public:
     vec3 flux(std::uint32_t) const override { return emitter_.flux; }
     vec3 weight(const float numbers[4]) const override { return vec3(ray(numbers).weight); }
     bool weights_vary() const override { return false; }
+    bool is_extended() const override { return false; }
 
 private:
     const Emitter& emitter_;

@@ -1,10 +1,12 @@
 #include "gi_module/light_sampling/followed_paths.h"
 
+#include "engine/core/jobs.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace sunfleck::gi {
@@ -13,6 +15,7 @@ namespace {
 constexpr std::uint32_t direction_count = 512;
 constexpr float segment_margin = 2e-3f; // units of the scene, off the source and the first surface
 constexpr float out_of_scene = 1e4f;    // units of the scene
+constexpr float landing_length = 1.0f;  // units of the scene, as far apart as surfaces that face elsewhere by a radian
 constexpr float max_cell = 3.0f;        // times the mean: a path with a small cell moves into a larger one
 
 mat3 rotation_of(const mat4& matrix) {
@@ -24,18 +27,20 @@ mat3 rotation_of(const mat4& matrix) {
 
 // What a path makes of its light, and where it goes.
 struct Walk {
-    vec3 throughput{1.0f}, first_hit{0.0f};
+    vec3 throughput{1.0f}, first_hit{0.0f}, first_normal{0.0f};
     std::uint32_t reflections = 0;
     bool escaped = false;
 };
 
 // A random walk from the emitted ray; the sample lies where it ends.
-Walk trace(raytrace::Ray ray, const PathSpace& space, LightSample& sample) {
+Walk trace(raytrace::Ray ray, const PathSpace& space, std::uint32_t path_seed, LightSample& sample) {
     Walk walk;
+    sample.path_vertex_count = 0;
     const std::uint32_t seed = hash_combine(space.settings.seed, 0x9a7u);
-    RandomSequence random(SequenceKind::pseudo_random, seed, space.paths_made++);
+    RandomSequence random(SequenceKind::pseudo_random, seed, path_seed);
     for (std::uint32_t bounce = 1; bounce <= space.bounces; ++bounce) {
         const auto hit = space.rays.closest_hit(ray, raytrace::Scope::static_only);
+        add_path_vertex(sample, ray.origin);
         if (!hit) {
             walk.escaped = bounce == 1;
             walk.throughput = vec3(0.0f);
@@ -44,8 +49,10 @@ Walk trace(raytrace::Ray ray, const PathSpace& space, LightSample& sample) {
         const raytrace::SurfacePoint point = space.rays.surface(ray, *hit);
         const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
         const vec3 normal = side * point.geometric_normal, shading = side * point.shading_normal;
-        if (bounce == 1)
+        if (bounce == 1) {
             walk.first_hit = point.position;
+            walk.first_normal = normal;
+        }
         const vec3 albedo = mean_reflectance(point.material);
         walk.throughput *= albedo;
         walk.reflections = bounce;
@@ -72,10 +79,15 @@ Walk trace(raytrace::Ray ray, const PathSpace& space, LightSample& sample) {
 
 void FollowedPaths::reset(const PathSource& source, std::uint32_t count, std::uint32_t seed) {
     paths_.assign(count, {});
+    filled_ = false;
+    landings_.clear();
     directions_.clear();
     weights_.clear();
     numbers_.clear();
     const mat3 to_local = glm::transpose(rotation_of(source.matrix()));
+    directions_.reserve(direction_count);
+    weights_.reserve(direction_count);
+    numbers_.reserve(direction_count);
     for (std::uint32_t i = 0; i < direction_count; ++i) {
         const RandomSequence random(SequenceKind::sobol, seed, i);
         const std::array<float, 4> numbers = {random.at(0), random.at(1), random.at(2), random.at(3)};
@@ -89,15 +101,40 @@ bool FollowedPaths::complete() const {
     return std::all_of(paths_.begin(), paths_.end(), [](const Path& path) { return path.valid; });
 }
 
+std::uint32_t FollowedPaths::unsettled() const {
+    return std::uint32_t(std::count_if(paths_.begin(), paths_.end(), [](const Path& path) { return !path.settled; }));
+}
+
+void FollowedPaths::land(const PathSource& source, const raytrace::RayScene& rays) {
+    if (!source.is_extended())
+        return;
+    landings_.assign(numbers_.size(), {});
+    parallel_for_chunks(numbers_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t d = begin; d < end; ++d) {
+            const EmittedRay emitted = source.ray(numbers_[d].data());
+            const raytrace::Ray ray{emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f};
+            const auto hit = rays.closest_hit(ray, raytrace::Scope::static_only);
+            landings_[d].escaped = !hit;
+            if (!hit)
+                continue;
+            const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+            landings_[d].end = point.position;
+            landings_[d].normal = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? point.geometric_normal
+                                                                                         : -point.geometric_normal;
+        }
+    });
+}
+
 void FollowedPaths::validate(const PathSource& source, const raytrace::RayScene& rays) {
     const mat3 to_local = glm::transpose(rotation_of(source.matrix()));
     for (Path& path : paths_) {
-        const EmittedRay emitted = source.ray(path.numbers);
+        path.settled = false;
+        const EmittedRay emitted = source.ray(numbers_[path.number].data());
         const vec3 origin = emitted.origin + segment_margin * emitted.normal;
-        const vec3 segment = path.first_hit - origin;
+        const vec3 segment = path.first.end - origin;
         const float length = glm::length(segment);
         const vec3 direction = segment / std::max(length, 1e-6f);
-        path.direction = to_local * direction;
+        path.first.direction = to_local * direction;
         path.valid = path.valid && length > 2.0f * segment_margin && source.emits_towards(emitted.normal, direction) &&
                      !rays.occluded(raytrace::Ray{origin, direction, 0.0f, length - segment_margin},
                                     raytrace::Scope::static_only);
@@ -105,17 +142,21 @@ void FollowedPaths::validate(const PathSource& source, const raytrace::RayScene&
 }
 
 void FollowedPaths::sample_path(const PathSource& source, std::uint32_t index, const PathSpace& space,
-                                LightSample& sample) {
+                                std::uint32_t seed, LightSample& sample) {
     Path& path = paths_[index];
-    const EmittedRay emitted = source.ray(path.numbers);
+    path.first.direction = directions_[path.number];
+    const EmittedRay emitted = source.ray(numbers_[path.number].data());
     const Walk walk =
-        trace({emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f}, space, sample);
+        trace({emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f}, space, seed, sample);
+    if (!source.is_extended())
+        sample.path_vertex_count = 0; // what lights send stays valid or not by itself
     path.throughput = walk.throughput;
     path.reflections = walk.reflections;
-    path.first_hit = walk.first_hit;
-    path.escaped = walk.escaped;
+    path.first.end = walk.first_hit;
+    path.first.normal = walk.first_normal;
+    path.first.escaped = walk.escaped;
     path.valid = true;
-    if (path.escaped) {
+    if (walk.escaped) {
         sample.position = emitted.origin;
         sample.normal = emitted.direction;
         sample.bounce = space.first_bounce;
@@ -127,26 +168,38 @@ void FollowedPaths::sample_path(const PathSource& source, std::uint32_t index, c
         space.moved[index] = 1;
 }
 
-// The directions of the source's light, by the valid path that each is nearest to.
+// The rays of the source's light, by the valid path that each is nearest to.
 struct FollowedPaths::Cells {
+    static constexpr float nowhere = std::numeric_limits<float>::lowest();
+
     explicit Cells(const FollowedPaths& followed)
-        : all(followed), nearest(followed.directions_.size(), -2.0f), owner(followed.directions_.size(), 0) {}
+        : all(followed), nearest(followed.directions_.size(), nowhere), owner(followed.directions_.size(), 0) {}
 
     const FollowedPaths& all;
-    std::vector<float> nearest; // largest cosine to any path
+    std::vector<float> nearest; // greatest likeness to any path
     std::vector<std::uint32_t> owner;
 
-    void add(std::uint32_t path) {
+    bool lands(std::size_t ray) const { return all.landings_.empty() || !all.landings_[ray].escaped; }
+    // The cosine between directions, or the less the further apart light lands, on surfaces that face elsewhere.
+    float likeness(const Segment& segment, std::size_t ray) const {
+        if (all.landings_.empty())
+            return glm::dot(segment.direction, all.directions_[ray]);
+        const vec3 apart = segment.end - all.landings_[ray].end, turned = segment.normal - all.landings_[ray].normal;
+        return -glm::dot(apart, apart) / (landing_length * landing_length) - glm::dot(turned, turned);
+    }
+    void add(std::uint32_t path, const Segment& segment) {
+        if (segment.escaped && !all.landings_.empty())
+            return;
         for (std::size_t d = 0; d < nearest.size(); ++d)
-            if (const float cosine = glm::dot(all.paths_[path].direction, all.directions_[d]); cosine > nearest[d]) {
-                nearest[d] = cosine;
+            if (const float like = lands(d) ? likeness(segment, d) : nowhere; like > nearest[d]) {
+                nearest[d] = like;
                 owner[d] = path;
             }
     }
     void add_valid() {
         for (std::uint32_t p = 0; p < all.paths_.size(); ++p)
             if (all.paths_[p].valid)
-                add(p);
+                add(p, all.paths_[p].first);
     }
 
     // The path with the smallest cell, if the largest is much larger than the mean.
@@ -154,6 +207,8 @@ struct FollowedPaths::Cells {
         std::vector<float> cells(all.paths_.size(), 0.0f);
         float total = 0.0f;
         for (std::size_t d = 0; d < owner.size(); ++d) {
+            if (nearest[d] == nowhere)
+                continue;
             const vec3 weight = all.weights_[d];
             cells[owner[d]] += weight.x + weight.y + weight.z;
             total += weight.x + weight.y + weight.z;
@@ -164,8 +219,12 @@ struct FollowedPaths::Cells {
         return std::uint32_t(smallest - cells.begin());
     }
 
-    std::size_t largest_gap() const {
-        return std::size_t(std::min_element(nearest.begin(), nearest.end()) - nearest.begin());
+    std::uint32_t largest_gap() const {
+        std::size_t least = 0;
+        for (std::size_t d = 1; d < nearest.size(); ++d)
+            if (lands(d) && (!lands(least) || nearest[d] < nearest[least]))
+                least = d;
+        return std::uint32_t(least);
     }
 };
 
@@ -187,13 +246,33 @@ std::uint32_t FollowedPaths::fill_gaps(const PathSource& source, std::uint32_t m
     }
     chosen.resize(std::min<std::size_t>(chosen.size(), most));
     for (const std::uint32_t p : chosen) {
-        const std::size_t gap = cells.largest_gap();
-        std::copy(numbers_[gap].begin(), numbers_[gap].end(), paths_[p].numbers);
-        paths_[p].direction = directions_[gap];
-        sample_path(source, p, space, samples[p]);
-        cells.add(p);
+        Path& path = paths_[p];
+        path.number = cells.largest_gap();
+        const std::uint32_t seed = space.paths_made++;
+        sample_path(source, p, space, seed, samples[p]);
+        path.settled = !filled_;
+        if (!filled_)
+            path.first_seed = seed;
+        cells.add(p, path.first);
     }
+    filled_ = true;
     return std::uint32_t(chosen.size());
+}
+
+void FollowedPaths::settle(const PathSource& source, std::uint32_t most, const PathSpace& space,
+                           std::span<LightSample> samples) {
+    Cells cells(*this);
+    for (std::uint32_t p = 0; p < paths_.size() && most > 0; ++p) {
+        Path& path = paths_[p];
+        const std::uint32_t number = cells.largest_gap();
+        cells.add(p, landings_[number]);
+        if (path.settled)
+            continue;
+        path.number = number;
+        sample_path(source, p, space, path.first_seed, samples[p]);
+        path.settled = true;
+        --most;
+    }
 }
 
 void FollowedPaths::share_flux(const PathSource& source, std::span<LightSample> samples) {
@@ -206,10 +285,12 @@ void FollowedPaths::share_flux(const PathSource& source, std::span<LightSample> 
     vec3 total(0.0f);
     for (std::size_t d = 0; d < directions_.size(); ++d) {
         total += weights_[d];
-        if (cells.nearest[d] > -2.0f)
+        if (cells.nearest[d] > Cells::nowhere)
             shares[cells.owner[d]] += weights_[d];
     }
     for (std::size_t p = 0; p < paths_.size(); ++p) {
+        if (samples[p].path_vertex_count == paths_[p].reflections && samples[p].path_vertex_count > 0) // all of it
+            samples[p].path[0] = source.ray(numbers_[paths_[p].number].data()).origin;
         const vec3 flux = source.flux(paths_[p].reflections) * paths_[p].throughput;
         for (int c = 0; c < 3; ++c)
             samples[p].flux[c] = total[c] > 0.0f ? flux[c] * (shares[p][c] / total[c]) : 0.0f;

@@ -4,7 +4,11 @@
 // with paths of several bounces: a path is valid as a whole while its first segment is.
 //
 // Each sample carries the share of the source's flux that leaves nearer to its path's direction than to any other's:
-// the Voronoi cell of the direction, measured with a fixed set of directions that are distributed like the light.
+// the Voronoi cell of the direction, measured with a fixed set of directions that are distributed like the light. Light
+// of a source that has an extent tells little by its direction: there, the cells are those of where the light lands.
+//
+// Where paths lie depends on where the source has been. A source that rests can have them sampled again, a few a frame,
+// as they would be if it had always been there (`settle`).
 #pragma once
 
 #include "engine/core/random.h"
@@ -35,6 +39,8 @@ public:
     virtual vec3 weight(const float numbers[4]) const = 0;
     // Whether weights change while it lasts.
     virtual bool weights_vary() const = 0;
+    // Whether it has an extent, so that cells are told apart by where the light lands.
+    virtual bool is_extended() const = 0;
 };
 
 // What paths are traced in.
@@ -52,8 +58,12 @@ public:
     // `count` paths, none valid yet: fill_gaps and share_flux come next. `seed`: of the directions.
     void reset(const PathSource& source, std::uint32_t count, std::uint32_t seed);
     bool complete() const; // all paths are valid
+    // Paths that are not those of a source that has always been where it is.
+    std::uint32_t unsettled() const;
     std::uint32_t size() const { return std::uint32_t(paths_.size()); }
 
+    // Of an extended source, before all else, whenever it has moved: where its light lands.
+    void land(const PathSource& source, const raytrace::RayScene& rays);
     // After the source moved: which first segments are still unoccluded, and their directions from the source.
     void validate(const PathSource& source, const raytrace::RayScene& rays);
     // Samples invalid paths again, at most `most` of them, in the middle of the largest gaps between the others. When
@@ -61,24 +71,39 @@ public:
     // paths sampled. `samples`: one for each path.
     std::uint32_t fill_gaps(const PathSource& source, std::uint32_t most, const PathSpace& space,
                             std::span<LightSample> samples);
+    // In place of fill_gaps, while an extended source rests: samples at most `most` of the unsettled paths again, as
+    // the first fill_gaps would have here.
+    void settle(const PathSource& source, std::uint32_t most, const PathSpace& space, std::span<LightSample> samples);
+    // Of the source as it is now: how much flux each sample carries, and where its path begins.
     void share_flux(const PathSource& source, std::span<LightSample> samples);
 
 private:
+    // How light goes its first segment.
+    struct Segment {
+        vec3 direction{0.0f}; // in the source's frame
+        vec3 end{0.0f};       // far along the ray if it hit nothing
+        vec3 normal{0.0f};    // of the surface there
+        bool escaped = false; // it hit nothing
+    };
     struct Path {
-        float numbers[4] = {}; // of the ray that leaves the source
-        vec3 direction{0.0f};  // of the first segment, in the source's frame
-        vec3 first_hit{0.0f};  // far along the ray if the path hit nothing
+        std::uint32_t number = 0;     // of its ray in numbers_
+        std::uint32_t first_seed = 0; // of its random numbers, in the first fill_gaps
+        bool settled = false;         // as if sampled then, from where the source is now
+        Segment first;
         vec3 throughput{0.0f}; // of the whole path; the source's flux is not in it
         std::uint32_t reflections = 0;
-        bool escaped = false, valid = false;
+        bool valid = false;
     };
     struct Cells;
-    void sample_path(const PathSource& source, std::uint32_t path, const PathSpace& space, LightSample& sample);
+    void sample_path(const PathSource& source, std::uint32_t path, const PathSpace& space, std::uint32_t seed,
+                     LightSample& sample);
 
     std::vector<Path> paths_;
     std::vector<vec3> directions_; // of the source's light, in its frame
     std::vector<vec3> weights_;
     std::vector<std::array<float, 4>> numbers_;
+    std::vector<Segment> landings_; // of an extended source, for the same numbers
+    bool filled_ = false;           // once
 };
 
 } // namespace sunfleck::gi

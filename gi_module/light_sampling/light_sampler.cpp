@@ -98,6 +98,14 @@ std::size_t choose_emitter(const std::vector<double>& cumulative, double target)
 }
 
 // The largest-remainder method; of equal remainders, the first wins.
+void add_path_vertex(LightSample& sample, vec3 point) {
+    if (sample.path_vertex_count == LightSample::max_path_vertices) {
+        std::rotate(sample.path.begin(), sample.path.begin() + 1, sample.path.end());
+        --sample.path_vertex_count;
+    }
+    sample.path[sample.path_vertex_count++] = point;
+}
+
 std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count) {
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
     std::vector<std::uint32_t> result(weights.size());

@@ -34,6 +34,9 @@ std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, s
 LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std::uint32_t count,
                                const SampleRequest& settings, const raytrace::RayScene& rays);
 
+// Of a path that holds as many as it can, the oldest vertex is dropped.
+void add_path_vertex(LightSample& sample, vec3 point);
+
 // Positive integers in proportion to `weights` that add up to `count`, which is at least the number of weights.
 std::vector<std::uint32_t> apportion(const std::vector<double>& weights, std::uint32_t count);
 

@@ -18,10 +18,31 @@ struct Corners {
     vec3 area_normal() const { return 0.5f * glm::cross(p[1] - p[0], p[2] - p[0]); }
 };
 
-Corners corners_of(const scene::Mesh& mesh, const mat4& matrix, std::size_t triangle) {
+// What the matrix does to lengths and angles, without where it moves and turns things, to 12 bits: the same places are
+// chosen wherever a mover stands. The Cholesky factor of M^T M.
+mat3 shape_of(const mat4& matrix) {
+    const mat3 m(matrix);
+    mat3 u(0.0f);
+    for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row <= column; ++row) {
+            float rest = glm::dot(m[row], m[column]);
+            for (int k = 0; k < row; ++k)
+                rest -= u[row][k] * u[column][k];
+            if (row == column)
+                u[column][row] = std::sqrt(std::max(rest, 0.0f));
+            else
+                u[column][row] = u[row][row] > 0.0f ? rest / u[row][row] : 0.0f;
+        }
+        const float step = std::ldexp(1.0f, std::ilogb(std::max(glm::length(m[column]), 1e-30f)) - 12);
+        u[column] = step * glm::round(u[column] / step);
+    }
+    return u;
+}
+
+Corners corners_of(const scene::Mesh& mesh, const mat3& shape, std::size_t triangle) {
     Corners result;
     for (std::size_t k = 0; k < 3; ++k)
-        result.p[k] = vec3(matrix * vec4(mesh.positions[mesh.indices[triangle * 3 + k]], 1.0f));
+        result.p[k] = shape * mesh.positions[mesh.indices[triangle * 3 + k]];
     return result;
 }
 
@@ -62,23 +83,25 @@ SurfacePlace place_at(const std::vector<double>& cumulative, const RandomSequenc
 Candidates draw(const scene::Drawable& drawable, const scene::Mesh& mesh, const raytrace::RayScene& rays,
                 std::uint32_t count, std::uint32_t seed) {
     std::vector<double> cumulative;
+    cumulative.reserve(mesh.indices.size() / 3);
+    const mat3 shape = shape_of(drawable.matrix);
     double total = 0.0;
     for (std::size_t i = 0; i * 3 < mesh.indices.size(); ++i)
-        cumulative.push_back(total += double(glm::length(corners_of(mesh, drawable.matrix, i).area_normal())));
+        cumulative.push_back(total += double(glm::length(corners_of(mesh, shape, i).area_normal())));
     Candidates result;
     if (!(total > 0.0))
         return result;
     const float size = float(std::sqrt(total));
-    const bool mirrored = glm::determinant(mat3(drawable.matrix)) < 0.0f, closed = scene::is_closed(mesh);
+    const bool closed = scene::is_closed(mesh);
     for (std::uint32_t i = 0; i < count; ++i) {
         const SurfacePlace place = place_at(cumulative, {SequenceKind::sobol, seed, i}, !closed);
         if (is_hidden(drawable, place, rays))
             continue;
-        const Corners corners = corners_of(mesh, drawable.matrix, place.triangle);
+        const Corners corners = corners_of(mesh, shape, place.triangle);
         LightSample sample;
         sample.position = // in units that suit clusters
             (corners.p[0] + place.u * (corners.p[1] - corners.p[0]) + place.v * (corners.p[2] - corners.p[0])) / size;
-        sample.normal = glm::normalize(corners.area_normal()) * (mirrored ? -place.side : place.side);
+        sample.normal = glm::normalize(corners.area_normal()) * place.side;
         sample.flux = vec3(float(total * (closed ? 1.0 : 2.0) / count));
         sample.index = std::uint32_t(result.places.size());
         result.places.push_back(place);
@@ -96,9 +119,10 @@ float distance(const LightSample& a, const LightSample& b) {
 } // namespace
 
 double surface_area(const scene::Mesh& mesh, const mat4& matrix) {
+    const mat3 shape = shape_of(matrix);
     double total = 0.0;
     for (std::size_t i = 0; i * 3 < mesh.indices.size(); ++i)
-        total += double(glm::length(corners_of(mesh, matrix, i).area_normal()));
+        total += double(glm::length(corners_of(mesh, shape, i).area_normal()));
     return total;
 }
 

@@ -8,6 +8,7 @@
 #include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace sunfleck::gi {
 namespace {
@@ -45,6 +46,7 @@ public:
     }
     vec3 weight(const float numbers[4]) const override { return chosen(numbers).flux; }
     bool weights_vary() const override { return true; }
+    bool is_extended() const override { return true; }
 
 private:
     const LightSample& chosen(const float numbers[4]) const {
@@ -105,7 +107,7 @@ void MoverReflections::reset(const scene::SceneChanges& changes, const scene::Me
     paths_made_ = 0;
     light_hash_ = 0;
     cursor_ = {};
-    on_movers_ = behind_ = 0;
+    on_movers_ = 0;
     placed_ = false;
     std::vector<std::pair<double, const scene::Drawable*>> largest;
     for (const scene::Drawable* drawable : reflecting(changes))
@@ -172,57 +174,90 @@ void MoverReflections::update(std::span<const IncomingLight> light, float far, c
     const bool same_light = hash == light_hash_ && cursor_.follows(changes) && changes.drawables.empty();
     light_hash_ = hash;
     cursor_.saw(changes);
-    std::vector<std::uint8_t> went(movers_.size(), 0); // elsewhere
-    for (std::size_t m = 0; m < movers_.size() && !same_light; ++m) {
-        Mover& mover = movers_[m];
-        const mat4 before = mover.matrix;
+    for (Mover& mover : movers_) {
+        mover.went = false;
+        if (same_light)
+            continue;
         for (const scene::Drawable* drawable : changes.all)
-            if (drawable->entity == mover.entity)
+            if (drawable->entity == mover.entity) {
+                mover.went = mover.matrix != drawable->matrix;
                 mover.matrix = drawable->matrix;
-        went[m] = before != mover.matrix;
+            }
         find_places(mover, rays);
         light_places(mover, light, far, rays);
     }
-    const bool some_move = !same_light || behind_ > 0;
-    if (some_move)
-        move_samples();
-    for (std::size_t m = 0; m < movers_.size(); ++m)
-        if (some_move || !movers_[m].started || !movers_[m].paths.complete())
-            follow_paths(movers_[m], went[m] != 0 || behind_ > 0, rays);
+    if (same_light && behind() == 0)
+        return;
+    move_samples();
+    for (Mover& mover : movers_)
+        follow_paths(mover, rays);
 }
 
-void MoverReflections::find_places(const Mover& mover, const raytrace::RayScene& rays) {
+std::uint32_t MoverReflections::behind() const {
+    std::uint32_t sum = samples_on_movers_behind();
+    for (const Mover& mover : movers_)
+        sum += mover.paths.unsettled();
+    return sum;
+}
+
+std::uint32_t MoverReflections::samples_on_movers_behind() const {
+    std::uint32_t sum = 0;
+    for (const Mover& mover : movers_)
+        sum += mover.behind;
+    return sum;
+}
+
+// One that changes its shape goes elsewhere, too.
+void MoverReflections::find_places(Mover& mover, const raytrace::RayScene& rays) {
     for (std::uint32_t i = 0; i < mover.direct; ++i) {
         const Place& place = mover.places[std::size_t(i) * places_per_sample]; // the first is the sample's own
         const auto point = rays.surface_on(mover.entity, place.where.triangle, place.where.u, place.where.v);
         if (!point) // it is gone; no light arrives there
             continue;
         const vec3 normal = place.where.side * point->geometric_normal;
-        wanted_[mover.first + i] = {offset_from_surface(point->on_triangle, normal, rays, raytrace::Scope::everything),
-                                    normal};
+        Wanted& wanted = wanted_[mover.first + i];
+        const Wanted now{offset_from_surface(point->on_triangle, normal, rays, raytrace::Scope::everything), normal};
+        mover.went = mover.went || now.position != wanted.position || now.normal != wanted.normal;
+        wanted = now;
     }
 }
 
-// The brightest of those that are farthest behind, counted in the discs that they represent, come first.
+// The brightest of those that are farthest behind, counted in the discs that they represent, come first. Those that are
+// more than a disc away shine where their mover is not any more, and go at once.
 void MoverReflections::move_samples() {
-    std::vector<std::pair<float, std::uint32_t>> late;
-    for (const Mover& mover : movers_)
+    struct Late {
+        bool waits;
+        float order;
+        std::uint32_t sample;
+        Mover* mover;
+    };
+    std::vector<Late> late;
+    for (Mover& mover : movers_) {
+        mover.behind = 0;
+        mover.stepped = false;
         for (std::uint32_t i = mover.first; i < mover.first + mover.direct; ++i) {
             const LightSample& sample = samples_[i];
             const float distance = glm::length(wanted_[i].position - sample.position) / std::max(sample.radius, 1e-6f) +
                                    glm::length(wanted_[i].normal - sample.normal);
             if (distance > 0.0f)
-                late.emplace_back(-distance * luminance(sample.flux), i);
+                late.push_back({distance < 1.0f, -distance * luminance(sample.flux), i, &mover});
         }
-    std::sort(late.begin(), late.end());
+    }
+    std::sort(late.begin(), late.end(), [](const Late& a, const Late& b) {
+        return std::tie(a.waits, a.order, a.sample) < std::tie(b.waits, b.order, b.sample);
+    });
     const std::size_t most = placed_ ? (on_movers_ + follow_frames - 1) / follow_frames : late.size();
     placed_ = true;
-    behind_ = std::uint32_t(late.size() - std::min(late.size(), most));
-    late.resize(std::min(late.size(), most));
-    for (const auto& [order, i] : late) {
+    for (std::size_t k = 0; k < late.size(); ++k) {
+        const std::uint32_t i = late[k].sample;
+        if (k >= most && late[k].waits) {
+            ++late[k].mover->behind;
+            continue;
+        }
         samples_[i].position = wanted_[i].position;
         samples_[i].normal = wanted_[i].normal;
         moved_[i] = 1;
+        late[k].mover->stepped = true;
     }
 }
 
@@ -254,7 +289,7 @@ void MoverReflections::light_places(Mover& mover, std::span<const IncomingLight>
     }
 }
 
-void MoverReflections::follow_paths(Mover& mover, bool moved, const raytrace::RayScene& rays) {
+void MoverReflections::follow_paths(Mover& mover, const raytrace::RayScene& rays) {
     if (mover.reflected == 0 || mover.direct == 0)
         return;
     const std::size_t first = mover.first + mover.direct;
@@ -262,11 +297,17 @@ void MoverReflections::follow_paths(Mover& mover, bool moved, const raytrace::Ra
     const Source source(mover, std::span(samples_).subspan(mover.first, mover.direct), settings_.bounces);
     const PathSpace space{settings_, rays,        settings_.bounces - 1,
                           2,         paths_made_, std::span(moved_).subspan(first, mover.reflected)};
-    if (!mover.started)
+    if (!mover.started) {
         mover.paths.reset(source, mover.reflected, hash_combine(settings_.seed, 0x3a70u + mover.first));
-    else if (moved)
+        mover.paths.land(source, rays);
+        mover.paths.fill_gaps(source, mover.reflected, space, reflected);
+    } else if (mover.went || mover.behind > 0 || mover.stepped) {
+        mover.paths.land(source, rays);
         mover.paths.validate(source, rays);
-    mover.paths.fill_gaps(source, mover.started ? max_resampled_per_mover : mover.reflected, space, reflected);
+        mover.paths.fill_gaps(source, max_resampled_per_mover, space, reflected);
+    } else {
+        mover.paths.settle(source, max_resampled_per_mover, space, reflected);
+    }
     mover.started = true;
     mover.paths.share_flux(source, reflected);
 }

@@ -30,7 +30,8 @@ public:
     // Chooses places for `count` samples, on the movers that reflect most. They carry no light before the next update.
     void reset(const scene::SceneChanges& changes, const scene::MeshStore& meshes, const raytrace::RayScene& rays,
                std::uint32_t count, const SampleRequest& settings);
-    // Follows the movers and the light. A pure function of all updates since reset. `far`: beyond all geometry, m.
+    // Follows the movers and the light. A pure function of all updates since reset; once nothing is behind(), of the
+    // scene as it is alone. `far`: beyond all geometry, m.
     void update(std::span<const IncomingLight> light, float far, const scene::SceneChanges& changes,
                 const raytrace::RayScene& rays);
 
@@ -38,6 +39,8 @@ public:
     const std::vector<LightSample>& samples() const { return samples_; }
     // By sample: whether position or direction changed in the last update. Flux may change with or without them.
     const std::vector<std::uint8_t>& moved() const { return moved_; }
+    // Samples that are not yet where they would be if the movers had always been where they are.
+    std::uint32_t behind() const;
 
 private:
     // Light by how often it was reflected before, all above in the last.
@@ -55,18 +58,22 @@ private:
         std::uint32_t first = 0, direct = 0, reflected = 0; // samples on the mover; those of paths follow
         std::vector<Place> places;                          // as many for each sample on the mover, in their order
         LightByBounce flux{};                               // of all places
+        std::uint32_t behind = 0;                           // samples on it that are not where they should be
+        bool went = true;                                   // since the last update
+        bool stepped = false;                               // some of its samples did
         FollowedPaths paths;
         bool started = false;
     };
     class Source;
 
     void add_mover(const scene::Drawable& drawable, const std::vector<SurfacePart>& parts, std::uint32_t count);
-    void find_places(const Mover& mover, const raytrace::RayScene& rays);
+    void find_places(Mover& mover, const raytrace::RayScene& rays);
+    std::uint32_t samples_on_movers_behind() const;
     void move_samples();
     void light_places(Mover& mover, std::span<const IncomingLight> light, float far, const raytrace::RayScene& rays);
     static LightByBounce irradiance(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
                                     const raytrace::RayScene& rays);
-    void follow_paths(Mover& mover, bool moved, const raytrace::RayScene& rays);
+    void follow_paths(Mover& mover, const raytrace::RayScene& rays);
 
     SampleRequest settings_;
     std::vector<Mover> movers_;
@@ -75,8 +82,8 @@ private:
     struct Wanted {
         vec3 position{0.0f}, normal{0.0f};
     };
-    std::vector<Wanted> wanted_;               // by sample on a mover: where it should be
-    std::uint32_t on_movers_ = 0, behind_ = 0; // samples there, and those of them that are not where they should be
+    std::vector<Wanted> wanted_;  // by sample on a mover: where it should be
+    std::uint32_t on_movers_ = 0; // samples there
     bool placed_ = false;
     std::uint32_t paths_made_ = 0;
     std::uint64_t light_hash_ = 0;

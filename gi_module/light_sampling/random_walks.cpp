@@ -16,15 +16,6 @@ constexpr std::uint32_t walks_per_round = 256;
 constexpr std::uint32_t max_walks = 1u << 22; // a scene that absorbs this many walks gets fewer samples
 constexpr std::uint64_t max_candidates = 1u << 18;
 
-// Of a full path, the oldest vertex is dropped.
-void add_path_vertex(LightSample& sample, vec3 point) {
-    if (sample.path_vertex_count == LightSample::max_path_vertices) {
-        std::rotate(sample.path.begin(), sample.path.begin() + 1, sample.path.end());
-        --sample.path_vertex_count;
-    }
-    sample.path[sample.path_vertex_count++] = point;
-}
-
 // Random walks from emitters, which are chosen by flux.
 class RandomWalks {
 public:

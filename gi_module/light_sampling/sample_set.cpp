@@ -65,6 +65,9 @@ constexpr Counter dynamic_samples{"light_samples_dynamic", "samples", "light sam
                                   "Light samples of emitters that move or vary"};
 constexpr Counter moved_samples{"light_samples_moved", "samples", "light samples",
                                 "Light samples whose position or direction changed in this frame"};
+constexpr Counter late_samples{"light_samples_behind", "samples", "light samples",
+                               "Light samples of what movers reflect that are not yet where they would be if the "
+                               "movers had always been where they are"};
 constexpr Counter blocked_samples{
     "light_samples_blocked", "samples", "light samples",
     "Reflected samples that are dark because a door or the like blocks the path of their light"};
@@ -75,8 +78,8 @@ constexpr Counter clamped_share{"clamped_share", "%", "clamping",
 } // namespace
 
 std::span<const Counter> SampleSet::counters() {
-    static const Counter all[] = {light_samples, direct_samples,  dynamic_samples,
-                                  moved_samples, blocked_samples, clamped_share};
+    static const Counter all[] = {light_samples, direct_samples,  dynamic_samples, moved_samples,
+                                  late_samples,  blocked_samples, clamped_share};
     return all;
 }
 
@@ -87,23 +90,34 @@ void SampleSet::report(Report& report) const {
     report.set(direct_samples, double(direct));
     report.set(dynamic_samples, double(dynamic_samples_.size()));
     report.set(moved_samples, double(moved_.size()));
+    report.set(late_samples, double(followed_.movers.behind()));
     report.set(blocked_samples, double(blocked_paths_.count()));
     report.set(clamped_share, 100.0 * loss_);
 }
 
-void SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings) {
+void SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
+                       bool previous_lost) {
     moved_.clear();
     find_emitters(scene, request);
-    if (needs_new_samples(request, scene))
+    const bool others = needs_new_samples(request, scene);
+    if (others)
         make_samples(request, scene);
-    else
+    else if (previous_lost)
+        followed_ = followed_before_;
+    followed_before_ = followed_;
+    if (!others)
         follow_dynamic_lights(scene.rays);
-    if (settings.mover_paths && !request.movers_are_static)
+    const bool blocks = settings.mover_paths && !request.movers_are_static;
+    if (blocks)
         blocked_paths_.update(scene.changes, scene.meshes, samples_, generation_);
     else
         blocked_paths_ = {};
+    if (blocks)
+        blocked_paths_.check(samples_, dynamic_samples_); // they reach movers, or not
     update_bounds(scene, settings);
     follow_movers(scene, settings);
+    if (blocks && !followed_.movers.samples().empty())
+        blocked_paths_.check(samples_, dynamic_samples_);
 }
 
 // Emitters that move have samples of their own, and so have those that once changed their flux: the first change
@@ -178,15 +192,15 @@ bool SampleSet::needs_new_samples(const SampleRequest& request, const SceneView&
 void SampleSet::make_samples(const SampleRequest& request, const SceneView& scene) {
     const raytrace::RayScene& rays = scene.rays;
     const std::uint32_t on_movers = movers_reflect_ ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
-    movers_.reset(scene.changes, scene.meshes, rays, on_movers, request);
-    let_through_.clear();
+    followed_.movers.reset(scene.changes, scene.meshes, rays, on_movers, request);
+    followed_.let_through.clear();
     SampleRequest fixed = request; // for static emitters: what the others leave
-    fixed.lights -= std::min(request.lights, std::uint32_t(movers_.samples().size()));
+    fixed.lights -= std::min(request.lights, std::uint32_t(followed_.movers.samples().size()));
     const std::uint32_t share = dynamic_share(fixed, dynamic_emitters_.size(), !emitters_.empty());
-    dynamic_lights_.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
-    fixed.lights -= std::min(fixed.lights, std::uint32_t(dynamic_lights_.samples().size()));
+    followed_.lights.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
+    fixed.lights -= std::min(fixed.lights, std::uint32_t(followed_.lights.samples().size()));
     samples_ = sample_sources()[request.source].make(emitters_, fixed, rays);
-    for (const auto* dynamic : {&dynamic_lights_.samples(), &movers_.samples()})
+    for (const auto* dynamic : {&followed_.lights.samples(), &followed_.movers.samples()})
         samples_.insert(samples_.end(), dynamic->begin(), dynamic->end());
     sort_samples();
     generation_ = next_generation();
@@ -200,8 +214,8 @@ void SampleSet::sort_samples() {
     std::stable_sort(samples_.begin(), samples_.end(),
                      [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
     // Within a class, dynamic samples keep their order.
-    std::vector<LightSample> dynamic = dynamic_lights_.samples();
-    dynamic.insert(dynamic.end(), movers_.samples().begin(), movers_.samples().end());
+    std::vector<LightSample> dynamic = followed_.lights.samples();
+    dynamic.insert(dynamic.end(), followed_.movers.samples().begin(), followed_.movers.samples().end());
     std::vector<std::uint32_t> order(dynamic.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
@@ -215,11 +229,13 @@ void SampleSet::sort_samples() {
     }
 }
 
-// `follower`: the sample's place in dynamic_samples_.
+// `follower`: the sample's place in dynamic_samples_. `moved`: since the update before; where that was lost, the sample
+// may have been elsewhere in it.
 void SampleSet::take_over(std::uint32_t follower, const LightSample& now, bool moved) {
     const std::uint32_t i = dynamic_samples_[follower];
-    if (!moved && now.flux == samples_[i].flux)
-        return;
+    const LightSample& old = samples_[i];
+    moved = moved || now.position != old.position || now.normal != old.normal || now.cone_scale != old.cone_scale ||
+            now.cone_offset != old.cone_offset;
     samples_[i] = now;
     samples_[i].index = i;
     if (moved)
@@ -227,20 +243,20 @@ void SampleSet::take_over(std::uint32_t follower, const LightSample& now, bool m
 }
 
 void SampleSet::follow_dynamic_lights(const raytrace::RayScene& rays) {
-    if (dynamic_lights_.samples().empty())
+    if (followed_.lights.samples().empty())
         return;
-    dynamic_lights_.update(dynamic_emitters_, rays);
-    for (std::uint32_t k = 0; k < dynamic_lights_.samples().size(); ++k)
-        take_over(k, dynamic_lights_.samples()[k], dynamic_lights_.moved()[k] != 0);
+    followed_.lights.update(dynamic_emitters_, rays);
+    for (std::uint32_t k = 0; k < followed_.lights.samples().size(); ++k)
+        take_over(k, followed_.lights.samples()[k], followed_.lights.moved()[k] != 0);
 }
 
 // What arrives at movers is all other light, of one reflection less than may be at most.
 void SampleSet::follow_movers(const SceneView& scene, const LightSettings& settings) {
-    if (movers_.samples().empty())
+    if (followed_.movers.samples().empty())
         return;
     const Bounds bounds = scene.gpu_scene.bounds();
     std::vector<std::uint8_t> on_mover(samples_.size(), 0);
-    const std::size_t first = dynamic_lights_.samples().size();
+    const std::size_t first = followed_.lights.samples().size();
     for (std::size_t k = first; k < dynamic_samples_.size(); ++k)
         on_mover[dynamic_samples_[k]] = 1;
     std::vector<IncomingLight> incoming;
@@ -248,16 +264,16 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
         if (!on_mover[sample.index] && !is_blocked(sample.index) && sample.bounce < sampled_.bounces)
             incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
                                 sample.bounce});
-    movers_.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
-    const bool same_bound = let_through_bound_ == dynamic_bound_ && !let_through_.empty();
-    let_through_bound_ = dynamic_bound_;
-    let_through_.resize(movers_.samples().size(), 1.0f);
-    for (std::uint32_t k = 0; k < movers_.samples().size(); ++k) {
-        LightSample now = movers_.samples()[k];
-        const bool moved = movers_.moved()[k] != 0;
+    followed_.movers.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
+    const bool same_bound = followed_.let_through_bound == dynamic_bound_ && !followed_.let_through.empty();
+    followed_.let_through_bound = dynamic_bound_;
+    followed_.let_through.resize(followed_.movers.samples().size(), 1.0f);
+    for (std::uint32_t k = 0; k < followed_.movers.samples().size(); ++k) {
+        LightSample now = followed_.movers.samples()[k];
+        const bool moved = followed_.movers.moved()[k] != 0;
         if ((moved || !same_bound) && !now.on_mover)
-            let_through_[k] = 1.0f - clamping_loss_of(now, bound_of(now, settings), loss_rays, scene.rays);
-        now.flux /= std::max(let_through_[k], least_let_through);
+            followed_.let_through[k] = 1.0f - clamping_loss_of(now, bound_of(now, settings), loss_rays, scene.rays);
+        now.flux /= std::max(followed_.let_through[k], least_let_through);
         take_over(std::uint32_t(first) + k, now, moved);
     }
 }

@@ -35,8 +35,10 @@ struct SceneView {
 
 class SampleSet {
 public:
-    // Generates or moves samples. Call once a frame, then update_rows.
-    void update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings);
+    // Generates or moves samples. Call once a frame, then update_rows. `previous_lost`: nobody saw what the update
+    // before this one made, so dynamic samples go on from where they were before it.
+    void update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
+                bool previous_lost = false);
     // Fills the rows that shaders read. `slots`: shadow maps that fit into memory; sample i uses slot i % slots.
     // Reflected light is multiplied by `indirect_scale`.
     void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots, float indirect_scale);
@@ -85,13 +87,17 @@ private:
     std::vector<Emitter> emitters_;         // static
     std::vector<Emitter> dynamic_emitters_; // that move or vary
     std::set<ecs::Entity> varying_;         // do not move, but have changed their flux
-    // By sample of movers_: what the bound lets through of it. Few samples have low bounds, and what these take away
-    // is given back.
-    std::vector<float> let_through_;
-    float let_through_bound_ = 0.0f;
     std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
-    DynamicLights dynamic_lights_;
-    MoverReflections movers_;
+    // What dynamic samples come from; depends on the updates so far.
+    struct Followed {
+        DynamicLights lights;
+        MoverReflections movers;
+        // By sample of `movers`: what the bound lets through of it. Few samples have low bounds, and what these take
+        // away is given back.
+        std::vector<float> let_through;
+        float let_through_bound = 0.0f;
+    };
+    Followed followed_, followed_before_; // before: the last update
     BlockedPaths blocked_paths_;
     // Index of each dynamic sample among all: those of dynamic lights, then those of movers.
     std::vector<std::uint32_t> dynamic_samples_;

@@ -62,7 +62,8 @@ const std::vector<Course>& courses() {
         {assets::make_four_pillars, {{"count_passes", "on"}, {"map_budget", "1"}}},
         {assets::make_arena, {{"movers", "prt"}, {"lights", "90"}}},
         {assets::make_arena, {{"splat_lights", "moving"}}},
-        {assets::make_near_occluder, {{"map_budget", "0"}}}, // a knot moves in the light of a spot
+        {assets::make_near_occluder,
+         {{"map_budget", "0"}, {"mover_share", "0.2"}}}, // a knot moves in the light of a spot
         // With other maps, all light is baked again; after a level's first frame, that is work of several.
         {assets::make_two_rooms, {{"lights", "300"}}, 64, 48, {{"shadow_map_resolution", "32"}}},
         {assets::make_cornell, {{"direct", "brute_force"}, {"indirect", "brute_force"}, {"count_clamped", "on"}}},

@@ -143,6 +143,7 @@ TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
         settings.lights = 300;
         settings.shadow_map_resolution = 32;
         settings.movers = movers;
+        settings.mover_share = 0.1f;
         world.set(settings);
         world.render();
         const auto now = world.renderer->lighting().samples();
@@ -153,8 +154,10 @@ TEST_F(Lighting, MoversTakePartInWalksOnlyWhereTheyCountAsStatic) {
         ASSERT_EQ(before.size(), after.size());
         bool same = true;
         for (std::size_t i = 0; i < before.size(); ++i)
-            same = same && before[i].position == after[i].position;
+            same = same && (before[i].dynamic || before[i].position == after[i].position);
         EXPECT_EQ(same, movers == gi::movers_per_pixel);
+        const auto on_mover = [](const gi::LightSample& sample) { return sample.on_mover; };
+        EXPECT_EQ(std::any_of(after.begin(), after.end(), on_mover), movers == gi::movers_per_pixel);
         EXPECT_EQ(after.size(), 300u);
     }
 }

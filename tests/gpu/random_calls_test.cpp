@@ -35,6 +35,7 @@ std::vector<Choice> choices() {
                                      {"seed", {"1", "2", "3"}},
                                      {"candidates", {"1", "16"}},
                                      {"bounces", {"1", "5"}},
+                                     {"mover_share", {"0", "0.3"}},
                                      {"clamp_scale", {"0.5", "1"}},
                                      {"mover_paths", either},
                                      {"punctual", punctual},
@@ -81,6 +82,7 @@ class Sequence {
 public:
     explicit Sequence(std::uint32_t seed) : random_(seed), frames_(make_room_with_bulb) {
         situation_.settings.lights = 24;
+        situation_.settings.mover_share = 0.3f;
         situation_.settings.shadow_map_resolution = 32;
         frames_.add(situation_.settings);
         // Few, so that what one of them misses while it is off is likely to show when it is on again.

@@ -110,7 +110,7 @@ protected:
         world->request.height = 72;
     }
     // The picture at a step, reached in motion, once nothing is left to do: light that is baked over several frames is
-    // there.
+    // there, and samples are where movers have taken them.
     io::Picture picture(const gi::Settings& settings, std::uint64_t step) {
         world->set(settings);
         world->request.step = step - std::min<std::uint64_t>(step, 1);
@@ -118,7 +118,8 @@ protected:
         world->request.step = step;
         for (int frame = 0; frame < 60; ++frame) {
             world->render();
-            if (world->renderer->lighting().counters()["baked_light_waiting"] == 0.0)
+            const gi::Report& counters = world->renderer->lighting().counters();
+            if (counters["baked_light_waiting"] == 0.0 && counters["light_samples_behind"] == 0.0)
                 break;
         }
         return world->picture();

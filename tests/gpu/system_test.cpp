@@ -13,6 +13,7 @@ class Systems : public GpuTest {};
 gi::Settings settings_for(std::string_view technique, std::uint32_t lights = 60) {
     gi::Settings settings = gi::Settings().all_light_by(technique);
     settings.lights = lights;
+    settings.mover_share = 0.2f; // what the box reflects has a past
     settings.shadow_map_resolution = 64;
     settings.map_budget = 65536;
     return settings;

@@ -46,6 +46,8 @@ vec3 irradiance_by_rays(GpuWorld& world, vec3 position, vec3 normal, vec3 geomet
     const gi::System& lighting = world.renderer->lighting();
     vec3 sum(0.0f);
     for (const gi::LightSample& sample : lighting.samples()) {
+        if (sample.dynamic)
+            continue;
         const vec3 to_light = sample.position - position;
         const float cosine = glm::dot(normal, glm::normalize(to_light));
         const raytrace::Ray ray{position + 1e-4f * geometric_normal, to_light, 0.0f, 0.999f};

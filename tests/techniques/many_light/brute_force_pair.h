@@ -35,17 +35,19 @@ struct Pair {
                 viewer::scene_exposure(world->renderer->registry()).value_or(viewer::default_exposure);
         }
     }
-    // The many-light system has a past: its maps and lists are from earlier frames. Brute force has none.
+    // Both see each step, since samples that movers take along have a past, but brute force draws no more of the
+    // earlier ones than it must.
     void run_to(std::uint64_t step, float degrees) {
         const scene::CameraView start = many.request.camera;
+        const std::uint32_t width = brute.request.width, height = brute.request.height;
         for (std::uint64_t k = 0; k <= step; ++k) {
-            many.request.step = k;
-            many.request.camera = start.orbited(glm::radians(degrees) * float(k));
+            many.request.step = brute.request.step = k;
+            many.request.camera = brute.request.camera = start.orbited(glm::radians(degrees) * float(k));
+            brute.request.width = k == step ? width : 16;
+            brute.request.height = k == step ? height : 16;
             many.render();
+            brute.render();
         }
-        brute.request.step = step;
-        brute.request.camera = many.request.camera;
-        brute.render();
     }
     GpuWorld brute, many;
 };
