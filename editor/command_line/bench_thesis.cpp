@@ -79,7 +79,8 @@ struct Part {
 };
 
 const Part parts[] = {
-    {"ratios", 0.3, [](Experiment& e, std::vector<PlotSeries>&) { return time_ratios(e); }},
+    {"ratios", 0.25, [](Experiment& e, std::vector<PlotSeries>&) { return time_ratios(e); }},
+    {"first_frames", 0.05, [](Experiment& e, std::vector<PlotSeries>&) { return time_first_frames(e); }},
     {"samples", 0.1, [](Experiment& e, std::vector<PlotSeries>& plot) { return frame_time_by_samples(e, plot); }},
     {"ablation", 0.1, [](Experiment& e, std::vector<PlotSeries>&) { return ablation(e); }},
     {"map_updates", 0.2, [](Experiment& e, std::vector<PlotSeries>&) { return map_updates(e); }},

@@ -44,6 +44,7 @@ struct BenchOptions {
     std::string part; // of the thesis; empty: all
     bool as_json = false;
     std::uint32_t repeat = 5;
+    std::uint32_t turns = 15; // of contenders whose ratio is taken
 };
 // Names of the thesis's experiments, for BenchOptions::part.
 std::vector<std::string> thesis_parts();

@@ -210,6 +210,7 @@ Command make_bench_command(CLI::App& program) {
     viewer::add_name(*app, "--csv", options->csv, "Write the rows as CSV", "FILE");
     viewer::add_name(*app, "--plot", options->plot, "Write a plot as SVG", "FILE");
     viewer::add_whole(*app, "--repeat", options->repeat, 1, 1000, "Measurements of each row");
+    viewer::add_whole(*app, "--turns", options->turns, 1, 1000, "Turns of those whose ratios are taken (thesis)");
     viewer::add_name(*app, "--scene", options->scene,
                      "Scene, where the suite takes one (kernel, convergence, picture)");
     viewer::add_choice(*app, "--part", options->part, thesis_parts(), "One experiment of the thesis");

@@ -37,6 +37,7 @@ double cpu_median(const Measurement& measurement, const std::string& stage);
 // Frame times: ratios of brute force to the full system and the first frames, by number of samples (fig. 5-2), with the
 // techniques enabled one by one (fig. 5-3), and with constant map memory.
 Status time_ratios(Experiment& experiment);
+Status time_first_frames(Experiment& experiment);
 Status frame_time_by_samples(Experiment& experiment, std::vector<PlotSeries>& plot);
 Status ablation(Experiment& experiment);
 Status scaling(Experiment& experiment, std::vector<PlotSeries>& plot);

@@ -7,8 +7,8 @@
 namespace sunfleck::command_line {
 namespace {
 
-constexpr int turns = 15;
-constexpr std::uint32_t first_frame_count = 60;
+// Brute force spreads nothing over frames: a few tell as much.
+constexpr std::uint32_t first_frame_count = 60, first_frame_count_of_brute_force = 10;
 
 // A system that takes turns with others: each has a renderer of its own, so that nothing is built again for a turn.
 struct Contender {
@@ -87,7 +87,7 @@ Status ratios(Experiment& experiment, const std::string& scene, const std::strin
         {"whole frame, kept maps, no baked light", kept, rough, false,
          "the same over the system without baked light, which the thesis has not; target 12 at 300"},
         {"lighting", brute, full, true, "brute force over the full system, without g-buffer and composition"}};
-    for (int turn = 0; turn < turns; ++turn) {
+    for (std::uint32_t turn = 0; turn < experiment.options.turns; ++turn) {
         for (Contender& contender : contenders)
             SUNFLECK_TRY(take_turn(contender));
         for (RatioRow& row : rows)
@@ -123,8 +123,10 @@ void report_first_frames(Experiment& experiment, const std::string& where, const
     const std::vector<double> later(m.frame_ms.begin() + 1, m.frame_ms.end());
     experiment.value("first frames", where, "ms of the first frame from " + since, 300, m.frame_ms.front(),
                      "walks, visibility, all maps, baked light");
-    experiment.value("first frames", where, "ms of frames 2 to 60 from " + since, 300, median(later), "median");
-    experiment.value("first frames", where, "ms of all 60 from " + since, 300, total, "");
+    const std::string count = std::to_string(m.frame_ms.size());
+    experiment.value("first frames", where, "ms of frames 2 to " + count + " from " + since, 300, median(later),
+                     "median");
+    experiment.value("first frames", where, "ms of all " + count + " from " + since, 300, total, "");
 }
 
 // What the ratios' warm-up leaves out.
@@ -132,11 +134,12 @@ Status first_frames(Experiment& experiment, const std::string& scene) {
     for (const bool full : {false, true}) {
         SUNFLECK_ASSIGN(const auto bench, Bench::create(experiment.options, scene, "bench_1", thesis_size));
         const gi::Settings settings = full ? many_light(300) : brute_force(300);
+        const std::uint32_t count = full ? first_frame_count : first_frame_count_of_brute_force;
         const std::string where = scene + (full ? ", full system" : ", brute force");
-        SUNFLECK_ASSIGN(const Measurement load, bench->measure(settings, 0, first_frame_count, true));
+        SUNFLECK_ASSIGN(const Measurement load, bench->measure(settings, 0, count, true));
         report_first_frames(experiment, where, "load", load);
         change_a_light(bench->renderer->registry());
-        SUNFLECK_ASSIGN(const Measurement change, bench->measure(settings, 0, first_frame_count, true));
+        SUNFLECK_ASSIGN(const Measurement change, bench->measure(settings, 0, count, true));
         report_first_frames(experiment, where, "a light's first change", change);
     }
     return {};
@@ -148,7 +151,10 @@ Status time_ratios(Experiment& experiment) {
     for (const std::string& scene : thesis_scenes)
         for (const std::string& camera : thesis_cameras.at(scene))
             SUNFLECK_TRY(ratios(experiment, scene, camera, 300));
-    SUNFLECK_TRY(ratios(experiment, "four_pillars", "bench_1", 1024));
+    return ratios(experiment, "four_pillars", "bench_1", 1024);
+}
+
+Status time_first_frames(Experiment& experiment) {
     for (const std::string& scene : thesis_scenes)
         SUNFLECK_TRY(first_frames(experiment, scene));
     return {};
