@@ -69,7 +69,8 @@ void build_ceilings(House& house) {
     house.ceiling("blocks", blocks, pale, lamp("blocks lamp", 5.0f, 1.3f));
     house.ceiling("colours", colours, slate, lamp("colours lamp", 11.0f, 1.5f));
     house.ceiling("tower", tower, white, {});
-    house.ceiling("lamp room", lamp_room, white, {});
+    house.ceiling("lamp room", lamp_room, white,
+                  {{"great lamp", vec2(12.48f, -10.3f), 1.1f, 1.1f, vec3(14.0f, 11.5f, 8.0f)}});
     house.wall_lamp("tower lamp", vec3(15.46f, 1.9f, -2.4f), vec3(-1, 0, 0), 0.6f, 0.4f, 1.5f * night_light);
 }
 
@@ -240,12 +241,9 @@ void furnish_tower(House& house, GameParts& parts) {
     parts.sensor("tower sensor", vec3(12.1f, 5.34f, -5.85f), vec3(0, 1, 0), opens("tower", vec3(0.6f), 0.0f));
     parts.sign("tower sign", Sign::tower, vec3(12.1f, 5.0f, -6.228f), vec3(0, 0, 1));
     parts.gauge("tower gauge", Sign::tower, vec3(14.5f, upper_floor + 0.6f, -6.228f), vec3(0, 0, 1));
-    house.turning_panel("tower sail", vec3(14.2f, 5.3f, -2.2f), vec3(1.0f, 0.9f, 0.05f), 12.0f, pale);
 }
 
 void furnish_lamp_room(House& house) {
-    house.globe_lamp("great lamp", vec3(12.48f, 5.3f, -10.3f), 0.22f, vec3(22.0f, 18.0f, 12.0f), brass);
-    house.add("great lamp cord", scene::make_cylinder(0.012f, 0.9f, 8), soot, vec3(12.48f, 5.96f, -10.3f));
     house.mobile(
         "mobile", scene::make_torus(0.26f, 0.07f, 36, 14), brass,
         {vec3(10.6f, 5.2f, -8.2f), vec3(14.2f, 5.5f, -8.0f), vec3(14.4f, 5.1f, -11.4f), vec3(10.8f, 5.4f, -11.6f)},

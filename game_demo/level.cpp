@@ -42,6 +42,7 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
         });
     level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
     SUNFLECK_TRY(level->apply(settings));
+    SUNFLECK_TRY(level->sensors_.begin(source.sensors));
     return level;
 }
 
@@ -73,6 +74,7 @@ Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::ui
 
 void Level::step(const simulation::StepInput& input) {
     simulation_->step(renderer_->registry(), input);
+    sensors_.step(renderer_->registry(), renderer_->meshes(), renderer_->textures());
 }
 
 scene::CameraView Level::view(const DemoSettings& settings) const {

@@ -5,12 +5,15 @@
 #include "game_demo/demo_settings.h"
 #include "viewer/scene_renderer.h"
 
+#include "game_demo/game/level_sensors.h"
+
 namespace sunfleck::demo {
 
 // A scene file, glTF file, or the name of a built-in scene.
 struct LevelSource {
     std::string scene;
     bool allow_outside = false; // io::ImportOptions::allow_outside
+    gi::SensorSettings sensors;
 };
 
 // Reads the scene of a level, without its light.
@@ -47,6 +50,7 @@ private:
     std::unique_ptr<simulation::Simulation> simulation_;
     std::vector<scene::CameraView> cameras_;
     float ev100_ = 8.0f;
+    LevelSensors sensors_;
 };
 
 } // namespace sunfleck::demo

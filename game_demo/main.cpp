@@ -18,7 +18,7 @@ constexpr int most_frames = 10'000'000;
 // Options that are parsed as text and then translated.
 struct TextOptions {
     viewer::PictureSize size{1280, 720};
-    std::string preset, movers;
+    std::string preset, movers, sensors = "all";
     bool no_indirect = false;
 };
 
@@ -63,6 +63,11 @@ void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
     viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
                      "FOLDER")
         ->default_str("the current folder");
+    program.add_flag("--simulate", options.simulate,
+                     "Headless: steps only, without pictures or a device; plays lantern_game's solution, or --input");
+    viewer::add_choice(program, "--sensors", text.sensors, {"all", "direct"}, "The light that light sensors measure");
+    viewer::add_whole(program, "--sensor-rays", options.sensors.sensor_rays, 1, most_frames,
+                      "Rays that light sensors trace at a step, about");
     program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");
 }
 
@@ -70,6 +75,7 @@ void translate(const TextOptions& text, demo::Options& options) {
     options.width = text.size.width;
     options.height = text.size.height;
     options.indirect = !text.no_indirect;
+    options.sensors.sensors = text.sensors == "direct" ? gi::SensedLight::direct : gi::SensedLight::all;
     if (!text.movers.empty())
         options.transfer = text.movers == "prt";
     const char* names[] = {"software", "low", "medium", "high", "ultra"};
@@ -104,7 +110,9 @@ int main(int argc, char** argv) {
     translate(text, options);
     set_memory_limit(std::uint64_t(options.memory_mib) << 20);
     watch_interrupts();
-    const Status status = options.headless ? demo::run_headless(options) : demo::run_window(options);
+    const Status status = options.headless && options.simulate ? demo::run_simulation(options)
+                          : options.headless                   ? demo::run_headless(options)
+                                                               : demo::run_window(options);
     if (!status)
         log_error(status.error().message);
     if (stop_requested())

@@ -12,6 +12,8 @@ struct Options {
     std::uint32_t frames = 0;          // 0: until the window is closed, or the input ends
     std::uint32_t pictures = 8;        // written by a headless run, evenly spaced from the first frame to the last
     std::uint32_t steps_per_frame = 2; // of a headless run
+    bool simulate = false;             // steps only: no pictures, no device
+    gi::SensorSettings sensors;
     std::string output, device, scene = "lantern_house", input, record;
     std::optional<Preset> preset;
     std::optional<bool> transfer; // overrides the preset
@@ -24,10 +26,11 @@ struct Options {
 };
 
 inline LevelSource source_of(const Options& options) {
-    return {options.scene, options.allow_outside};
+    return {options.scene, options.allow_outside, options.sensors};
 }
 
 Status run_window(const Options& options);
 Status run_headless(const Options& options);
+Status run_simulation(const Options& options); // --simulate
 
 } // namespace sunfleck::demo
