@@ -3,7 +3,9 @@
 #include "engine/core/log.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
+#include "engine/simulation/path_movers.h"
 #include "engine/statistics/summary.h"
+#include "game_demo/hitch_log.h"
 #include "game_demo/level.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
@@ -89,11 +91,13 @@ public:
             for (std::uint32_t k = 0; k < stride_; ++k)
                 step(level);
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
+            request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
             SUNFLECK_TRY(level.renderer().render_and_wait(request));
             if (stop_requested())
                 return Error{std::string("stopped by ") + signal_name(stop_signal())};
             times_.add(level.renderer().statistics());
+            log_hitch(level.renderer().statistics());
             recording_.save_if_due();
             if (wants_picture(frame)) {
                 SUNFLECK_ASSIGN(const io::Picture picture, level.renderer().read_back());
@@ -107,11 +111,20 @@ public:
     }
 
     // Writes what is left of the recording.
-    Status finish() { return recording_.finish(); }
+    Status finish() {
+        if (options_.hitches)
+            log_information(hitches_.summary());
+        return recording_.finish();
+    }
     const Times& times() const { return times_; }
     std::uint32_t pictures() const { return pictures_; }
 
 private:
+    void log_hitch(const viewer::FrameStatistics& statistics) {
+        const std::string line = hitches_.add(statistics.frame_ms, statistics);
+        if (options_.hitches && !line.empty())
+            log_information(line);
+    }
     // As many as the options ask for, or every frame if there are fewer: the first frame, the last, and some between.
     bool wants_picture(std::uint32_t frame) const {
         if (options_.pictures == 0 || options_.pictures >= frames_)
@@ -139,6 +152,7 @@ private:
     simulation::RecordingWriter recording_;
     WalkThrough walk_;
     Times times_;
+    HitchLog hitches_;
     std::uint32_t stride_, frames_ = 0, pictures_ = 0;
 };
 

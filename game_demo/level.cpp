@@ -1,9 +1,11 @@
 #include "game_demo/level.h"
 
 #include "engine/core/file.h"
+#include "engine/ecs/world_copy.h"
 #include "game_demo/presets.h"
 #include "viewer/built_in_scenes.h"
 #include "viewer/exposure.h"
+#include "viewer/preparation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,8 @@ namespace sunfleck::demo {
 namespace {
 
 constexpr double seconds_per_camera = 9.0;
+// Samples that may change their strength in a frame: a door or the switch of bounced light changes a hundred and more.
+constexpr std::uint32_t strength_changes = 16;
 
 } // namespace
 
@@ -40,36 +44,22 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
             if (name.name.rfind("bench", 0) != 0)
                 level->cameras_.push_back(scene::camera_view(registry, entity));
         });
+    ecs::copy_world(registry, level->start_);
+    level->changes_ = std::make_unique<viewer::LightingChanges>(device);
     level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
     SUNFLECK_TRY(level->apply(settings));
     SUNFLECK_TRY(level->sensors_.begin(source.sensors));
     return level;
 }
 
-Status Level::prepare(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
-                      const std::function<bool(float)>& progress) {
-    constexpr float samples_until = 0.5f; // the rest are shadow maps
-    viewer::FrameRequest request = this->request(settings, width, height);
-    request.map_budget = 0;
-    request.progress = [&](float share) { return progress(samples_until * share); };
-    SUNFLECK_TRY(renderer_->render_and_wait(request));
-    request.progress = {};
-    // Adapts the number of maps so that a portion takes about 0.1 s.
-    request.map_budget = 4;
-    for (bool more = true; more;) {
-        SUNFLECK_TRY(renderer_->render_and_wait(request));
-        const gi::Report& counters = renderer_->statistics().counters;
-        more = counters["shadow_maps_stale"] > 0 && counters["shadow_map_updates"] > 0;
-        const float stale =
-            float(counters["shadow_maps_stale"]) / float(std::max<std::uint64_t>(counters["light_samples"], 1));
-        if (!progress(samples_until + (1.0f - samples_until) * (1.0f - stale)))
-            return Error{"loading was cancelled"};
-        const double milliseconds = renderer_->statistics().frame_ms;
-        request.map_budget = milliseconds < 80.0    ? request.map_budget * 2
-                             : milliseconds > 160.0 ? std::max(request.map_budget / 2, 1u)
-                                                    : request.map_budget;
-    }
-    return {};
+Status Level::prepare(const DemoSettings& settings, const std::function<bool(float)>& progress) {
+    // Nothing that is kept depends on the picture.
+    return viewer::prepare_lighting(*renderer_, request(settings, 64, 36), {100.0, progress});
+}
+
+void Level::restart() {
+    ecs::copy_world(start_, renderer_->registry());
+    simulation_ = std::make_unique<simulation::Simulation>(renderer_->registry(), renderer_->meshes());
 }
 
 void Level::step(const simulation::StepInput& input) {
@@ -96,7 +86,34 @@ scene::CameraView Level::title_camera(double seconds) const {
 }
 
 Status Level::apply(const DemoSettings& settings) {
-    return renderer_->lighting().set_settings(lighting_of(settings));
+    changes_->cancel();
+    wanted_ = lighting_of(settings);
+    return renderer_->lighting().set_settings(wanted_);
+}
+
+void Level::apply_later(const DemoSettings& settings) {
+    const gi::Settings lighting = lighting_of(settings);
+    if (lighting == wanted_)
+        return;
+    wanted_ = lighting;
+    gi::Settings present = renderer_->lighting().settings();
+    present.map_budget = lighting.map_budget; // needs no other light
+    if (lighting != present)
+        return changes_->request(lighting);
+    changes_->cancel();
+    static_cast<void>(renderer_->lighting().set_settings(lighting)); // they are those of a menu, within their ranges
+}
+
+Status Level::advance_light() {
+    const Result<bool> changed = changes_->advance(*renderer_);
+    if (changed)
+        return {};
+    wanted_ = renderer_->lighting().settings();
+    return changed.error();
+}
+
+std::optional<float> Level::light_share() const {
+    return changes_->pending() ? std::optional(changes_->share()) : std::nullopt;
 }
 
 viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height) {
@@ -113,6 +130,7 @@ viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t 
     request.height = scaled(height);
     request.antialiasing = settings.antialiasing;
     request.glare = settings.glare;
+    request.strength_budget = strength_changes;
     request.ev100 = ev100_ - settings.exposure;
     return request;
 }

@@ -3,7 +3,7 @@
 
 #include "engine/simulation/simulation.h"
 #include "game_demo/demo_settings.h"
-#include "viewer/scene_renderer.h"
+#include "viewer/lighting_change.h"
 
 #include "game_demo/game/level_sensors.h"
 
@@ -26,11 +26,10 @@ public:
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const LevelSource& source,
                                                const DemoSettings& settings, std::uint32_t frames_in_flight,
                                                const std::function<bool(float)>& progress = {});
-    // Does the work that would delay the first frame at this size: samples, visibility, all shadow maps. Works in
-    // small portions, so that other threads can present frames meanwhile. `progress` receives the fraction done and
-    // returns false to cancel with an error.
-    Status prepare(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
-                   const std::function<bool(float)>& progress);
+    // Does the work that would delay the first frame: samples, visibility, all shadow maps. Works in small portions, so
+    // that other threads can present frames meanwhile. `progress` receives the fraction done and returns false to
+    // cancel with an error.
+    Status prepare(const DemoSettings& settings, const std::function<bool(float)>& progress);
 
     viewer::SceneRenderer& renderer() { return *renderer_; }
     simulation::Simulation& simulation() { return *simulation_; }
@@ -39,14 +38,25 @@ public:
     scene::CameraView view(const DemoSettings& settings) const;
     // The view behind the title: the scene's cameras in turn, slowly panning.
     scene::CameraView title_camera(double seconds) const;
-    // Applies the player's settings.
+    // The world as it was loaded, at step 0; the light stays.
+    void restart();
+    // Applies the player's settings at once; makes the next frame wait for their light.
     Status apply(const DemoSettings& settings);
+    // The same beside the frames (viewer/lighting_change.h), which go on with the present light. Once each frame, so
+    // that it takes effect; the error is why a change failed, and the light stays as it was.
+    void apply_later(const DemoSettings& settings);
+    Status advance_light();
+    // How far a change of light is, 0 to 1; none: everything that was applied is shown.
+    std::optional<float> light_share() const;
     // The frame request for a window or image of this size.
     viewer::FrameRequest request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height);
 
 private:
     Level() = default;
+    ecs::Registry start_; // the world at step 0
     std::unique_ptr<viewer::SceneRenderer> renderer_;
+    std::unique_ptr<viewer::LightingChanges> changes_;
+    gi::Settings wanted_; // applied last
     std::unique_ptr<simulation::Simulation> simulation_;
     std::vector<scene::CameraView> cameras_;
     float ev100_ = 8.0f;

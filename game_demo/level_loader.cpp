@@ -10,11 +10,10 @@ constexpr float read_until = 0.3f;
 
 } // namespace
 
-LevelLoader::LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings, std::uint32_t width,
-                         std::uint32_t height)
+LevelLoader::LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings)
     : device_(device), source_(std::move(source)), settings_(settings) {
-    thread_ = std::thread([this, width, height] {
-        result_ = load(width, height);
+    thread_ = std::thread([this] {
+        result_ = load();
         finished_ = true;
     });
 }
@@ -30,11 +29,11 @@ bool LevelLoader::report(float share) {
     return !stop_;
 }
 
-Result<std::unique_ptr<Level>> LevelLoader::load(std::uint32_t width, std::uint32_t height) {
+Result<std::unique_ptr<Level>> LevelLoader::load() {
     const auto reading = [&](float share) { return report(read_until * share); };
     const auto preparing = [&](float share) { return report(read_until + (1.0f - read_until) * share); };
     SUNFLECK_ASSIGN(std::unique_ptr<Level> level, Level::load(device_, source_, settings_, 2, reading));
-    SUNFLECK_TRY(level->prepare(settings_, width, height, preparing));
+    SUNFLECK_TRY(level->prepare(settings_, preparing));
     return level;
 }
 

@@ -10,9 +10,8 @@ namespace sunfleck::demo {
 
 class LevelLoader {
 public:
-    // Starts loading. `width` and `height` are the window's.
-    LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings, std::uint32_t width,
-                std::uint32_t height);
+    // Starts loading.
+    LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings);
     // Cancels loading and waits for the thread, which in the long parts takes a fraction of a second.
     ~LevelLoader();
     LevelLoader(const LevelLoader&) = delete;
@@ -25,7 +24,7 @@ public:
     Result<std::unique_ptr<Level>> take();
 
 private:
-    Result<std::unique_ptr<Level>> load(std::uint32_t width, std::uint32_t height);
+    Result<std::unique_ptr<Level>> load();
     bool report(float share);
 
     gpu::Device& device_;

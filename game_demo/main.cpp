@@ -35,6 +35,8 @@ void add_run_options(CLI::App& program, demo::Options& options) {
                       "Number of images that a headless run writes, evenly spaced from its first frame to its last");
     viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,
                       "Simulation steps of 1/60 s per frame of a headless run");
+    program.add_flag("--hitches", options.hitches,
+                     "Print which frames take more than twice the median of the 30 before, and why");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
     program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
 }

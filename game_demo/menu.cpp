@@ -111,6 +111,8 @@ Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::
     if (settings.show_times)
         times(data);
     message();
+    if (data.light_share)
+        light_progress(*data.light_share);
     return decision;
 }
 

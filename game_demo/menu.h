@@ -21,6 +21,7 @@ struct OverlayData {
     std::map<std::string, double> gpu_ms, cpu_ms;
     std::uint64_t light_samples = 0;
     std::uint32_t rendered_width = 0, rendered_height = 0;
+    std::optional<float> light_share; // how far a change of light is, 0 to 1; none: there is none
     std::string device;
 };
 
@@ -48,6 +49,7 @@ private:
     void prompts(const DemoSettings& settings, const OverlayData& data);
     void times(const OverlayData& data);
     void message();
+    static void light_progress(float share);
     bool field(DemoSettings& settings, const char* name, const char* label);
     void image_tab(DemoSettings& settings, bool& changed);
     void display_tab(DemoSettings& settings, bool& changed);

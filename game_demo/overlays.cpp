@@ -98,6 +98,14 @@ void Menu::times(const OverlayData& data) {
     ImGui::End();
 }
 
+void Menu::light_progress(float share) {
+    place_next(0.01f, 0.98f, 0.0f, 1.0f);
+    ImGui::SetNextWindowBgAlpha(0.45f);
+    ImGui::Begin("light", nullptr, behind);
+    ImGui::Text("Preparing the light: %.0f %%", 100.0 * double(share));
+    ImGui::End();
+}
+
 void Menu::message() {
     if (message_seconds_ <= 0.0)
         return;

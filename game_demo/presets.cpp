@@ -2,6 +2,8 @@
 
 #include "viewer/quality.h"
 
+#include <algorithm>
+
 namespace sunfleck::demo {
 namespace {
 
@@ -34,6 +36,14 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     preset.map_budget = settings.map_budget;
     preset.transfer = settings.transfer;
     return viewer::quality_settings(quality, preset);
+}
+
+DemoSettings first_light(DemoSettings settings) {
+    constexpr std::uint32_t share = 6, least = 32;
+    settings.preset = Preset::custom;
+    settings.light_samples = std::min(settings.light_samples, std::max(settings.light_samples / share, least));
+    settings.transfer = false;
+    return settings;
 }
 
 bool has_transfer() {

@@ -5,10 +5,12 @@
 #include "engine/core/stop_signals.h"
 #include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
+#include "game_demo/hitch_log.h"
 #include "game_demo/level_loader.h"
 #include "game_demo/menu.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
+#include "game_demo/screenshot.h"
 
 #include <algorithm>
 #include <chrono>
@@ -24,19 +26,6 @@ constexpr int pad_start = 7;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// The first unused name in the folder, as a whole path, so that the message says where the picture is.
-std::filesystem::path free_screenshot_name(const std::filesystem::path& folder) {
-    std::error_code code;
-    const std::filesystem::path place = std::filesystem::absolute(folder, code).lexically_normal();
-    for (int number = 1; number < 10000; ++number) {
-        char name[40];
-        std::snprintf(name, sizeof name, "sunfleck_%04d.png", number);
-        if (!std::filesystem::exists(place / name, code))
-            return place / name;
-    }
-    return place / "sunfleck.png";
 }
 
 class Game {
@@ -76,11 +65,26 @@ private:
             if (!shown)
                 continue;
             ++frame;
-            const double rest = 1.0 / double(settings_.frame_cap) - seconds_since(began);
+            const double rest = 1.0 / frame_rate() - seconds_since(began);
             if (rest > 0.0)
                 std::this_thread::sleep_for(std::chrono::duration<double>(rest));
         }
         return {};
+    }
+
+    // Behind the title, frames leave most of the time to the light that is being prepared.
+    double frame_rate() const {
+        constexpr double preparing = 6.0; // Hz
+        const bool prepares = !started_ && level_->light_share();
+        return prepares ? std::min(preparing, double(settings_.frame_cap)) : double(settings_.frame_cap);
+    }
+
+    // For measurements of the start.
+    void log_time(const char* what) {
+        char text[80];
+        std::snprintf(text, sizeof text, "%s after %.2f s", what, seconds_since(began_));
+        if (options_.hitches)
+            log_information(text);
     }
 
     Status start() {
@@ -117,11 +121,7 @@ private:
 
     void start_loading() {
         window_->set_title("Lantern House - loading");
-        window_->capture_pointer(false);
-        level_.reset();
-        std::uint32_t width = 0, height = 0;
-        window_->size(width, height);
-        loader_ = std::make_unique<LevelLoader>(*device_, source_of(options_), settings_, width, height);
+        loader_ = std::make_unique<LevelLoader>(*device_, source_of(options_), first_light(settings_));
     }
 
     // One frame of the loading screen. The device is idle when the level takes over, because submission serials
@@ -135,9 +135,9 @@ private:
             loader_.reset();
             SUNFLECK_TRY(device_->wait_idle());
             blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
-            accumulator_ = 0.0;
-            recording_.clear();
             window_->set_title("Lantern House");
+            level_->apply_later(settings_); // all of the light comes in view
+            log_time("first picture");
             last_ = Clock::now();
             return {};
         }
@@ -177,6 +177,7 @@ private:
         window_->capture_pointer(playing);
         controls_.take(input, settings_, seconds, playing);
         simulate(seconds);
+        follow_light();
         SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(level_->renderer().submission().serial()));
         if (!visible) {
             window_->wait(0.05);
@@ -184,6 +185,14 @@ private:
         }
         SUNFLECK_TRY(show(input, seconds));
         return true;
+    }
+
+    void follow_light() {
+        const bool changes = level_->light_share().has_value();
+        if (const Status status = level_->advance_light(); !status)
+            menu_.say("The new settings could not be applied: " + status.error().message, 6.0);
+        else if (changes && !level_->light_share())
+            log_time("all of the light");
     }
 
     Status handle_keys(const app::InputState& input) {
@@ -235,9 +244,11 @@ private:
         viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height);
         if (!started_)
             request.camera = level_->title_camera(title_seconds_);
-        fade_ += (float(indirect_) - fade_) * float(std::min(1.0, 12.0 * seconds));
-        request.indirect_scale = std::abs(fade_ - float(indirect_)) < 0.02f ? float(indirect_) : fade_;
+        request.indirect_scale = float(indirect_); // fades, since only some samples follow in each frame
+        request.keep_samples = true;               // new ones are prepared beside the frames
+        request.milliseconds = 1e3 * seconds_since(began_);
         renderer.collect_statistics();
+        log_hitch(seconds);
         screen_->gui().begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
         bool changed = false;
         const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
@@ -248,16 +259,24 @@ private:
         blit_resources_->begin_frame(renderer.submission().serial(), completed);
         SUNFLECK_TRY(renderer.record(commands, request, overlay()));
         SUNFLECK_TRY(present(commands));
-        if (wants_screenshot_)
-            save_screenshot();
+        if (std::exchange(wants_screenshot_, false))
+            menu_.say(save_screenshot(renderer, options_.screenshots));
         if (changed) {
-            SUNFLECK_TRY(level_->apply(settings_));
+            level_->apply_later(settings_);
             window_->set_full_screen(settings_.full_screen);
             if (const Status status = store_settings(); !status)
                 menu_.say(status.error().message, 6.0);
         }
         decide(decision);
         return {};
+    }
+
+    // The time from frame to frame, presents included; the passes are those of the newest finished frame.
+    void log_hitch(double seconds) {
+        if (!options_.hitches)
+            return;
+        if (const std::string line = hitches_.add(1e3 * seconds, level_->renderer().statistics()); !line.empty())
+            log_information(line);
     }
 
     OverlayData overlay_data(const viewer::FrameRequest& request, double seconds) {
@@ -273,6 +292,7 @@ private:
         result.light_samples = statistics.counters["light_samples"];
         result.rendered_width = request.width;
         result.rendered_height = request.height;
+        result.light_share = level_->light_share();
         result.device = device_->traits().name;
         return result;
     }
@@ -288,11 +308,11 @@ private:
         case Decision::play:
             menu_.show(Screen::playing);
             if (!started_)
-                start_loading(); // reset the world
+                restart();
             started_ = true;
             break;
         case Decision::restart:
-            start_loading();
+            restart();
             menu_.show(Screen::playing);
             break;
         case Decision::quit:
@@ -301,16 +321,10 @@ private:
         }
     }
 
-    // A failure to save is reported, and the game continues.
-    void save_screenshot() {
-        wants_screenshot_ = false;
-        const std::filesystem::path path = free_screenshot_name(options_.screenshots);
-        Status status = Status();
-        if (auto picture = level_->renderer().read_back())
-            status = io::write_picture(path, *picture);
-        else
-            status = picture.error();
-        menu_.say(status ? "Saved " + path.string() : status.error().message);
+    void restart() {
+        level_->restart();
+        accumulator_ = 0.0;
+        recording_.clear();
     }
 
     // Where the file says something else.
@@ -326,6 +340,8 @@ private:
 
     Status finish() {
         loader_.reset();
+        if (options_.hitches)
+            log_information(hitches_.summary());
         const Status stored = store_settings(), recorded = recording_.finish();
         SUNFLECK_TRY(device_->wait_idle());
         if (settings_text(settings_) != first_settings_) // else nothing is lost
@@ -348,10 +364,11 @@ private:
     std::unique_ptr<app::GuiScreen> screen_;
     Menu menu_;
     Controls controls_;
+    HitchLog hitches_;
     Clock::time_point last_;
     double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
     bool started_ = false, indirect_ = true, wants_screenshot_ = false, start_before_ = false;
-    float fade_ = 1.0f;
+    const Clock::time_point began_ = Clock::now();
     simulation::RecordingWriter recording_;
     std::string first_settings_, saved_settings_; // as text: at the start, and in the file
 };

@@ -209,6 +209,11 @@ SampleRequest Settings::sample_request(const LightPlan& light_plan) const {
     return request;
 }
 
+bool Settings::operator==(const Settings& other) const {
+    const std::vector<std::string_view> all = names();
+    return std::all_of(all.begin(), all.end(), [&](std::string_view name) { return get(name) == other.get(name); });
+}
+
 Status Settings::validate() const {
     for (const ConstPart& part : parts())
         SUNFLECK_TRY(sunfleck::validate(*part.type, part.values));

@@ -91,6 +91,9 @@ struct Settings : TermSettings,
         return with("punctual", technique).with("direct", technique).with("indirect", technique);
     }
 
+    // Every setting has the same value.
+    bool operator==(const Settings& other) const;
+
     // Checks every value, and that every part of the light has one owner that can light it.
     Status validate() const;
     Result<LightPlan> light_plan() const;

@@ -90,15 +90,18 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
     resources_.begin_frame(input.serial, input.completed_serial);
     SUNFLECK_TRY(find_view());
     const SceneView scene{registry, changes, meshes, gpu_scene, rays};
-    const bool static_changed = geometry_generation_ != rays.static_generation();
-    geometry_generation_ = rays.static_generation();
-    SUNFLECK_TRY(update_samples(scene, static_changed));
+    update_samples(scene);
+    // Kept samples keep what was found for them.
+    const bool static_changed = !samples_.outdated() && geometry_generation_ != rays.static_generation();
+    if (!samples_.outdated())
+        geometry_generation_ = rays.static_generation();
+    SUNFLECK_TRY(make_rows(scene, static_changed));
     SUNFLECK_TRY(update_visibility(scene, static_changed));
     {
         const StageTimer timer(cpu_times_, "shadow scheduling");
         shadows_->measured(input.measured_serial, input.measured_map_milliseconds);
         shadows_->schedule(samples_, {gpu_scene, services().visibility, input.serial, input.map_budget,
-                                      input.view_projection, cells_with_maps()});
+                                      input.view_projection, cells_with_maps(), input.milliseconds});
     }
     SUNFLECK_TRY(update_techniques(scene));
     input_.progress = {}; // what it refers to may end with this call
@@ -122,12 +125,16 @@ Status System::find_view() {
     return Error{"there is no view '" + std::string(input_.view) + "'"};
 }
 
-Status System::update_samples(const SceneView& scene, bool static_changed) {
+void System::update_samples(const SceneView& scene) {
     const StageTimer timer(cpu_times_, "light samples");
-    samples_.update(scene, settings_.sample_request(plan_), settings_, restart_);
+    samples_.update(scene, settings_.sample_request(plan_), settings_, restart_, input_.keep_samples);
+}
+
+Status System::make_rows(const SceneView& scene, bool static_changed) {
+    const StageTimer timer(cpu_times_, "light samples");
     const MapPolicy policy{wants_visibility(), any_in_use(&TechniqueEntry::needs_full_maps)};
     SUNFLECK_TRY(shadows_->configure(settings_, policy, samples_.size(), resources_));
-    samples_.update_rows(scene, settings_, shadows_->slots(), input_.indirect_scale);
+    samples_.update_rows(scene, settings_, shadows_->slots(), {input_.indirect_scale, input_.strength_budget});
     shadows_->follow(samples_, static_changed);
     return {};
 }

@@ -50,6 +50,12 @@ public:
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
                       const gpu::UploadSlice& camera, gpu::ResourceId output);
 
+    // Lights that another system has seen change (SampleSet::varying_lights): their next change is none to remember.
+    void expect_varying(const std::set<ecs::Entity>& lights) { samples_.expect_varying(lights); }
+
+    // The last update kept samples that no longer fit settings or scene (FrameInput::keep_samples).
+    bool outdated() const { return samples_.outdated(); }
+
     // Where precomputed data is kept from run to run; empty (the default): it is computed in every run.
     void set_cache_folder(std::filesystem::path folder) { cache_folder_ = std::move(folder); }
 
@@ -73,7 +79,8 @@ private:
     bool wants_visibility() const;
     CellSet cells_with_maps() const;
     bool any_in_use(bool TechniqueEntry::*request) const;
-    Status update_samples(const SceneView& scene, bool static_changed);
+    void update_samples(const SceneView& scene);
+    Status make_rows(const SceneView& scene, bool static_changed);
     Status update_visibility(const SceneView& scene, bool static_changed);
     Status update_techniques(const SceneView& scene);
     Status find_view();

@@ -35,6 +35,17 @@ struct FrameInput {
     // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; ShadowSettings::map_priority says
     // which go first.
     std::uint32_t map_budget = 0xffffffffu;
+    // Samples whose strength changes in this frame at most while they stay where they are (a lamp that is switched,
+    // light that a door lets in, `indirect_scale`): the others follow in later frames, in turn. It bounds what such a
+    // change costs a frame, by a count, so that the same frames give the same pictures.
+    std::uint32_t strength_budget = 0xffffffffu;
+    // Where settings, static geometry or static emitters have changed, or a lamp its strength for the first time,
+    // samples, visibility and static shadows stay as they are, and System::outdated() is true: for hosts that prepare
+    // new ones beside their frames (with a second system). Without it, the update makes them, which may take seconds.
+    bool keep_samples = false;
+    // The host's time, ms, real or simulated. With it, no shadow map that shows is out of date for longer than 100 ms
+    // or two frames, whichever is longer, whatever ShadowSettings::map_budget says.
+    std::optional<double> milliseconds;
     // What the GPU took for the passes called "shadow maps" and "shadow map copies" of an earlier frame, if the host
     // measures it; only for ShadowSettings::map_milliseconds.
     std::uint64_t measured_serial = 0;

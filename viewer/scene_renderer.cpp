@@ -1,7 +1,7 @@
 #include "viewer/scene_renderer.h"
 
 #include "engine/core/memory_limit.h"
-
+#include "engine/ecs/world_copy.h"
 #include "engine/io/scene_file.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
@@ -30,15 +30,27 @@ bool is_enlarged(const FrameRequest& request) {
            (request.screen_width != request.width || request.screen_height != request.height);
 }
 
+Status replace_in(gpu::ShaderLibrary& shaders, gpu::PipelineStore& pipelines, const std::string& path,
+                  const std::vector<std::uint32_t>& words) {
+    SUNFLECK_ASSIGN(const auto before, shaders.find(path));
+    std::vector<std::uint32_t> old(before.begin(), before.end());
+    SUNFLECK_TRY(shaders.replace(path, words));
+    Status status = pipelines.refresh();
+    if (!status) // the old pipelines are kept; keep the old shader, too
+        SUNFLECK_TRY(shaders.replace(path, std::move(old)));
+    return status;
+}
+
 } // namespace
 
 Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device, std::uint32_t frames_in_flight) {
     std::unique_ptr<SceneRenderer> renderer(new SceneRenderer(device));
     scene::register_components(renderer->registry_);
-    renderer->shaders_ = std::make_unique<gpu::ShaderLibrary>();
+    renderer->shaders_ = renderer->lighting_shaders_ = std::make_shared<gpu::ShaderLibrary>();
     renderer->shaders_->add(gpu::sunfleck_render_shaders());
     renderer->shaders_->add(gi::shaders());
-    renderer->pipelines_ = std::make_unique<gpu::PipelineStore>(device, *renderer->shaders_);
+    renderer->pipelines_ = renderer->lighting_pipelines_ =
+        std::make_shared<gpu::PipelineStore>(device, *renderer->shaders_);
     SUNFLECK_ASSIGN(renderer->submission_, gpu::Submission::create(device, frames_in_flight));
     renderer->resources_ = std::make_unique<gpu::FrameResources>(device);
     renderer->timers_ = std::make_unique<gpu::Timers>(device);
@@ -59,14 +71,15 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
 }
 
 SceneRenderer::~SceneRenderer() {
-    static_cast<void>(device_.wait_idle());
+    if (submission_) // the queue itself may be at work for others
+        static_cast<void>(submission_->wait(submission_->serial() - 1));
     composition_.destroy(device_);
     glare_.destroy(device_);
 }
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
                                              const std::function<Status(ecs::Registry&)>& modify) {
-    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
+    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes(), textures(), options));
     if (modify)
         SUNFLECK_TRY(modify(registry_));
     if (add_default_light(registry_))
@@ -80,8 +93,36 @@ Status SceneRenderer::upload_meshes() {
     registry_.view<scene::EnvironmentMap>().each(
         [&](ecs::Entity, const scene::EnvironmentMap& map) { picture = map.image.get(); });
     SUNFLECK_TRY(sky_->update(picture, *submission_));
-    SUNFLECK_TRY(gpu_scene_->update_textures(textures_, *submission_));
-    return gpu_scene_->update_meshes(meshes_, *submission_);
+    SUNFLECK_TRY(gpu_scene_->update_textures(textures(), *submission_));
+    return gpu_scene_->update_meshes(meshes(), *submission_);
+}
+
+std::unique_ptr<SceneCopy> SceneRenderer::copy_scene(CopyOf what) {
+    auto copy = std::make_unique<SceneCopy>();
+    ecs::copy_world(registry_, copy->registry);
+    if (what == CopyOf::all) {
+        copy->meshes = meshes();
+        copy->textures = textures();
+    }
+    return copy;
+}
+
+Status SceneRenderer::take_scene(std::unique_ptr<SceneCopy> copy) {
+    ecs::copy_world(copy->registry, registry_);
+    if (meshes().size() > 0)
+        return {};
+    meshes() = std::move(copy->meshes);
+    textures() = std::move(copy->textures);
+    return upload_meshes();
+}
+
+void SceneRenderer::exchange_lighting(SceneRenderer& other) {
+    std::swap(gpu_scene_, other.gpu_scene_);
+    std::swap(rays_, other.rays_);
+    std::swap(ray_stores_, other.ray_stores_);
+    std::swap(lighting_, other.lighting_);
+    std::swap(lighting_shaders_, other.lighting_shaders_);
+    std::swap(lighting_pipelines_, other.lighting_pipelines_);
 }
 
 Status SceneRenderer::update(const FrameRequest& request) {
@@ -98,18 +139,18 @@ Status SceneRenderer::update(const FrameRequest& request) {
     const scene::SceneChanges* changes = nullptr;
     {
         const StageTimer timer(stages_, "scene changes");
-        scene::deform_meshes(registry_, meshes_);
-        changes = &change_tracker_.collect(registry_, meshes_);
+        scene::deform_meshes(registry_, meshes());
+        changes = &change_tracker_.collect(registry_, meshes());
         has_previous_camera_ = has_previous_camera_ && changes->space == space_;
         space_ = changes->space;
     }
     {
         const StageTimer timer(stages_, "ray scene");
-        SUNFLECK_TRY(rays_->update(*changes, meshes_, &textures_));
+        SUNFLECK_TRY(rays_->update(*changes, meshes(), &textures()));
     }
     {
         const StageTimer timer(stages_, "gpu scene");
-        SUNFLECK_TRY(gpu_scene_->update(*changes, meshes_, *resources_));
+        SUNFLECK_TRY(gpu_scene_->update(*changes, meshes(), *resources_));
     }
     return update_lighting(request, *changes, completed);
 }
@@ -125,8 +166,11 @@ Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::
     gi::set_measured_times(input, timers_->latest());
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
+    input.strength_budget = request.strength_budget;
+    input.milliseconds = request.milliseconds;
+    input.keep_samples = request.keep_samples;
     input.view_projection = camera_row(request).view_projection;
-    return lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input);
+    return lighting_->update(registry_, changes, meshes(), *gpu_scene_, *rays_, input);
 }
 
 shared::CameraRow SceneRenderer::camera_row(const FrameRequest& request) const {
@@ -330,13 +374,10 @@ Result<io::Picture> SceneRenderer::read_back() {
 
 Status SceneRenderer::replace_shader(const std::string& path, std::vector<std::uint32_t> words) {
     SUNFLECK_TRY(device_.wait_idle());
-    SUNFLECK_ASSIGN(const auto before, shaders_->find(path));
-    std::vector<std::uint32_t> old(before.begin(), before.end());
-    SUNFLECK_TRY(shaders_->replace(path, std::move(words)));
-    Status status = pipelines_->refresh();
-    if (!status) // the old pipelines are kept; keep the old shader, too
-        SUNFLECK_TRY(shaders_->replace(path, std::move(old)));
-    return status;
+    SUNFLECK_TRY(replace_in(*shaders_, *pipelines_, path, words));
+    if (lighting_shaders_ == shaders_)
+        return {};
+    return replace_in(*lighting_shaders_, *lighting_pipelines_, path, words);
 }
 
 } // namespace sunfleck::viewer

@@ -32,7 +32,10 @@ struct FrameRequest {
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step of the movers
     std::uint32_t map_budget = 0xffffffffu;
-    float indirect_scale = 1.0f; // scales indirect light
+    float indirect_scale = 1.0f;                 // scales indirect light
+    std::uint32_t strength_budget = 0xffffffffu; // gi::FrameInput::strength_budget
+    std::optional<double> milliseconds;          // gi::FrameInput::milliseconds
+    bool keep_samples = false;                   // gi::FrameInput::keep_samples
     // gi::FrameInput::progress
     std::function<bool(float)> progress;
 };
@@ -47,6 +50,13 @@ struct FrameStatistics {
     gi::Report counters;
 };
 
+// A scene's content, apart from what the GPU and ray tracing have made of it.
+struct SceneCopy {
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    scene::TextureStore textures;
+};
+
 class SceneRenderer {
 public:
     // The device must outlive the renderer.
@@ -56,8 +66,8 @@ public:
     static Status check_size(std::uint32_t width, std::uint32_t height);
 
     ecs::Registry& registry() { return registry_; }
-    scene::MeshStore& meshes() { return meshes_; }
-    scene::TextureStore& textures() { return textures_; }
+    scene::MeshStore& meshes() { return stores_->meshes; }
+    scene::TextureStore& textures() { return stores_->textures; }
     raytrace::RayScene& rays() { return *rays_; }
     gi::System& lighting() { return *lighting_; }
     gpu::Submission& submission() { return *submission_; }
@@ -73,6 +83,17 @@ public:
                                   const std::function<Status(ecs::Registry&)>& modify = {});
     // Uploads meshes and textures that were added to the stores. Waits for the GPU.
     Status upload_meshes();
+
+    // For lighting that is made beside the frames (lighting_change.h). A copy of the scene as it is now; `world`: of
+    // its entities alone.
+    enum class CopyOf { all, world };
+    std::unique_ptr<SceneCopy> copy_scene(CopyOf what);
+    // Makes this scene one's own: all of it and its uploads, if there was none, and else what has moved or changed
+    // since the copy before. Waits for the GPU.
+    Status take_scene(std::unique_ptr<SceneCopy> copy);
+    // What GPU, ray tracing and lighting have made of the scenes changes places; `other` has a copy of this one's
+    // scene, and its frames are finished. This one's must be, before `other` draws again or ends.
+    void exchange_lighting(SceneRenderer& other);
 
     // Updates movers, transforms, ray scene and lighting to `request.step` (a frame's CPU work).
     Status update(const FrameRequest& request);
@@ -106,12 +127,18 @@ private:
 
     gpu::Device& device_;
     ecs::Registry registry_;
-    scene::MeshStore meshes_;
-    scene::TextureStore textures_;
+    struct Stores {
+        scene::MeshStore meshes;
+        scene::TextureStore textures;
+    };
+    std::shared_ptr<Stores> stores_ = std::make_shared<Stores>();
+    std::shared_ptr<Stores> ray_stores_ = stores_; // that rays_ was built of, and refers to
     scene::ChangeTracker change_tracker_{scene::ChangeTracker::Space::of_scene};
     scene::SceneSpace space_; // of the last update
-    std::unique_ptr<gpu::ShaderLibrary> shaders_;
-    std::unique_ptr<gpu::PipelineStore> pipelines_;
+    std::shared_ptr<gpu::ShaderLibrary> shaders_;
+    std::shared_ptr<gpu::PipelineStore> pipelines_;
+    std::shared_ptr<gpu::ShaderLibrary> lighting_shaders_; // of lighting_pipelines_, which lighting_ was made with
+    std::shared_ptr<gpu::PipelineStore> lighting_pipelines_;
     std::unique_ptr<gpu::Submission> submission_;
     std::unique_ptr<gpu::FrameResources> resources_;
     std::unique_ptr<gpu::Timers> timers_;

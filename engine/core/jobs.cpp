@@ -9,6 +9,7 @@
 #else
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #endif
 
 namespace sunfleck {
@@ -32,6 +33,10 @@ void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
         worker.join();
 }
 
+void run_alone(const std::function<void()>& body) {
+    body();
+}
+
 ThreadLimit::ThreadLimit(std::size_t) {}
 ThreadLimit::~ThreadLimit() = default;
 
@@ -49,6 +54,11 @@ void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
                 body(chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size));
         },
         tbb::simple_partitioner());
+}
+
+void run_alone(const std::function<void()>& body) {
+    tbb::task_arena arena(1);
+    arena.execute([&] { body(); });
 }
 
 ThreadLimit::ThreadLimit(std::size_t threads) {

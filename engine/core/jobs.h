@@ -12,6 +12,10 @@ namespace sunfleck {
 void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
                          const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+// Parallel loops within `body` run on the calling thread alone: for work beside a program's frames, which keep their
+// share of the cores.
+void run_alone(const std::function<void()>& body);
+
 // Limits the worker threads of this process during the object's lifetime; 0 means one per hardware thread.
 class ThreadLimit {
 public:

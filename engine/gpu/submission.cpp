@@ -32,7 +32,7 @@ Result<std::unique_ptr<Submission>> Submission::create(Device& device, std::uint
 }
 
 Submission::~Submission() {
-    static_cast<void>(device_.wait_idle());
+    static_cast<void>(wait(serial_ - 1)); // its own work: the queue may be busy with that of others
     for (const Slot& slot : slots_)
         device_.vk.vkDestroyCommandPool(device_.handle(), slot.pool, nullptr);
     device_.vk.vkDestroySemaphore(device_.handle(), timeline_, nullptr);

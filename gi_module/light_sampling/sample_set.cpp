@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <tuple>
 
 namespace sunfleck::gi {
@@ -71,6 +72,9 @@ constexpr Counter late_samples{"light_samples_behind", "samples", "light samples
 constexpr Counter blocked_samples{
     "light_samples_blocked", "samples", "light samples",
     "Reflected samples that are dark because a door or the like blocks the path of their light"};
+constexpr Counter waiting_strengths{
+    "light_samples_late", "samples", "light samples",
+    "Light samples whose new strength waits for a later frame (FrameInput::strength_budget)"};
 constexpr Counter clamped_share{"clamped_share", "%", "clamping",
                                 "Share of the light of static surface samples that the bound of the geometry term "
                                 "takes away; estimated by rays"};
@@ -78,8 +82,8 @@ constexpr Counter clamped_share{"clamped_share", "%", "clamping",
 } // namespace
 
 std::span<const Counter> SampleSet::counters() {
-    static const Counter all[] = {light_samples, direct_samples,  dynamic_samples, moved_samples,
-                                  late_samples,  blocked_samples, clamped_share};
+    static const Counter all[] = {light_samples, direct_samples,  dynamic_samples,   moved_samples,
+                                  late_samples,  blocked_samples, waiting_strengths, clamped_share};
     return all;
 }
 
@@ -92,19 +96,29 @@ void SampleSet::report(Report& report) const {
     report.set(moved_samples, double(moved_.size()));
     report.set(late_samples, double(followed_.movers.behind()));
     report.set(blocked_samples, double(blocked_paths_.count()));
+    report.set(waiting_strengths, double(late_changes_));
     report.set(clamped_share, 100.0 * loss_);
 }
 
 void SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
-                       bool previous_lost) {
+                       bool previous_lost, bool keep) {
     moved_.clear();
+    keep = keep && cause_.valid;
+    const std::vector<Emitter> fixed = keep ? emitters_ : std::vector<Emitter>();
+    const std::vector<Emitter> dynamic = keep ? dynamic_emitters_ : std::vector<Emitter>();
     find_emitters(scene, request);
-    const bool others = needs_new_samples(request, scene);
-    if (others)
+    const Cause now = cause_of(request, scene);
+    const bool fits = is_cause(now), others = !fits && !keep;
+    outdated_ = !fits && keep;
+    if (others) {
+        cause_ = now;
         make_samples(request, scene);
-    else if (previous_lost)
+    } else if (previous_lost) {
         followed_ = followed_before_;
+    }
     followed_before_ = followed_;
+    if (outdated_)
+        keep_emitters(fixed, dynamic);
     if (!others)
         follow_dynamic_lights(scene.rays);
     const bool blocks = settings.mover_paths && !request.movers_are_static;
@@ -118,6 +132,27 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request, con
     follow_movers(scene, settings);
     if (blocks && !followed_.movers.samples().empty())
         blocked_paths_.check(samples_, dynamic_samples_);
+}
+
+// The emitters that samples were made for, in that order, as they are now; what is gone gives no light. They are looked
+// for again in every frame, until they fit or samples are made.
+void SampleSet::keep_emitters(const std::vector<Emitter>& fixed, const std::vector<Emitter>& dynamic) {
+    const auto now = [&](const Emitter& known) -> const Emitter* {
+        for (const auto* present : {&dynamic_emitters_, &emitters_})
+            for (const Emitter& emitter : *present)
+                if (emitter.entity == known.entity && emitter.kind == known.kind && emitter.punctual == known.punctual)
+                    return &emitter;
+        return nullptr;
+    };
+    std::vector<Emitter> followed = dynamic;
+    for (Emitter& emitter : followed)
+        if (const Emitter* present = now(emitter))
+            emitter = *present;
+        else
+            emitter.flux = vec3(0.0f);
+    dynamic_emitters_ = std::move(followed);
+    emitters_ = fixed;
+    emitter_cursor_ = {};
 }
 
 // Emitters that move have samples of their own, and so have those that once changed their flux: the first change
@@ -154,6 +189,11 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
     std::erase_if(emitters_, moves);
 }
 
+void SampleSet::expect_varying(const std::set<ecs::Entity>& lights) {
+    varying_.insert(lights.begin(), lights.end());
+    emitter_cursor_ = {};
+}
+
 // True if there are new ones. One that was switched off is noticed by its absence.
 bool SampleSet::find_varying(ecs::Registry& registry) {
     std::map<ecs::Entity, vec3> flux;
@@ -171,27 +211,29 @@ bool SampleSet::find_varying(ecs::Registry& registry) {
     return varying_.size() != had;
 }
 
-bool SampleSet::needs_new_samples(const SampleRequest& request, const SceneView& scene) {
-    std::uint64_t hash = hash_emitters(emitters_);
+SampleSet::Cause SampleSet::cause_of(const SampleRequest& request, const SceneView& scene) const {
+    Cause cause;
+    cause.emitters = hash_emitters(emitters_);
     for (const Emitter& emitter : dynamic_emitters_) // only which ones there are
-        hash = hash * 0x100000001b3ull ^
-               (emitter.entity.bits() * 32 + std::uint64_t(emitter.kind) * 2 + (emitter.punctual ? 1 : 0));
+        cause.emitters = cause.emitters * 0x100000001b3ull ^
+                         (emitter.entity.bits() * 32 + std::uint64_t(emitter.kind) * 2 + (emitter.punctual ? 1 : 0));
     // Where movers count as static geometry, each of their moves needs new walks.
-    const std::uint64_t geometry = request.movers_are_static ? scene.rays.generation() : scene.rays.static_generation();
-    const bool movers_reflect = wants_movers(request, scene.changes);
-    const bool same = valid_ && request.same_samples(sampled_) && hash == emitter_hash_ &&
-                      geometry == geometry_generation_ && movers_reflect == movers_reflect_;
-    movers_reflect_ = movers_reflect;
-    emitter_hash_ = hash;
-    geometry_generation_ = geometry;
-    sampled_ = request;
-    valid_ = true;
-    return !same;
+    cause.geometry = request.movers_are_static ? scene.rays.generation() : scene.rays.static_generation();
+    cause.request = request;
+    cause.movers_reflect = wants_movers(request, scene.changes);
+    cause.valid = true;
+    return cause;
+}
+
+bool SampleSet::is_cause(const Cause& now) const {
+    return cause_.valid && now.request.same_samples(cause_.request) && now.emitters == cause_.emitters &&
+           now.geometry == cause_.geometry && now.movers_reflect == cause_.movers_reflect;
 }
 
 void SampleSet::make_samples(const SampleRequest& request, const SceneView& scene) {
     const raytrace::RayScene& rays = scene.rays;
-    const std::uint32_t on_movers = movers_reflect_ ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
+    const std::uint32_t on_movers =
+        cause_.movers_reflect ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
     followed_.movers.reset(scene.changes, scene.meshes, rays, on_movers, request);
     followed_.let_through.clear();
     SampleRequest fixed = request; // for static emitters: what the others leave
@@ -261,7 +303,7 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
         on_mover[dynamic_samples_[k]] = 1;
     std::vector<IncomingLight> incoming;
     for (const LightSample& sample : samples_)
-        if (!on_mover[sample.index] && !is_blocked(sample.index) && sample.bounce < sampled_.bounces)
+        if (!on_mover[sample.index] && !is_blocked(sample.index) && sample.bounce < cause_.request.bounces)
             incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
                                 sample.bounce});
     followed_.movers.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
@@ -312,7 +354,7 @@ void SampleSet::find_loss(const SceneView& scene, const LightSettings& settings)
 }
 
 void SampleSet::update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
-                            float indirect_scale) {
+                            const Strengths& strengths) {
     remapped_.clear();
     slots_ = std::max(slots, 1u);
     find_loss(scene, settings);
@@ -320,6 +362,7 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
     const Bounds bounds = scene.gpu_scene.bounds();
     const bool resized = bounds.minimum != bounds_.minimum || bounds.maximum != bounds_.maximum;
     bounds_ = bounds;
+    const std::vector<shared::LightRow> before = rows_;
     rows_.resize(samples_.size());
     for (std::uint32_t i = 0; i < samples_.size(); ++i) {
         const LightSample& sample = samples_[i];
@@ -331,8 +374,31 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
             (sample.kind == SampleKind::spot && rows_[i].position_bound.w != cone))
             remapped_.push_back(i);
         if (reflected)
-            rows_[i].intensity_slot *= vec4(vec3(blocked_paths_.is_blocked(i) ? 0.0f : indirect_scale), 1.0f);
+            rows_[i].intensity_slot *= vec4(vec3(blocked_paths_.is_blocked(i) ? 0.0f : strengths.indirect_scale), 1.0f);
     }
+    late_changes_ = 0;
+    if (rows_generation_ == generation_)
+        limit_changes(before, strengths.change_budget);
+    rows_generation_ = generation_;
+}
+
+// Samples that changed nothing but their strength keep the one before once the budget is spent. They come first in the
+// next frame, so that lamps that change all the time let nobody starve.
+void SampleSet::limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget) {
+    std::uint32_t changes = 0, first_late = next_change_;
+    for (std::uint32_t k = 0; k < size(); ++k) {
+        const std::uint32_t i = (next_change_ + k) % size();
+        shared::LightRow& row = rows_[i];
+        shared::LightRow late = row;
+        late.intensity_slot = vec4(vec3(before[i].intensity_slot), row.intensity_slot.w);
+        const bool strength_alone =
+            std::memcmp(&late, &before[i], sizeof late) == 0 && vec3(row.intensity_slot) != vec3(late.intensity_slot);
+        if (!strength_alone || changes++ < budget)
+            continue;
+        first_late = late_changes_++ == 0 ? i : first_late;
+        row = late;
+    }
+    next_change_ = first_late;
 }
 
 } // namespace sunfleck::gi

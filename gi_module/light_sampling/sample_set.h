@@ -36,12 +36,18 @@ struct SceneView {
 class SampleSet {
 public:
     // Generates or moves samples. Call once a frame, then update_rows. `previous_lost`: nobody saw what the update
-    // before this one made, so dynamic samples go on from where they were before it.
+    // before this one made, so dynamic samples go on from where they were before it. `keep`: FrameInput::keep_samples.
     void update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
-                bool previous_lost = false);
+                bool previous_lost = false, bool keep = false);
+    // Samples were kept that no longer fit.
+    bool outdated() const { return outdated_; }
     // Fills the rows that shaders read. `slots`: shadow maps that fit into memory; sample i uses slot i % slots.
-    // Reflected light is multiplied by `indirect_scale`.
-    void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots, float indirect_scale);
+    struct Strengths {
+        float indirect_scale = 1.0f;               // of reflected light
+        std::uint32_t change_budget = 0xffffffffu; // FrameInput::strength_budget
+    };
+    void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
+                     const Strengths& strengths);
 
     std::span<const LightSample> samples() const { return samples_; }
     std::span<const shared::LightRow> rows() const { return rows_; }
@@ -65,19 +71,33 @@ public:
     // Of the last update: those that stay as they are, and those that move or vary.
     std::span<const Emitter> fixed_emitters() const { return emitters_; }
     std::span<const Emitter> dynamic_emitters() const { return dynamic_emitters_; }
+    // Emitters that do not move, but have changed their flux: the first change of one makes all samples again, later
+    // ones only scale its own.
+    const std::set<ecs::Entity>& varying_lights() const { return varying_; }
+    // These count among them from now on: another set has seen them change.
+    void expect_varying(const std::set<ecs::Entity>& lights);
 
     static std::span<const Counter> counters();
     void report(Report& report) const;
 
 private:
+    // What samples were made for.
+    struct Cause {
+        std::uint64_t emitters = 0, geometry = 0; // hash; generation
+        SampleRequest request;
+        bool movers_reflect = false, valid = false;
+    };
     void find_emitters(const SceneView& scene, const SampleRequest& request);
+    Cause cause_of(const SampleRequest& request, const SceneView& scene) const;
+    bool is_cause(const Cause& now) const;
+    void keep_emitters(const std::vector<Emitter>& fixed, const std::vector<Emitter>& dynamic);
     bool find_varying(ecs::Registry& registry);
-    bool needs_new_samples(const SampleRequest& request, const SceneView& scene);
     void make_samples(const SampleRequest& request, const SceneView& scene);
     void sort_samples();
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);
     void follow_movers(const SceneView& scene, const LightSettings& settings);
+    void limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
     void find_loss(const SceneView& scene, const LightSettings& settings);
@@ -107,10 +127,13 @@ private:
     scene::SceneSpace emitter_space_;    // and where they lie
     std::uint32_t punctual_lights_ = 0;  // and how many of them count as punctual
     bool emitters_as_static_ = false;    // and whether movers counted as static geometry
-    SampleRequest sampled_;              // what the samples were generated for
+    Cause cause_;
+    bool outdated_ = false;
     std::uint32_t slots_ = 1;
-    bool valid_ = false, movers_reflect_ = false;
-    std::uint64_t generation_ = 0, geometry_generation_ = 0, emitter_hash_ = 0;
+    std::uint64_t rows_generation_ = 0; // of the samples that rows_ is of
+    std::uint32_t next_change_ = 0;     // sample whose change of strength is due first
+    std::uint32_t late_changes_ = 0;    // samples that wait for theirs
+    std::uint64_t generation_ = 0;
     Bounds bounds_;                             // of the scene, at the last update_rows
     float bound_ = 0.0f, dynamic_bound_ = 0.0f; // of the geometry term
     // What the loss by the bound was found for.

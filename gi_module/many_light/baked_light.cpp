@@ -52,6 +52,7 @@ void BakedLight::forget() {
     finish_.clear();
     waiting_.clear();
     wipe_ = false;
+    wiped_.clear();
     counters_ = {};
 }
 
@@ -126,8 +127,13 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
     return {};
 }
 
-// False if it would be too much for a frame.
-bool BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
+// The piece is rough from this frame on, until it is its turn.
+void BakedLight::bake_later(std::uint32_t piece) {
+    waiting_.insert(waiting_.begin(), piece);
+    wiped_.push_back(piece);
+}
+
+void BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
                                   std::span<const std::uint32_t> changed) {
     job_rows_ = baked_rows_;
     for (const std::uint32_t sample : changed)
@@ -135,34 +141,37 @@ bool BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<
     std::vector<std::uint8_t> waits(pieces_.size(), 0);
     for (const std::uint32_t piece : waiting_)
         waits[piece] = 1;
-    std::uint64_t evaluations = 0;
+    std::vector<std::uint32_t> changes;
     for (std::uint32_t i = 0; i < pieces_.size() && !changed.empty(); ++i) {
+        if (waits[i])
+            continue;
         const Piece& piece = pieces_[i];
-        bool begun = false;
-        for (std::uint32_t k = 0; k < changed.size() && !waits[i]; ++k) {
-            const auto flag = test_flag(database, piece.nodes, changed[k]);
-            if (!flag)
-                continue;
-            if (!begun) {
-                jobs_.add(piece.job, false);
-                finish_.add(piece.job, false);
+        changes.clear();
+        for (std::uint32_t k = 0; k < changed.size(); ++k)
+            if (const auto flag = test_flag(database, piece.nodes, changed[k])) {
+                changes.push_back(changed[k] | *flag | shared::light_map_subtract);
+                changes.push_back((std::uint32_t(baked_rows_.size()) + k) | *flag);
             }
-            begun = true;
-            jobs_.add_change(changed[k] | *flag | shared::light_map_subtract);
-            jobs_.add_change((std::uint32_t(baked_rows_.size()) + k) | *flag);
-            evaluations += 2 * piece.texels();
+        if (changes.empty())
+            continue;
+        evaluations_ += changes.size() * piece.texels();
+        if (evaluations_ > max_evaluations) {
+            bake_later(i);
+            continue;
         }
+        jobs_.add(piece.job, false);
+        finish_.add(piece.job, false);
+        for (const std::uint32_t change : changes)
+            jobs_.add_change(change);
     }
     baked_rows_.assign(rows.begin(), rows.end());
-    return evaluations <= max_evaluations;
 }
 
 void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
                               std::uint64_t most) {
     const std::uint32_t now = std::uint32_t(job_rows_.size()); // the rows as they are at present
     job_rows_.insert(job_rows_.end(), baked_rows_.begin(), baked_rows_.end());
-    std::uint64_t evaluations = 0;
-    while (!waiting_.empty() && evaluations < most) {
+    while (!waiting_.empty() && evaluations_ < most) {
         const Piece& piece = pieces_[waiting_.back()];
         waiting_.pop_back();
         jobs_.add(piece.job, true);
@@ -174,9 +183,9 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<cons
             if (!flag)
                 continue;
             jobs_.add_change((now + sample) | *flag);
-            evaluations += piece.texels();
+            evaluations_ += piece.texels();
         }
-        evaluations += piece.texels();
+        evaluations_ += piece.texels();
     }
 }
 
@@ -191,17 +200,17 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     finish_.clear();
     job_rows_.clear();
     wipe_ = false;
+    wiped_.clear();
+    evaluations_ = 0;
     in_use_ = true;
     std::vector<std::uint32_t> changed;
     const bool first = generation_ != database.generation();
     const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
                       find_changed_intensities(scene.samples, baked_rows_, scene.rows, changed);
-    if (!same || !follow_strengths(database, scene.rows, changed)) {
-        jobs_.clear();
-        finish_.clear();
-        job_rows_.clear();
+    if (same)
+        follow_strengths(database, scene.rows, changed);
+    else
         SUNFLECK_TRY(start_anew(database, light_maps, scene.curved, scene.rows, resources));
-    }
     bake_waiting(database, scene.samples, first ? max_first_evaluations : max_evaluations);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(texels_at_a_time);
@@ -209,13 +218,19 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     return {};
 }
 
-// All texels become rough.
+// Texels become rough: all, or those of some pieces.
 void BakedLight::add_wipe(gpu::FrameGraph& graph) {
     graph.add_pass("baked light wipe")
         .write(graph.import_buffer(texels_), gpu::Usage::transfer_destination)
         .execute([this](gpu::PassContext& context) -> Status {
-            context.device.vk.vkCmdFillBuffer(context.commands, texels_.handle(), 0, VK_WHOLE_SIZE,
-                                              0x3c003c00u); // ones: every cell is rough
+            constexpr std::uint32_t ones = 0x3c003c00u; // every cell is rough
+            const auto fill = [&](VkDeviceSize offset, VkDeviceSize bytes) {
+                context.device.vk.vkCmdFillBuffer(context.commands, texels_.handle(), offset, bytes, ones);
+            };
+            if (wipe_)
+                fill(0, VK_WHOLE_SIZE);
+            for (const std::uint32_t piece : wiped_)
+                fill(pieces_[piece].job.first_texel * texel_bytes, pieces_[piece].texels() * texel_bytes);
             return {};
         });
 }
@@ -224,7 +239,7 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
                               gpu::FrameResources& resources) {
     points_.add_pass(graph);
     curved_rows_.add_pass(graph);
-    if (wipe_)
+    if (wipe_ || !wiped_.empty())
         add_wipe(graph);
     if (jobs_.empty())
         return {};

@@ -9,7 +9,8 @@
 // as if nothing was baked. Curved surfaces have texels of their own (curved_charts.h), after those of the light maps.
 //
 // Baking is work of many frames, so much a frame; a patch or chart that waits is rough. A sample that changed its
-// strength is subtracted and added, to the last bit, as in light maps.
+// strength is subtracted and added, to the last bit, as in light maps; patches for which that is too much for a frame
+// wait, and the others stay as they are.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
@@ -68,8 +69,9 @@ private:
     Status start_anew(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
                       std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
     Status upload_charts(std::uint64_t first_texel, const CurvedCharts& curved, gpu::FrameResources& resources);
-    bool follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
+    void follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
                           std::span<const std::uint32_t> changed);
+    void bake_later(std::uint32_t piece);
     void add_wipe(gpu::FrameGraph& graph);
     void bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples, std::uint64_t most);
 
@@ -80,12 +82,14 @@ private:
     gpu::UploadedBuffer points_, curved_rows_;
     std::vector<Piece> pieces_;
     bool in_use_ = false;
-    bool wipe_ = false; // all texels become rough in this frame
+    bool wipe_ = false;                // all texels become rough in this frame
+    std::vector<std::uint32_t> wiped_; // or those of these pieces
     std::uint64_t generation_ = 0;
     float fixed_point_ = 0.0f;
     std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be
     std::vector<shared::LightRow> job_rows_;   // those, then the new ones of samples whose strength changed
     std::vector<std::uint32_t> waiting_;       // pieces, the next one last
+    std::uint64_t evaluations_ = 0;            // samples times texels, of this frame
     LightMapJobs jobs_, finish_;               // sums; then cells
     BakedLightCounters counters_;
 };

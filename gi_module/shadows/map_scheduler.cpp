@@ -31,6 +31,7 @@ std::vector<float> weights_of(std::span<const LightSample> samples, MapPriority 
 
 void MapScheduler::reset(std::size_t count) {
     age_.assign(count, 1);
+    stale_since_.assign(count, now_.value_or(0.0));
     static_stale_.assign(count, 1);
     undefined_.assign(count, 1);
     lags_.assign(count, 0.0f);
@@ -49,7 +50,8 @@ void MapScheduler::begin_frame(bool previous_lost) {
     done_.clear();
 }
 
-void MapScheduler::advance() {
+void MapScheduler::advance(std::optional<double> milliseconds) {
+    now_ = milliseconds;
     for (std::uint32_t& age : age_)
         age += age > 0 ? 1 : 0;
 }
@@ -106,6 +108,21 @@ std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> sam
         first[i] = chosen[order[i]];
     std::sort(first.begin(), first.end());
     return first;
+}
+
+std::vector<std::uint32_t> MapScheduler::with_late_ones(std::vector<std::uint32_t> chosen,
+                                                        std::span<const float> contributions) const {
+    constexpr float least_share = 0.001f;
+    if (!now_ || contributions.size() != age_.size())
+        return chosen;
+    const float least = least_share * std::accumulate(contributions.begin(), contributions.end(), 0.0f);
+    const std::size_t within_budget = chosen.size();
+    for (std::uint32_t i = 0; i < age_.size(); ++i)
+        if (age_[i] >= 2 && *now_ - stale_since_[i] >= longest_lag && contributions[i] > least &&
+            !std::binary_search(chosen.begin(), chosen.begin() + std::ptrdiff_t(within_budget), i))
+            chosen.push_back(i);
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
 }
 
 void MapScheduler::done(std::span<const std::uint32_t> samples) {

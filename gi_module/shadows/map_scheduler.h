@@ -2,12 +2,14 @@
 //
 // A map is stale from the moment that something in it moves until it is redrawn. Of the stale maps, as many as the
 // budget allows are chosen by priority. No priority can starve a map: one that has waited 4 * ceil(stale / budget)
-// frames is overdue and goes first, so with a constant budget every map is redrawn within twice that time.
+// frames is overdue and goes first, so with a constant budget every map is redrawn within twice that time. Where the
+// time is known, maps that show are not stale for longer than `longest_lag`, or two frames, whatever the budget.
 #pragma once
 
 #include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/transport/light_sample.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,8 @@ public:
     void reset(std::size_t count);
     // Something in the sample's map moved by `distance`, m.
     void mark(std::uint32_t sample, float distance = 0.0f) {
+        if (age_[sample] == 0)
+            stale_since_[sample] = now_.value_or(0.0);
         age_[sample] = age_[sample] > 0 ? age_[sample] : 1;
         lags_[sample] += distance;
     }
@@ -38,13 +42,18 @@ public:
         static_stale_[sample] = undefined_[sample] = 0;
         lags_[sample] = 0.0f;
     }
-    // Stale maps age by a frame. Once a frame, before marking.
-    void advance();
+    // Stale maps age by a frame. Once a frame, before marking. `milliseconds`: the time of this frame, if it is known.
+    void advance(std::optional<double> milliseconds = {});
+    static constexpr double longest_lag = 100.0; // ms
 
     // Samples whose maps are to be redrawn, in ascending order, up to the budget: those whose static part is stale
     // first. `contributions`: by sample, for MapPriority::contribution (map_contributions.h).
     std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority, std::uint32_t budget,
                                       std::span<const float> contributions = {}) const;
+    // Of those, and beyond the budget, the maps that show and would otherwise be stale for too long; ascending. They
+    // show if they decide more than a thousandth of what all stale maps together do.
+    std::vector<std::uint32_t> with_late_ones(std::vector<std::uint32_t> chosen,
+                                              std::span<const float> contributions) const;
     // The maps were redrawn and are up to date.
     void done(std::span<const std::uint32_t> samples);
     // Maps that hold something else or nothing at all, and are not among `drawn`: to be cleared. Ascending, as `drawn`.
@@ -72,6 +81,8 @@ private:
                                const std::vector<float>& weights) const;
 
     std::vector<std::uint32_t> age_;
+    std::vector<double> stale_since_; // ms, of stale maps
+    std::optional<double> now_;
     std::vector<std::uint8_t> static_stale_;
     std::vector<std::uint8_t> undefined_; // 1: the map's content is of another sample, or was never written
     std::vector<float> lags_;

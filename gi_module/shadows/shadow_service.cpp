@@ -84,7 +84,7 @@ void ShadowService::follow(const SampleSet& samples, bool static_changed) {
 
 void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& input) {
     database_ = input.database;
-    scheduler_.advance();
+    scheduler_.advance(input.milliseconds);
     if (database_ != nullptr)
         mark_by_visibility(samples, input);
     else
@@ -93,8 +93,10 @@ void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& inpu
     to_draw_.clear();
     if (settings_.shadows) {
         const std::uint32_t budget = budget_of(input);
-        to_draw_ =
-            scheduler_.choose(samples.samples(), settings_.map_priority, budget, contributions(samples, input, budget));
+        const std::vector<float> shares = contributions(samples, input, budget);
+        to_draw_ = scheduler_.choose(samples.samples(), settings_.map_priority, budget, shares);
+        if (budget < input.host_budget)
+            to_draw_ = scheduler_.with_late_ones(std::move(to_draw_), shares);
     }
     budget_.add_frame(input.serial, to_draw_.size());
 }

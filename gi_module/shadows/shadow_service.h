@@ -30,7 +30,8 @@ struct ScheduleInput {
     std::uint64_t serial = 0;
     std::uint32_t host_budget = 0xffffffffu; // maps; also limits the budget of the settings
     std::optional<mat4> view_projection;
-    CellSet read = CellSet().set(); // light whose maps somebody reads
+    CellSet read = CellSet().set();       // light whose maps somebody reads
+    std::optional<double> milliseconds{}; // FrameInput::milliseconds
 };
 
 // State of one sample's map, for inspection.

@@ -54,6 +54,8 @@ struct Course {
     Changes changes;
     std::uint32_t width = 64, height = 48;
     Changes halfway{}; // from the third frame on
+    std::uint32_t strength_budget = 0xffffffffu;
+    float last_indirect_scale = 1.0f; // in the last frame
 };
 
 // Small scenes in which, together, each counter has something to count.
@@ -67,6 +69,7 @@ const std::vector<Course>& courses() {
         // With other maps, all light is baked again; after a level's first frame, that is work of several.
         {assets::make_two_rooms, {{"lights", "300"}}, 64, 48, {{"shadow_map_resolution", "32"}}},
         {assets::make_cornell, {{"direct", "brute_force"}, {"indirect", "brute_force"}, {"count_clamped", "on"}}},
+        {assets::make_cornell, {}, 64, 48, {}, 2, 0.5f}, // bounced light is dimmed, two samples a frame
         {assets::make_cornell, {{"repair_contrast", "0"}, {"repair_angle", "0.1"}, {"low_resolution", "4"}}, 640, 480},
     };
     return list;
@@ -86,6 +89,7 @@ void count(const Course& course, std::map<std::string, double>& greatest) {
     };
     change(course.changes);
     world.request.width = course.width;
+    world.request.strength_budget = course.strength_budget;
     world.request.height = course.height;
     std::set<std::string_view> declared;
     for (const gi::Counter* counter : gi::all_counters())
@@ -94,6 +98,7 @@ void count(const Course& course, std::map<std::string, double>& greatest) {
         world.request.step = std::uint64_t(frame) * 15;
         if (frame == 2 && !course.halfway.empty())
             change(course.halfway);
+        world.request.indirect_scale = frame == 3 ? course.last_indirect_scale : 1.0f;
         world.render();
         for (const gi::Report::Value& value : world.renderer->lighting().counters().values()) {
             EXPECT_TRUE(declared.count(value.counter->name)) << value.counter->name << " is reported, not declared";

@@ -1,6 +1,7 @@
 // What the player chooses: kept whole, and damage does no harm.
 #include "engine/core/file.h"
 #include "game_demo/controls.h"
+#include "game_demo/hitch_log.h"
 #include "game_demo/menu.h"
 #include "game_demo/presets.h"
 
@@ -154,6 +155,25 @@ TEST(RecordingWriter, KeepsTheFileUpToDate) {
     EXPECT_FALSE(simulation::RecordingWriter("/no/such/folder/walk.txt").finish());
     EXPECT_TRUE(simulation::RecordingWriter("").finish()) << "nothing is recorded";
     fs::remove(path);
+}
+
+TEST(HitchLog, NamesWhatTookLong) {
+    HitchLog log;
+    viewer::FrameStatistics usual, long_one;
+    usual.gpu_ms = {{"baked light", 2.0}, {"g-buffer", 5.0}};
+    usual.cpu_ms = {{"visibility", 3.0}};
+    long_one = usual;
+    long_one.gpu_ms["baked light"] = 14.0;
+    for (int i = 0; i < 40; ++i)
+        EXPECT_EQ(log.add(10.0, usual), "");
+    EXPECT_EQ(log.add(19.0, long_one), "") << "not twice as long";
+    const std::string line = log.add(25.0, long_one);
+    EXPECT_EQ(line, "frame 42 took 25 ms, 2.5 times the median of the 30 before: baked light +12 ms, elsewhere +3 ms");
+    EXPECT_EQ(log.ratios().size(), 12u);
+    EXPECT_NE(
+        log.summary().find("42 frames: 99 % below 2.4 times the median of the 30 before, the longest 2.5, 1 above"),
+        std::string::npos)
+        << log.summary();
 }
 
 TEST(KeyNames, GoBothWays) {

@@ -1,5 +1,6 @@
 #include "engine/ecs/registry.h"
 #include "engine/ecs/snapshot.h"
+#include "engine/ecs/world_copy.h"
 #include "engine/scene/components.h"
 
 #include "engine/core/random.h"
@@ -180,6 +181,62 @@ TEST(Snapshot, RestoresValuesAndMapsEntities) {
     EXPECT_EQ(target.get<scene::Name>(new_parent).name, "parent");
     EXPECT_EQ(target.get<scene::Transform>(new_child).position, vec3(1, 2, 3));
     EXPECT_EQ(target.get<scene::Mover>(new_child).path, scene::MoverPath::circle);
+}
+
+// Into an empty registry, and over one that went its own way since.
+TEST(WorldCopy, HasTheSameEntitiesAndComponents) {
+    RandomSequence random(SequenceKind::pseudo_random, 11, 0);
+    Registry from, to;
+    std::vector<Entity> alive;
+    const auto change = [&](Registry& registry, std::vector<Entity>& living) {
+        for (int i = 0; i < 200; ++i) {
+            const float action = random.next();
+            if (action < 0.4f || living.empty()) {
+                living.push_back(registry.create());
+                registry.emplace<Position>(living.back(), {random.next()});
+                continue;
+            }
+            const std::size_t place = std::size_t(random.next() * float(living.size()));
+            const Entity entity = living[place];
+            if (action < 0.55f) {
+                registry.destroy(entity);
+                living.erase(living.begin() + std::ptrdiff_t(place));
+            } else if (action < 0.8f) {
+                registry.emplace_or_replace<Velocity>(entity, {random.next()});
+            } else if (registry.has<Velocity>(entity)) {
+                registry.remove<Velocity>(entity);
+            }
+        }
+    };
+    const auto expect_same = [&] {
+        EXPECT_EQ(from.entities(), to.entities());
+        EXPECT_EQ(from.count<Position>(), to.count<Position>());
+        EXPECT_EQ(from.count<Velocity>(), to.count<Velocity>());
+        for (const Entity entity : from.entities()) {
+            ASSERT_EQ(from.has<Position>(entity), to.has<Position>(entity));
+            ASSERT_EQ(from.has<Velocity>(entity), to.has<Velocity>(entity));
+            if (from.has<Position>(entity)) {
+                EXPECT_EQ(from.get<Position>(entity).x, to.get<Position>(entity).x);
+            }
+            if (from.has<Velocity>(entity)) {
+                EXPECT_EQ(from.get<Velocity>(entity).x, to.get<Velocity>(entity).x);
+            }
+        }
+    };
+    change(from, alive);
+    copy_world(from, to);
+    expect_same();
+    std::vector<Entity> order_from, order_to;
+    from.view<Position>().each([&](Entity entity, const Position&) { order_from.push_back(entity); });
+    to.view<Position>().each([&](Entity entity, const Position&) { order_to.push_back(entity); });
+    EXPECT_EQ(order_from, order_to);
+    for (int round = 0; round < 5; ++round) {
+        std::vector<Entity> others = to.entities();
+        change(from, alive);
+        change(to, others);
+        copy_world(from, to);
+        expect_same();
+    }
 }
 
 TEST(Snapshot, DamageIsAnErrorAndChangesNothing) {

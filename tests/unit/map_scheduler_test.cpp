@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <numeric>
 #include <random>
 
 namespace sunfleck::gi {
@@ -50,6 +51,52 @@ TEST(MapBudget, KeepsToTheTimeThatItIsGiven) {
     other.add_frame(7, 0); // nothing was drawn
     other.add_time(7, 3.0);
     EXPECT_EQ(other.maps_in(5.0, 77), 77u);
+}
+
+// With the time, a map that shows waits 100 ms or two frames at most, whatever the budget; one that does not show waits
+// for its turn.
+TEST(MapScheduler, MapsThatShowAreNotLate) {
+    std::mt19937 random(23);
+    const auto samples = samples_of(100, random);
+    for (const double frame_ms : {10.0, 40.0, 250.0}) {
+        MapScheduler scheduler;
+        scheduler.reset(samples.size());
+        std::vector<std::uint32_t> all(samples.size());
+        std::iota(all.begin(), all.end(), 0u);
+        scheduler.done(all);
+        std::vector<float> shows(samples.size(), 0.0f);
+        for (std::size_t i = 0; i < samples.size(); i += 3)
+            shows[i] = 1.0f;
+        std::vector<double> stale_since(samples.size(), -1.0);
+        std::size_t hidden = 0;
+        for (int frame = 0; frame < 200; ++frame) {
+            const double now = frame * frame_ms;
+            scheduler.begin_frame(false);
+            scheduler.advance(now);
+            for (std::uint32_t i = 0; i < samples.size(); ++i) {
+                scheduler.mark(i);
+                if (stale_since[i] < 0.0)
+                    stale_since[i] = now;
+            }
+            const auto within = scheduler.choose(samples, MapPriority::contribution, 3, shows);
+            ASSERT_EQ(within.size(), 3u);
+            const auto drawn = scheduler.with_late_ones(within, shows);
+            EXPECT_TRUE(std::includes(drawn.begin(), drawn.end(), within.begin(), within.end()));
+            for (const std::uint32_t i : drawn)
+                stale_since[i] = -1.0;
+            scheduler.done(drawn);
+            for (std::uint32_t i = 0; i < samples.size(); ++i) {
+                if (stale_since[i] < 0.0)
+                    continue;
+                const double waited = now + frame_ms - stale_since[i]; // when the next frame can draw it
+                if (shows[i] > 0.0f) {
+                    EXPECT_LE(waited, std::max(MapScheduler::longest_lag + frame_ms, 2.0 * frame_ms)) << frame_ms;
+                } else
+                    hidden += waited > 2.0 * std::max(MapScheduler::longest_lag, frame_ms) ? 1 : 0;
+            }
+        }
+        EXPECT_GT(hidden, 0u) << "those that do not show have no such bound";
+    }
 }
 
 // Every frame all maps become stale again; whatever its flux, none waits longer than 8 * ceil(stale / budget) frames.

@@ -1,0 +1,69 @@
+#include "game_demo/hitch_log.h"
+
+#include "engine/statistics/summary.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace sunfleck::demo {
+
+std::string HitchLog::add(double milliseconds, const viewer::FrameStatistics& statistics) {
+    ++frames_;
+    Parts parts = statistics.gpu_ms;
+    for (const auto& [name, time] : statistics.cpu_ms)
+        parts[name] += time;
+    std::string line;
+    if (before_.size() == window) {
+        std::vector<double> times;
+        times.reserve(window);
+        for (const auto& [time, ignored] : before_)
+            times.push_back(time);
+        const double usual = statistics::median(times);
+        ratios_.push_back(milliseconds / usual);
+        if (ratios_.back() > noticed)
+            line = explain(milliseconds, usual, parts);
+        before_.pop_front();
+    }
+    before_.emplace_back(milliseconds, std::move(parts));
+    return line;
+}
+
+std::string HitchLog::explain(double milliseconds, double usual, const Parts& parts) const {
+    std::vector<std::pair<double, std::string>> growth;
+    growth.reserve(parts.size());
+    for (const auto& [name, time] : parts) {
+        std::vector<double> times;
+        times.reserve(window);
+        for (const auto& [ignored, others] : before_) {
+            const auto found = others.find(name);
+            times.push_back(found == others.end() ? 0.0 : found->second);
+        }
+        growth.emplace_back(time - statistics::median(times), name);
+    }
+    std::sort(growth.rbegin(), growth.rend());
+    char text[120];
+    std::snprintf(text, sizeof text, "frame %zu took %.0f ms, %.1f times the median of the %zu before:", frames_,
+                  milliseconds, milliseconds / usual, window);
+    std::string line = text;
+    double explained = 0.0;
+    for (std::size_t i = 0; i < growth.size() && i < 4 && growth[i].first > 0.05 * (milliseconds - usual); ++i) {
+        std::snprintf(text, sizeof text, "%s %s +%.0f ms", i > 0 ? "," : "", growth[i].second.c_str(), growth[i].first);
+        line += text;
+        explained += growth[i].first;
+    }
+    std::snprintf(text, sizeof text, "%s elsewhere +%.0f ms", explained > 0.0 ? "," : "",
+                  std::max(milliseconds - usual - explained, 0.0));
+    return line + text;
+}
+
+std::string HitchLog::summary() const {
+    const auto above = std::count_if(ratios_.begin(), ratios_.end(), [](double ratio) { return ratio > noticed; });
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%zu frames: 99 %% below %.1f times the median of the %zu before, the longest %.1f, %td above %.0f",
+                  frames_, ratios_.empty() ? 0.0 : statistics::percentile(ratios_, 0.99), window,
+                  ratios_.empty() ? 0.0 : *std::max_element(ratios_.begin(), ratios_.end()), above, noticed);
+    return text;
+}
+
+} // namespace sunfleck::demo

@@ -1,0 +1,34 @@
+// Frames that took much longer than those before, and why.
+#pragma once
+
+#include "viewer/scene_renderer.h"
+
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace sunfleck::demo {
+
+class HitchLog {
+public:
+    static constexpr std::size_t window = 30; // frames that a frame is compared with
+    static constexpr double noticed = 2.0;    // times their median
+
+    // A frame's time, ms, and what it was spent on. A frame of more than `noticed` times the median of the `window`
+    // frames before gives a line that names the passes and stages that grew most.
+    std::string add(double milliseconds, const viewer::FrameStatistics& statistics);
+    // Frame times over the median of the frames before, of all frames that had enough before them.
+    const std::vector<double>& ratios() const { return ratios_; }
+    // "470 frames: 99 % below 1.4 times the median of the 30 before, the longest 2.1, 1 above 2"
+    std::string summary() const;
+
+private:
+    using Parts = std::map<std::string, double>; // ms
+    std::string explain(double milliseconds, double usual, const Parts& parts) const;
+
+    std::deque<std::pair<double, Parts>> before_;
+    std::vector<double> ratios_;
+    std::size_t frames_ = 0;
+};
+
+} // namespace sunfleck::demo

@@ -1,0 +1,188 @@
+// Lighting that is prepared beside the frames: it is what a fresh start has, and frames do not wait for it.
+#include "tests/support/system_frames.h"
+#include "viewer/lighting_change.h"
+
+namespace sunfleck::tests {
+namespace {
+
+using LightingChangeTest = GpuTest;
+
+gi::Settings lights(std::uint32_t count) {
+    gi::Settings settings;
+    settings.lights = count;
+    settings.shadow_map_resolution = 64;
+    return settings;
+}
+
+std::uint64_t counter(GpuWorld& world, const char* name) {
+    return world.renderer->statistics().counters[name];
+}
+
+struct MovingBox : GpuWorld {
+    explicit MovingBox(const gi::Settings& settings) : GpuWorld(make_moving_box_room, "view") { set(settings); }
+
+    void render_step(std::uint64_t step) {
+        request.step = step;
+        render();
+    }
+    // The picture of a step once nothing is left to do.
+    io::Picture settled(std::uint64_t step) {
+        render_step(step);
+        for (int i = 0;
+             i < 200 && (counter(*this, "shadow_maps_stale") > 0 || counter(*this, "baked_light_waiting") > 0); ++i)
+            render();
+        render(); // what was finished in the last frame is shown
+        return picture();
+    }
+    // Frames of a moving box until the change is there; -1: it failed. Returns their number.
+    int frames_until_changed(viewer::LightingChanges& changes, std::uint64_t samples_before) {
+        for (int frame = 0; frame < 5000; ++frame) {
+            const Result<bool> changed = changes.advance(*renderer);
+            EXPECT_TRUE(changed) << changed.error().message;
+            if (!changed)
+                return -1;
+            render_step(std::uint64_t(frame));
+            if (*changed)
+                return frame;
+            EXPECT_EQ(counter(*this, "light_samples"), samples_before) << "the old light stays until then";
+        }
+        ADD_FAILURE() << "the change never came";
+        return -1;
+    }
+};
+
+void expect_same(const io::Picture& a, const io::Picture& b) {
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        different += a.pixels[i] != b.pixels[i] ? 1 : 0;
+    EXPECT_EQ(different, 0u) << "of " << a.pixels.size() << " pixels";
+}
+
+TEST_F(LightingChangeTest, TheNewLightIsThatOfAFreshStart) {
+    MovingBox world(lights(40));
+    world.settled(0);
+    const std::uint64_t before = counter(world, "light_samples");
+    viewer::LightingChanges changes(device());
+    changes.request(lights(90));
+    EXPECT_TRUE(changes.pending());
+    EXPECT_GT(world.frames_until_changed(changes, before), 0) << "no frame waited for it";
+    EXPECT_FALSE(changes.pending());
+    EXPECT_GE(counter(world, "light_samples"), 90u);
+    const io::Picture changed = world.settled(37);
+    MovingBox fresh(lights(90));
+    expect_same(changed, fresh.settled(37));
+}
+
+TEST_F(LightingChangeTest, TheLastOfManyRequestsCounts) {
+    MovingBox world(lights(40));
+    world.settled(0);
+    const std::uint64_t before = counter(world, "light_samples");
+    viewer::LightingChanges changes(device());
+    for (const std::uint32_t count : {300u, 50u, 400u, 80u}) {
+        changes.request(lights(count));
+        // Some are cancelled before they begin, some while samples are made or maps drawn.
+        for (std::uint32_t i = 0; i < count / 20; ++i) {
+            ASSERT_TRUE(changes.advance(*world.renderer));
+            world.render_step(i);
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        if (counter(world, "light_samples") != before)
+            GTEST_SKIP() << "a machine so fast that a change came before the next request";
+    }
+    EXPECT_GE(world.frames_until_changed(changes, before), 0);
+    EXPECT_EQ(world.renderer->lighting().settings().lights, 80u);
+    changes.request(lights(500));
+    changes.cancel();
+    for (int i = 0; i < 30; ++i) {
+        ASSERT_TRUE(changes.advance(*world.renderer));
+        world.render_step(std::uint64_t(i));
+    }
+    EXPECT_EQ(world.renderer->lighting().settings().lights, 80u) << "a cancelled change has no effect";
+    changes.request(lights(600)); // ended by the destructor, in the middle of its work
+    std::this_thread::sleep_for(viewer::LightingChanges::quiet_time);
+    ASSERT_TRUE(changes.advance(*world.renderer));
+}
+
+// A lamp that is known to vary only scales its samples; new lighting knows it, too.
+TEST_F(LightingChangeTest, ItKnowsWhichLampsVary) {
+    MovingBox world(lights(40));
+    world.settled(0);
+    ecs::Registry& registry = world.renderer->registry();
+    const ecs::Entity lamp = scene::find_by_name(registry, "lamp");
+    const auto dim = [&](float share) {
+        registry.patch<scene::AreaLight>(lamp, [&](scene::AreaLight& light) { light.radiance = vec3(9.0f * share); });
+        world.render();
+        return world.renderer->lighting().sample_set().generation();
+    };
+    dim(0.5f);
+    viewer::LightingChanges changes(device());
+    changes.request(lights(90));
+    ASSERT_GE(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    const std::uint64_t generation = world.renderer->lighting().sample_set().generation();
+    EXPECT_EQ(dim(0.25f), generation) << "no new samples";
+}
+
+void move_pillar(GpuWorld& world) {
+    ecs::Registry& registry = world.renderer->registry();
+    registry.patch<scene::Transform>(scene::find_by_name(registry, "pillar"),
+                                     [](scene::Transform& place) { place.position.x += 0.7f; });
+    scene::update_world_transforms(registry);
+}
+
+// A wall that is moved, and a lamp's first change: frames keep their samples until others are ready.
+TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
+    MovingBox world(lights(60));
+    world.settled(0);
+    world.request.keep_samples = true;
+    viewer::LightingChanges changes(device());
+    const gi::System* system = &world.renderer->lighting();
+    const std::uint64_t generation = system->sample_set().generation();
+    move_pillar(world);
+    world.render();
+    EXPECT_TRUE(system->outdated());
+    EXPECT_EQ(system->sample_set().generation(), generation);
+    EXPECT_GT(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    system = &world.renderer->lighting();
+    EXPECT_FALSE(system->outdated());
+    EXPECT_NE(system->sample_set().generation(), generation);
+    const io::Picture changed = world.settled(37);
+    MovingBox fresh(lights(60));
+    move_pillar(fresh);
+    expect_same(changed, fresh.settled(37));
+
+    ecs::Registry& registry = world.renderer->registry();
+    const ecs::Entity lamp = scene::find_by_name(registry, "lamp");
+    const auto dim = [&](float share) {
+        registry.patch<scene::AreaLight>(lamp, [&](scene::AreaLight& light) { light.radiance = vec3(9.0f * share); });
+        world.render();
+        return world.renderer->lighting().outdated();
+    };
+    EXPECT_TRUE(dim(0.5f));
+    EXPECT_GT(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    EXPECT_FALSE(world.renderer->lighting().outdated());
+    EXPECT_FALSE(dim(0.25f)) << "the second change is none to remember";
+}
+
+TEST_F(LightingChangeTest, AFailureLeavesTheLightAsItWas) {
+    MovingBox world(lights(40));
+    world.settled(0);
+    const std::uint64_t before = counter(world, "light_samples");
+    gi::Settings wrong = lights(90);
+    wrong.shadow_map_resolution = 0;
+    viewer::LightingChanges changes(device());
+    changes.request(wrong);
+    std::string message;
+    for (int i = 0; i < 2000 && message.empty(); ++i) {
+        const Result<bool> changed = changes.advance(*world.renderer);
+        if (!changed)
+            message = changed.error().message;
+        world.render();
+    }
+    EXPECT_NE(message.find("shadow_map_resolution"), std::string::npos) << message;
+    EXPECT_EQ(counter(world, "light_samples"), before);
+    EXPECT_FALSE(changes.pending());
+}
+
+} // namespace
+} // namespace sunfleck::tests

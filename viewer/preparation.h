@@ -1,0 +1,20 @@
+// The lighting work that would delay a renderer's first frame, done beforehand and in portions.
+#pragma once
+
+#include "viewer/scene_renderer.h"
+
+namespace sunfleck::viewer {
+
+struct PreparationOptions {
+    // GPU time of a portion of shadow maps, ms: as long may whoever shares the device's queue have to wait.
+    double portion = 100.0;
+    // Receives the share that is done, 0 to 1, and returns false to stop with an error. From any thread, never
+    // concurrently.
+    std::function<bool(float)> progress;
+};
+
+// Makes light samples and visibility, then draws all shadow maps. `request`: of the frames that follow, but at any
+// size, since nothing of it is kept but maps and light: small pictures take less time. Waits for the GPU.
+Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options);
+
+} // namespace sunfleck::viewer
