@@ -48,6 +48,7 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
     level->changes_ = std::make_unique<viewer::LightingChanges>(device);
     level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
     SUNFLECK_TRY(level->apply(settings));
+    level->sensor_settings_ = source.sensors;
     SUNFLECK_TRY(level->sensors_.begin(source.sensors));
     return level;
 }
@@ -57,9 +58,11 @@ Status Level::prepare(const DemoSettings& settings, const std::function<bool(flo
     return viewer::prepare_lighting(*renderer_, request(settings, 64, 36), {100.0, progress});
 }
 
-void Level::restart() {
+Status Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
     simulation_ = std::make_unique<simulation::Simulation>(renderer_->registry(), renderer_->meshes());
+    sensors_ = {};
+    return sensors_.begin(sensor_settings_);
 }
 
 void Level::step(const simulation::StepInput& input) {

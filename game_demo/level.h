@@ -39,7 +39,7 @@ public:
     // The view behind the title: the scene's cameras in turn, slowly panning.
     scene::CameraView title_camera(double seconds) const;
     // The world as it was loaded, at step 0; the light stays.
-    void restart();
+    Status restart();
     // Applies the player's settings at once; makes the next frame wait for their light.
     Status apply(const DemoSettings& settings);
     // The same beside the frames (viewer/lighting_change.h), which go on with the present light. Once each frame, so
@@ -60,6 +60,7 @@ private:
     std::unique_ptr<simulation::Simulation> simulation_;
     std::vector<scene::CameraView> cameras_;
     float ev100_ = 8.0f;
+    gi::SensorSettings sensor_settings_;
     LevelSensors sensors_;
 };
 

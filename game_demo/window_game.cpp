@@ -322,7 +322,8 @@ private:
     }
 
     void restart() {
-        level_->restart();
+        if (const Status status = level_->restart(); !status)
+            menu_.say(status.error().message, 6.0);
         accumulator_ = 0.0;
         recording_.clear();
     }

@@ -79,7 +79,7 @@ SceneRenderer::~SceneRenderer() {
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
                                              const std::function<Status(ecs::Registry&)>& modify) {
-    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes(), textures(), options));
+    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
     if (modify)
         SUNFLECK_TRY(modify(registry_));
     if (add_default_light(registry_))
@@ -93,36 +93,37 @@ Status SceneRenderer::upload_meshes() {
     registry_.view<scene::EnvironmentMap>().each(
         [&](ecs::Entity, const scene::EnvironmentMap& map) { picture = map.image.get(); });
     SUNFLECK_TRY(sky_->update(picture, *submission_));
-    SUNFLECK_TRY(gpu_scene_->update_textures(textures(), *submission_));
-    return gpu_scene_->update_meshes(meshes(), *submission_);
+    SUNFLECK_TRY(gpu_scene_->update_textures(textures_, *submission_));
+    return gpu_scene_->update_meshes(meshes_, *submission_);
 }
 
 std::unique_ptr<SceneCopy> SceneRenderer::copy_scene(CopyOf what) {
     auto copy = std::make_unique<SceneCopy>();
     ecs::copy_world(registry_, copy->registry);
     if (what == CopyOf::all) {
-        copy->meshes = meshes();
-        copy->textures = textures();
+        copy->meshes = meshes_;
+        copy->textures = textures_;
     }
     return copy;
 }
 
 Status SceneRenderer::take_scene(std::unique_ptr<SceneCopy> copy) {
     ecs::copy_world(copy->registry, registry_);
-    if (meshes().size() > 0)
+    if (meshes_.size() > 0)
         return {};
-    meshes() = std::move(copy->meshes);
-    textures() = std::move(copy->textures);
+    meshes_ = std::move(copy->meshes);
+    textures_ = std::move(copy->textures);
     return upload_meshes();
 }
 
 void SceneRenderer::exchange_lighting(SceneRenderer& other) {
     std::swap(gpu_scene_, other.gpu_scene_);
     std::swap(rays_, other.rays_);
-    std::swap(ray_stores_, other.ray_stores_);
     std::swap(lighting_, other.lighting_);
     std::swap(lighting_shaders_, other.lighting_shaders_);
     std::swap(lighting_pipelines_, other.lighting_pipelines_);
+    rays_->continue_with(meshes_, &textures_);
+    other.rays_->continue_with(other.meshes_, &other.textures_);
 }
 
 Status SceneRenderer::update(const FrameRequest& request) {
@@ -139,18 +140,18 @@ Status SceneRenderer::update(const FrameRequest& request) {
     const scene::SceneChanges* changes = nullptr;
     {
         const StageTimer timer(stages_, "scene changes");
-        scene::deform_meshes(registry_, meshes());
-        changes = &change_tracker_.collect(registry_, meshes());
+        scene::deform_meshes(registry_, meshes_);
+        changes = &change_tracker_.collect(registry_, meshes_);
         has_previous_camera_ = has_previous_camera_ && changes->space == space_;
         space_ = changes->space;
     }
     {
         const StageTimer timer(stages_, "ray scene");
-        SUNFLECK_TRY(rays_->update(*changes, meshes(), &textures()));
+        SUNFLECK_TRY(rays_->update(*changes, meshes_, &textures_));
     }
     {
         const StageTimer timer(stages_, "gpu scene");
-        SUNFLECK_TRY(gpu_scene_->update(*changes, meshes(), *resources_));
+        SUNFLECK_TRY(gpu_scene_->update(*changes, meshes_, *resources_));
     }
     return update_lighting(request, *changes, completed);
 }
@@ -170,7 +171,7 @@ Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::
     input.milliseconds = request.milliseconds;
     input.keep_samples = request.keep_samples;
     input.view_projection = camera_row(request).view_projection;
-    return lighting_->update(registry_, changes, meshes(), *gpu_scene_, *rays_, input);
+    return lighting_->update(registry_, changes, meshes_, *gpu_scene_, *rays_, input);
 }
 
 shared::CameraRow SceneRenderer::camera_row(const FrameRequest& request) const {

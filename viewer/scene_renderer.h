@@ -66,8 +66,8 @@ public:
     static Status check_size(std::uint32_t width, std::uint32_t height);
 
     ecs::Registry& registry() { return registry_; }
-    scene::MeshStore& meshes() { return stores_->meshes; }
-    scene::TextureStore& textures() { return stores_->textures; }
+    scene::MeshStore& meshes() { return meshes_; }
+    scene::TextureStore& textures() { return textures_; }
     raytrace::RayScene& rays() { return *rays_; }
     gi::System& lighting() { return *lighting_; }
     gpu::Submission& submission() { return *submission_; }
@@ -127,12 +127,8 @@ private:
 
     gpu::Device& device_;
     ecs::Registry registry_;
-    struct Stores {
-        scene::MeshStore meshes;
-        scene::TextureStore textures;
-    };
-    std::shared_ptr<Stores> stores_ = std::make_shared<Stores>();
-    std::shared_ptr<Stores> ray_stores_ = stores_; // that rays_ was built of, and refers to
+    scene::MeshStore meshes_;
+    scene::TextureStore textures_;
     scene::ChangeTracker change_tracker_{scene::ChangeTracker::Space::of_scene};
     scene::SceneSpace space_; // of the last update
     std::shared_ptr<gpu::ShaderLibrary> shaders_;

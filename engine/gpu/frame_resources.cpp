@@ -6,6 +6,7 @@ namespace sunfleck::gpu {
 namespace {
 constexpr VkDeviceSize upload_block_size = VkDeviceSize(1) << 20;
 constexpr std::uint32_t sets_per_pool = 256;
+constexpr std::uint64_t frames_kept = 120; // after their last use, blocks of upload memory are destroyed
 } // namespace
 
 FrameResources::~FrameResources() {
@@ -23,6 +24,7 @@ void FrameResources::begin_frame(std::uint64_t serial, std::uint64_t completed_s
         active.erase(done, active.end());
     };
     recycle(active_blocks_, spare_blocks_);
+    std::erase_if(spare_blocks_, [&](const Block& block) { return block.serial + frames_kept < serial; });
     recycle(active_pools_, spare_pools_);
     while (!retired_.empty() && retired_.front().first <= completed_serial)
         retired_.pop_front();
@@ -35,15 +37,22 @@ Result<UploadSlice> FrameResources::allocate(VkDeviceSize size) {
     const bool fits = !active_blocks_.empty() && active_blocks_.back().serial == serial_ &&
                       active_blocks_.back().used + rounded <= active_blocks_.back().buffer.size();
     if (!fits) {
-        const auto spare = std::find_if(spare_blocks_.begin(), spare_blocks_.end(),
-                                        [&](const Block& block) { return block.buffer.size() >= rounded; });
+        // The smallest that will do, since a large one that a small request took would be missed by the next large one;
+        // of equal ones that which was used last, so that those too many are left alone and go.
+        auto spare = spare_blocks_.end();
+        for (auto block = spare_blocks_.begin(); block != spare_blocks_.end(); ++block)
+            if (block->buffer.size() >= rounded &&
+                (spare == spare_blocks_.end() || block->buffer.size() < spare->buffer.size() ||
+                 (block->buffer.size() == spare->buffer.size() && block->serial >= spare->serial)))
+                spare = block;
         if (spare != spare_blocks_.end()) {
             active_blocks_.push_back(std::move(*spare));
             spare_blocks_.erase(spare);
         } else {
             BufferDescription description;
             description.name = "frame uploads";
-            description.size = std::max(rounded, upload_block_size);
+            // In whole blocks, so that a request that grows from frame to frame takes the same one.
+            description.size = (rounded + upload_block_size - 1) / upload_block_size * upload_block_size;
             description.usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;

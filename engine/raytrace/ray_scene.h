@@ -78,6 +78,9 @@ public:
     Status update(ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore* textures = nullptr);
 
+    // From now on meshes and textures are those of other stores, which hold the same: nothing is built again.
+    void continue_with(const scene::MeshStore& meshes, const scene::TextureStore* textures);
+
     std::optional<Hit> closest_hit(const Ray& ray, Scope scope = Scope::everything) const;
     // Movers that cast no shadow block nothing.
     bool occluded(const Ray& ray, Scope scope = Scope::everything) const;

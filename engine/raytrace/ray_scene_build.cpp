@@ -287,6 +287,17 @@ Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshSto
     return {};
 }
 
+void RayScene::continue_with(const scene::MeshStore& meshes, const scene::TextureStore* textures) {
+    Implementation& self = *implementation_;
+    self.meshes = &meshes;
+    self.textures = textures;
+    for (const auto* filters : {&self.static_filters, &self.mover_filters})
+        for (const std::unique_ptr<HoleFilter>& filter : *filters) {
+            filter->meshes = &meshes;
+            filter->textures = textures;
+        }
+}
+
 Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures) {
     return update(implementation_->tracker.collect(registry, meshes), meshes, textures);
 }

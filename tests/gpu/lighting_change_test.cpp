@@ -1,4 +1,5 @@
 // Lighting that is prepared beside the frames: it is what a fresh start has, and frames do not wait for it.
+#include "tests/support/settled_pictures.h"
 #include "tests/support/system_frames.h"
 #include "viewer/lighting_change.h"
 
@@ -14,10 +15,6 @@ gi::Settings lights(std::uint32_t count) {
     return settings;
 }
 
-std::uint64_t counter(GpuWorld& world, const char* name) {
-    return world.renderer->statistics().counters[name];
-}
-
 struct MovingBox : GpuWorld {
     explicit MovingBox(const gi::Settings& settings) : GpuWorld(make_moving_box_room, "view") { set(settings); }
 
@@ -29,7 +26,8 @@ struct MovingBox : GpuWorld {
     io::Picture settled(std::uint64_t step) {
         render_step(step);
         for (int i = 0;
-             i < 200 && (counter(*this, "shadow_maps_stale") > 0 || counter(*this, "baked_light_waiting") > 0); ++i)
+             i < 200 && (counter_of(*this, "shadow_maps_stale") > 0 || counter_of(*this, "baked_light_waiting") > 0);
+             ++i)
             render();
         render(); // what was finished in the last frame is shown
         return picture();
@@ -44,40 +42,32 @@ struct MovingBox : GpuWorld {
             render_step(std::uint64_t(frame));
             if (*changed)
                 return frame;
-            EXPECT_EQ(counter(*this, "light_samples"), samples_before) << "the old light stays until then";
+            EXPECT_EQ(counter_of(*this, "light_samples"), samples_before) << "the old light stays until then";
         }
         ADD_FAILURE() << "the change never came";
         return -1;
     }
 };
 
-void expect_same(const io::Picture& a, const io::Picture& b) {
-    ASSERT_EQ(a.pixels.size(), b.pixels.size());
-    std::size_t different = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i)
-        different += a.pixels[i] != b.pixels[i] ? 1 : 0;
-    EXPECT_EQ(different, 0u) << "of " << a.pixels.size() << " pixels";
-}
-
 TEST_F(LightingChangeTest, TheNewLightIsThatOfAFreshStart) {
     MovingBox world(lights(40));
     world.settled(0);
-    const std::uint64_t before = counter(world, "light_samples");
+    const std::uint64_t before = counter_of(world, "light_samples");
     viewer::LightingChanges changes(device());
     changes.request(lights(90));
     EXPECT_TRUE(changes.pending());
     EXPECT_GT(world.frames_until_changed(changes, before), 0) << "no frame waited for it";
     EXPECT_FALSE(changes.pending());
-    EXPECT_GE(counter(world, "light_samples"), 90u);
+    EXPECT_GE(counter_of(world, "light_samples"), 90u);
     const io::Picture changed = world.settled(37);
     MovingBox fresh(lights(90));
-    expect_same(changed, fresh.settled(37));
+    expect_same_picture(changed, fresh.settled(37));
 }
 
 TEST_F(LightingChangeTest, TheLastOfManyRequestsCounts) {
     MovingBox world(lights(40));
     world.settled(0);
-    const std::uint64_t before = counter(world, "light_samples");
+    const std::uint64_t before = counter_of(world, "light_samples");
     viewer::LightingChanges changes(device());
     for (const std::uint32_t count : {300u, 50u, 400u, 80u}) {
         changes.request(lights(count));
@@ -87,7 +77,7 @@ TEST_F(LightingChangeTest, TheLastOfManyRequestsCounts) {
             world.render_step(i);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
-        if (counter(world, "light_samples") != before)
+        if (counter_of(world, "light_samples") != before)
             GTEST_SKIP() << "a machine so fast that a change came before the next request";
     }
     EXPECT_GE(world.frames_until_changed(changes, before), 0);
@@ -118,7 +108,7 @@ TEST_F(LightingChangeTest, ItKnowsWhichLampsVary) {
     dim(0.5f);
     viewer::LightingChanges changes(device());
     changes.request(lights(90));
-    ASSERT_GE(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    ASSERT_GE(world.frames_until_changed(changes, counter_of(world, "light_samples")), 0);
     const std::uint64_t generation = world.renderer->lighting().sample_set().generation();
     EXPECT_EQ(dim(0.25f), generation) << "no new samples";
 }
@@ -142,14 +132,14 @@ TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
     world.render();
     EXPECT_TRUE(system->outdated());
     EXPECT_EQ(system->sample_set().generation(), generation);
-    EXPECT_GT(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    EXPECT_GT(world.frames_until_changed(changes, counter_of(world, "light_samples")), 0);
     system = &world.renderer->lighting();
     EXPECT_FALSE(system->outdated());
     EXPECT_NE(system->sample_set().generation(), generation);
     const io::Picture changed = world.settled(37);
     MovingBox fresh(lights(60));
     move_pillar(fresh);
-    expect_same(changed, fresh.settled(37));
+    expect_same_picture(changed, fresh.settled(37));
 
     ecs::Registry& registry = world.renderer->registry();
     const ecs::Entity lamp = scene::find_by_name(registry, "lamp");
@@ -159,7 +149,7 @@ TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
         return world.renderer->lighting().outdated();
     };
     EXPECT_TRUE(dim(0.5f));
-    EXPECT_GT(world.frames_until_changed(changes, counter(world, "light_samples")), 0);
+    EXPECT_GT(world.frames_until_changed(changes, counter_of(world, "light_samples")), 0);
     EXPECT_FALSE(world.renderer->lighting().outdated());
     EXPECT_FALSE(dim(0.25f)) << "the second change is none to remember";
 }
@@ -167,7 +157,7 @@ TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
 TEST_F(LightingChangeTest, AFailureLeavesTheLightAsItWas) {
     MovingBox world(lights(40));
     world.settled(0);
-    const std::uint64_t before = counter(world, "light_samples");
+    const std::uint64_t before = counter_of(world, "light_samples");
     gi::Settings wrong = lights(90);
     wrong.shadow_map_resolution = 0;
     viewer::LightingChanges changes(device());
@@ -180,7 +170,7 @@ TEST_F(LightingChangeTest, AFailureLeavesTheLightAsItWas) {
         world.render();
     }
     EXPECT_NE(message.find("shadow_map_resolution"), std::string::npos) << message;
-    EXPECT_EQ(counter(world, "light_samples"), before);
+    EXPECT_EQ(counter_of(world, "light_samples"), before);
     EXPECT_FALSE(changes.pending());
 }
 

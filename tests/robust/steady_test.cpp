@@ -87,7 +87,7 @@ TEST(SteadyWindow, RandomUseDoesNoHarm) {
         "kill -TERM $P 2>/dev/null; for i in $(seq 100); do kill -0 $P 2>/dev/null || break; sleep 0.1; done\n"
         "kill -9 $P 2>/dev/null && echo 'it hung'; wait $P; echo status $?\n";
     ASSERT_TRUE(write_file(folder.path / "drive.sh", script));
-    const Outcome outcome = shell("timeout 1500 xvfb-run -a -s '-screen 0 800x600x24 -noreset' bash '" +
+    const Outcome outcome = shell("timeout 3000 xvfb-run -a -s '-screen 0 800x600x24 -noreset' bash '" +
                                   (folder.path / "drive.sh").string() + "'");
     const std::string log = read_file(folder.path / "log").value();
     EXPECT_EQ(outcome.output.find("it hung"), std::string::npos) << "seed " << seed << "\n" << outcome.output << log;

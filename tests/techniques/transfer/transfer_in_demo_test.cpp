@@ -14,7 +14,7 @@ TEST_F(TransferInTheDemo, ComplexMoversTakeItWhereItIsChosen) {
     settings.light_samples = 40;
     settings.render_scale = 0.5f;
     settings.transfer = true;
-    demo::LevelLoader loader(device(), {"four_pillars"}, settings, 160, 90);
+    demo::LevelLoader loader(device(), {"four_pillars"}, settings);
     while (!loader.finished())
         std::this_thread::sleep_for(1ms);
     auto level = loader.take();
