@@ -27,6 +27,17 @@ void built_in_menu(Session& session) {
     ImGui::EndMenu();
 }
 
+// Names within the menu's window end before it does.
+void entries(Session& session, const std::string& group) {
+    const ui::Scope in_group(group);
+    session.commands->menu(group, session);
+    if (group == session.commands->groups().front()) {
+        ImGui::Separator();
+        recent_menu(session);
+        built_in_menu(session);
+    }
+}
+
 } // namespace
 
 void draw_menu_bar(Session& session) {
@@ -38,13 +49,7 @@ void draw_menu_bar(Session& session) {
         ui::note(group);
         if (!open)
             continue;
-        const ui::Scope in_group(group);
-        session.commands->menu(group, session);
-        if (group == session.commands->groups().front()) {
-            ImGui::Separator();
-            recent_menu(session);
-            built_in_menu(session);
-        }
+        entries(session, group);
         ImGui::EndMenu();
     }
     const std::string title = session.file_name() + (session.document->unsaved() ? " *" : "");

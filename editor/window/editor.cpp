@@ -21,9 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float usual_scale = 0.875f;  // of letters of 16 pixels
-constexpr int frames_after_event = 3;  // until Dear ImGui has settled
-constexpr double longest_sleep = 60.0; // s
+constexpr float usual_scale = 0.875f; // of letters of 16 pixels
+constexpr int frames_after_event = 3; // until Dear ImGui has settled
+constexpr double longest_sleep = 0.5; // s: how soon a signal that asks for the end is seen
 constexpr double flying_interval = 1.0 / 60.0;
 
 class Program {
@@ -53,6 +53,7 @@ private:
     Status present(const std::shared_ptr<ScenePicture>& picture);
     void ask_before_closing();
     void after_frame();
+    void tell_scripts();
     Status finish();
     void keep_camera();
     float scale() const { return options_.scale > 0.0f ? options_.scale : usual_scale * window_->scale(); }
@@ -81,6 +82,7 @@ private:
     app::InputState still_input_;
     std::uint64_t events_ = 0;
     int frames_due_ = frames_after_event;
+    bool widgets_due_ = false; // --widgets is older than the last frame
     Clock::time_point last_frame_ = Clock::now();
     ReportFigures figures_;
 };
@@ -160,13 +162,16 @@ bool Program::something_new() {
         frames_due_ = std::max(frames_due_, 1);
     if (layout_->flying())
         frames_due_ = std::max(frames_due_, 1);
-    return frames_due_ > 0 || window_->has_more();
+    if (window_->has_more()) // the last of many gets its frames, too, although it arrived with the first
+        frames_due_ = frames_after_event;
+    return frames_due_ > 0;
 }
 
 Status Program::loop() {
     while (!session_->quit && !stop_requested()) {
         const bool quiet = ui::take_quiet_frame();
         if (!quiet && !something_new()) {
+            tell_scripts();
             window_->wait(longest_sleep);
             ++figures_.wake_ups;
         }
@@ -344,9 +349,14 @@ void Program::after_frame() {
     const std::string title = session_->file_name() + (session_->document->unsaved() ? " * - Sunfleck" : " - Sunfleck");
     if (title != title_)
         window_->set_title(title_ = title);
-    if (!options_.widgets.empty() && frames_due_ == 0 && !window_->has_more())
-        if (const Status written = write_widgets(options_.widgets, ui::notes()); !written)
-            session_->messages.check(written);
+    widgets_due_ = !options_.widgets.empty();
+}
+
+// Where widgets are, once the window is at rest. Not with the last frame: what may follow it, such as a key that is let
+// go, needs no frame of its own.
+void Program::tell_scripts() {
+    if (std::exchange(widgets_due_, false))
+        session_->messages.check(write_widgets(options_.widgets, ui::notes()));
 }
 
 Status Program::finish() {

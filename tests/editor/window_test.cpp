@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -44,6 +45,52 @@ protected:
 // Small and quick: a room of some boxes, with few samples and small maps.
 constexpr const char* small_scene = "cornell";
 
+TEST_F(EditorWindow, EditsUndoesSavesAndOpensAgain) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->appears("inspector/Material/roughness/value"));
+    const std::string before = editor->value("inspector/Material/roughness/value");
+    ASSERT_TRUE(editor->enter("inspector/Material/roughness/value", "0.25"));
+    EXPECT_TRUE(editor->wait_for("inspector/Material/roughness/value", "0.25"));
+    EXPECT_EQ(editor->value("menu/title"), "cornell.scene.json *");
+    editor->key("ctrl+z");
+    EXPECT_TRUE(editor->wait_for("inspector/Material/roughness/value", before));
+    EXPECT_TRUE(editor->wait_for("menu/title", "cornell.scene.json"));
+    editor->key("ctrl+shift+z");
+    EXPECT_TRUE(editor->wait_for("inspector/Material/roughness/value", "0.25"));
+
+    // What is out of range or no number is said, and changes nothing.
+    for (const char* bad : {"7", "nan", "abc"}) {
+        ASSERT_TRUE(editor->enter("inspector/Material/roughness/value", bad));
+        EXPECT_TRUE(editor->wait_until([&] {
+            return editor->value("status/message").find("'" + std::string(bad) + "'") != std::string::npos;
+        })) << editor->value("status/message");
+        EXPECT_EQ(editor->value("inspector/Material/roughness/value"), "0.25");
+    }
+
+    menu("File", "Save as...");
+    ASSERT_TRUE(editor->click("dialog/name"));
+    editor->key("ctrl+a");
+    editor->type(editor->file("mine.scene.json"));
+    editor->key("Return");
+    ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
+    EXPECT_TRUE(fs::exists(folder / "mine.scene.json"));
+
+    // Closing with edits asks first.
+    ASSERT_TRUE(editor->enter("inspector/Material/roughness/value", "0.5"));
+    ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json *"));
+    editor->key("ctrl+q");
+    ASSERT_TRUE(editor->click("dialog/Save"));
+    EXPECT_EQ(editor->wait_for_end(), 0);
+    EXPECT_TRUE(fs::exists(folder / "mine.scene.json"));
+
+    editor->start({editor->file("mine.scene.json")});
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    EXPECT_TRUE(editor->wait_for("inspector/Material/roughness/value", "0.5"));
+    EXPECT_FALSE(editor->end().is_null());
+}
+
 TEST_F(EditorWindow, AClickInThePictureSelectsAndAHandleMoves) {
     editor->start({small_scene});
     ASSERT_TRUE(editor->settles());
@@ -53,6 +100,13 @@ TEST_F(EditorWindow, AClickInThePictureSelectsAndAHandleMoves) {
     ASSERT_TRUE(editor->appears("viewport/gizmo y"));
     const double height = std::stod(editor->value("inspector/Transform/position/y"));
     ASSERT_TRUE(editor->drag("viewport/gizmo y", 0, -60));
+    EXPECT_TRUE(
+        editor->wait_until([&] { return std::stod(editor->value("inspector/Transform/position/y")) > height + 0.05; }));
+    // Events come in order: what can be undone has ended.
+    editor->key("ctrl+z");
+    EXPECT_TRUE(editor->wait_until(
+        [&] { return std::abs(std::stod(editor->value("inspector/Transform/position/y")) - height) < 1e-3; }));
+    editor->key("ctrl+shift+z");
     EXPECT_TRUE(
         editor->wait_until([&] { return std::stod(editor->value("inspector/Transform/position/y")) > height + 0.05; }));
     const auto report = editor->end();
