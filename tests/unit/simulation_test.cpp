@@ -345,7 +345,7 @@ TEST(InputRecording, SurvivesTheRoundTripAndRejectsNonsense) {
     ASSERT_TRUE(read);
     EXPECT_EQ(*read, input);
     for (const char* text : {"", "sunfleck_input 2\n", "sunfleck_input 1\n1 2 3\n", "sunfleck_input 1\n0 0 0 0 0 0\n",
-                             "sunfleck_input 1\n1 101 0 0 0 0\n", "sunfleck_input 1\n1 0 0 0 0 16\n",
+                             "sunfleck_input 1\n1 101 0 0 0 0\n", "sunfleck_input 1\n1 0 0 0 0 32\n",
                              "sunfleck_input 1\n99999999999 0 0 0 0 0\n", "sunfleck_input 1\n1 0 0 0 0 0 junk\n",
                              "sunfleck_input 1\n1 nan 0 0 0 0\n"}) {
         std::ofstream(path) << text;
