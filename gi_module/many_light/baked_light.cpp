@@ -115,9 +115,10 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
         return {};
     resources.retire(std::move(sums_));
     resources.retire(std::move(texels_));
-    SUNFLECK_ASSIGN(sums_, gpu::Buffer::create(device_, {"baked light sums", texels * sizeof(glm::ivec4),
-                                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryUse::device,
-                                                         VK_FORMAT_UNDEFINED}));
+    SUNFLECK_ASSIGN(sums_,
+                    gpu::Buffer::create(device_, {"baked light sums", texels * sizeof(glm::ivec4),
+                                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
     SUNFLECK_ASSIGN(
         texels_,
         gpu::Buffer::create(device_, {"baked light", texels * texel_bytes,

@@ -49,6 +49,8 @@ public:
     // is smooth. Then those of the curved charts' points: alpha is the mean height of the cell, or
     // shared::curved_rough.
     const gpu::Buffer& texels() const { return texels_; }
+    // The same before it is rounded: ivec4, in light maps' fixed point.
+    const gpu::Buffer& sums() const { return sums_; }
     // shared::CurvedChartRows, as texels of four floats.
     const gpu::Buffer& curved_rows() const { return curved_rows_.buffer(); }
     std::uint64_t memory_bytes() const {

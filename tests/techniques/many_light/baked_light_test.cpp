@@ -1,6 +1,7 @@
 // Baked light against rays: what its texels hold, what smooth cells say between them, and what movers leave of it.
 #include "gi_module/many_light/many_light_settings.h"
 #include "tests/support/gpu_world.h"
+#include "tests/support/test_size.h"
 #include "tests/techniques/many_light/many_light.h"
 
 #include <glm/gtc/packing.hpp>
@@ -240,6 +241,57 @@ TEST_F(BakedLightTest, FollowsStrengths) {
     bake_all(world);
     EXPECT_EQ(std::memcmp(before.texels.data(), read_baked(world).texels.data(), before.texels.size() * sizeof(vec4)),
               0);
+}
+
+std::vector<std::uint8_t> blocked_samples(GpuWorld& world) {
+    const gi::SampleSet& samples = world.renderer->lighting().sample_set();
+    std::vector<std::uint8_t> blocked;
+    for (const gi::LightSample& sample : samples.samples())
+        if (!sample.dynamic)
+            blocked.push_back(samples.is_blocked(sample.index) ? 1 : 0);
+    return blocked;
+}
+
+std::vector<glm::ivec4> read_sums(GpuWorld& world) {
+    const std::size_t count = read_baked(world).texels.size();
+    const gpu::Buffer sums = read_back(world, tests::many_light(world.renderer->lighting()).baked_light().sums(),
+                                       count * sizeof(glm::ivec4));
+    const auto* values = reinterpret_cast<const glm::ivec4*>(sums.mapped());
+    return {values, values + count};
+}
+
+// A door that goes to and fro takes the light of a few samples away and gives it back, over and over: they are
+// subtracted and added, and sums are what they are where nothing but the door's last place was ever seen, in all bits.
+TEST_F(BakedLightTest, FollowsStrengthsOfAFew) {
+    GpuWorld world(assets::make_two_rooms, "bench_1");
+    bake_all(world);
+    std::mt19937 random(9);
+    std::vector<std::uint8_t> before = blocked_samples(world);
+    int few = 0, many = 0;
+    for (std::uint32_t i = 0; i < by_size(150u, 1000u); ++i) {
+        world.request.step += 1 + random() % 6;
+        world.render();
+        const std::vector<std::uint8_t> now = blocked_samples(world);
+        int changes = 0;
+        for (std::size_t k = 0; k < now.size(); ++k)
+            changes += now[k] != before[k];
+        few += changes > 0 && changes <= 64;
+        many += changes > 64; // then all is baked again
+        before = now;
+    }
+    std::printf("%d changes of a few strengths, %d of many\n", few, many);
+    EXPECT_GT(few, 10);
+    EXPECT_EQ(many, 0);
+    bake_all(world);
+    GpuWorld fresh(assets::make_two_rooms, "bench_1");
+    fresh.request.step = world.request.step;
+    bake_all(fresh);
+    const std::vector<glm::ivec4> followed = read_sums(world), baked = read_sums(fresh);
+    ASSERT_EQ(followed.size(), baked.size());
+    int different = 0;
+    for (std::size_t i = 0; i < baked.size(); ++i)
+        different += followed[i] != baked[i];
+    EXPECT_EQ(different, 0);
 }
 
 // Pixels without baked light get what they get without it anywhere: samples that their lists leave out add nothing.
