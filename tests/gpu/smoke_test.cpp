@@ -53,6 +53,7 @@ TEST_F(Smoke, FalseColours) {
     gi::Settings settings;
     settings.lights = 40;
     settings.shadow_map_resolution = 32;
+    set_if_known(settings, "splat_lights", "all"); // views of whoever takes cells only by a setting of its own
     world.set(settings);
     world.request.view = shared::view_false_colours;
     if (gi::debug_views().empty())
