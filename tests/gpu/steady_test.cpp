@@ -2,6 +2,7 @@
 #include "tests/support/settled_pictures.h"
 #include "tests/support/system_frames.h"
 
+#include <limits>
 #include <malloc.h>
 
 namespace sunfleck::tests {
@@ -112,11 +113,17 @@ TEST_F(SteadyTest, MemoryIsFlat) {
         return bytes;
     };
     use(180);
-    const std::uint64_t heap = mallinfo2().uordblks, on_device = device_bytes();
-    use(180);
+    const std::uint64_t on_device = device_bytes();
+    // The driver compiles now and then, at its own pace, and keeps what comes of it: up to four turns are looked at. A
+    // leak of 1 kB a frame is in each of them, and twice the bound.
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (int turn = 0; turn < 4 && least >= 90'000; ++turn) {
+        const auto heap = std::int64_t(mallinfo2().uordblks);
+        use(180);
+        least = std::min(least, std::int64_t(mallinfo2().uordblks) - heap);
+    }
+    EXPECT_LT(least, 90'000);
     EXPECT_EQ(device_bytes(), on_device);
-    // The driver compiles and frees at its own pace; a leak of 1 kB a frame would be twice that.
-    EXPECT_LT(std::int64_t(mallinfo2().uordblks) - std::int64_t(heap), 90'000);
 }
 
 // Uploads of any sizes, in turn: memory for the largest frames, but not for each one that was the largest so far; and

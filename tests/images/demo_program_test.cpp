@@ -121,7 +121,8 @@ TEST_F(CommandLine, AKilledWindowLeavesItsRecording) {
         "for size in '300 300' '211 400' '640 200' '192 108'; do xdotool windowsize $W $size; sleep 0.4; done\n"
         "xdotool key h; sleep 0.5; xdotool key Escape; sleep 0.5\n"
         "steps() { awk '/^[0-9]/ { n += $1 } END { print n }' walk.txt; }\n"
-        "before=$(steps); xdotool keydown w; for i in $(seq 40); do grep -q '^[0-9]* 100 ' walk.txt && break; sleep "
+        // Writing takes a fiftieth of the time at most: on a slow disk, many seconds lie between two writes.
+        "before=$(steps); xdotool keydown w; for i in $(seq 200); do grep -q '^[0-9]* 100 ' walk.txt && break; sleep "
         "0.25; "
         "done\n"
         "kill -9 $P; wait $P 2>/dev/null; echo $before $(steps)\n";
