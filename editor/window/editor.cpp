@@ -158,9 +158,8 @@ bool Program::something_new() {
         events_ = events;
         frames_due_ = frames_after_event;
     }
-    if (woken_.exchange(false))
-        frames_due_ = std::max(frames_due_, 1);
-    if (layout_->flying())
+    const bool woken = woken_.exchange(false);
+    if (woken || layout_->flying())
         frames_due_ = std::max(frames_due_, 1);
     if (window_->has_more()) // the last of many gets its frames, too, although it arrived with the first
         frames_due_ = frames_after_event;
@@ -193,7 +192,7 @@ Status Program::loop() {
 void Program::finish_opening() {
     if (session_->opening == nullptr || !session_->opening->finished())
         return;
-    const std::filesystem::path path = session_->opening->path();
+    const auto path = session_->opening->path();
     auto opened = session_->opening->take();
     session_->opening.reset();
     if (!session_->messages.check(opened ? Status() : Status(opened.error())))
@@ -352,8 +351,7 @@ void Program::after_frame() {
     widgets_due_ = !options_.widgets.empty();
 }
 
-// Where widgets are, once the window is at rest. Not with the last frame: what may follow it, such as a key that is let
-// go, needs no frame of its own.
+// Where widgets are, once the window is at rest: not with the last frame, which a key let go may follow.
 void Program::tell_scripts() {
     if (std::exchange(widgets_due_, false))
         session_->messages.check(write_widgets(options_.widgets, ui::notes()));
@@ -372,9 +370,9 @@ Status Program::finish() {
             known == nullptr || !(known->shortcut == command.shortcut))
             state_.keys[command.path()] = shortcut_text(command.shortcut);
     const Status kept = save_state(state_path_, state_);
-    Status reported;
-    if (!options_.report.empty())
-        reported = write_report(options_.report, figures_, *session_, device_->validation_messages());
+    const Status reported = options_.report.empty()
+                                ? Status()
+                                : write_report(options_.report, figures_, *session_, device_->validation_messages());
     if (!session_->quit && session_->document->unsaved()) // a signal, or an error
         recovery_->leave();
     else if (recovered_from_)

@@ -18,7 +18,7 @@ class Registry;
 // A component's value apart from any pool, of the type that its pool knows; null: no such component.
 using Value = std::shared_ptr<const void>;
 
-// A component that others are computed from anew: copies of a world and histories of edits leave it out.
+// A component that is computed from others: copies of a world and histories of edits leave it out.
 template <typename T>
 concept Derived = requires {
     requires T::derived;

@@ -101,8 +101,8 @@ TEST_F(DemoSettingsTest, HaveNoPlaceWithoutAHome) {
     };
     const auto home = value_of("HOME"), config = value_of("XDG_CONFIG_HOME");
     unsetenv("XDG_CONFIG_HOME");
-    setenv("HOME", "/home/someone", 1);
-    EXPECT_EQ(settings_path(), "/home/someone/.config/sunfleck/demo.json");
+    setenv("HOME", "/users/someone", 1);
+    EXPECT_EQ(settings_path(), "/users/someone/.config/sunfleck/demo.json");
     for (const char* nowhere : {"", "relative"}) {
         setenv("HOME", nowhere, 1);
         EXPECT_TRUE(settings_path().empty()) << nowhere;
