@@ -7,6 +7,11 @@ const vec3 brass(0.72f, 0.52f, 0.20f), dark(0.05f), steel(0.30f, 0.32f, 0.34f);
 
 constexpr float gauge_height = 0.9f;
 
+// Without any extension of glTF beside the one that says so, which readers need not understand together.
+void show_base_colour(scene::Material& material) {
+    material.unlit = material.specular = true;
+}
+
 // Sides of the sign's shape; many: a disc.
 int sides_of(Sign sign) {
     switch (sign) {
@@ -123,7 +128,7 @@ void GameParts::gauge(const std::string& name, Sign shape, vec3 foot, vec3 facin
     sign(name + " sign", shape, foot + (gauge_height + 0.22f) * up, facing_to);
     const ecs::Entity marker = s_.add(name, scene::make_box(across * 0.14f + up * 0.045f + glm::abs(facing_to) * 0.03f),
                                       diffuse(vec3(0.95f, 0.9f, 0.75f)), placed(foot + 0.02f * facing_to));
-    s_.registry().patch<scene::Material>(marker, [](scene::Material& m) { m.unlit = true; });
+    s_.registry().patch<scene::Material>(marker, show_base_colour);
     s_.mover(marker, on_line(gauge_height * up, 1.0f, scene::MoverActivation::sensor));
     ornament(marker);
 }
@@ -175,7 +180,7 @@ void GameParts::lantern(const std::string& name, vec3 foot, vec3 intensity) {
     // The flame is only visible; the point light above it gives the light.
     const ecs::Entity flame = hung(name + " flame", lantern, scene::make_sphere(0.04f, 16, 8), vec3(1.0f, 0.93f, 0.72f),
                                    vec3(0.0f, 0.2f, 0.0f));
-    s_.registry().patch<scene::Material>(flame, [](scene::Material& m) { m.unlit = true; });
+    s_.registry().patch<scene::Material>(flame, show_base_colour);
     const ecs::Entity light = empty(name + " light", vec3(0.0f, 0.3f, 0.0f));
     s_.registry().emplace<scene::Parent>(light, {lantern});
     s_.registry().emplace<scene::PointLight>(light, {intensity});

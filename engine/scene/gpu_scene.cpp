@@ -117,7 +117,8 @@ Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& reso
         description.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
         description.memory = gpu::MemoryUse::upload;
         SUNFLECK_ASSIGN(gpu::Buffer staging, gpu::Buffer::create(device_, description));
-        std::memcpy(staging.mapped(), values.data(), values.size() * sizeof values[0]);
+        if (!values.empty()) // where the host has removed all meshes
+            std::memcpy(staging.mapped(), values.data(), values.size() * sizeof values[0]);
         staged_.push_back({std::make_shared<gpu::Buffer>(std::move(staging)), &target});
         return {};
     };
