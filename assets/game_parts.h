@@ -11,7 +11,7 @@ enum class Sign { white, red, green, sun, violet, tower };
 
 class GameParts {
 public:
-    GameParts(SceneBuilder& builder, House& house) : s_(builder), house_(house) {}
+    explicit GameParts(SceneBuilder& builder) : s_(builder) {}
 
     // `normal`: of the side that measures.
     void sensor(const std::string& name, vec3 position, vec3 normal, const scene::LightSensor& sensor);
@@ -39,7 +39,6 @@ private:
     ecs::Entity hung(const std::string& name, ecs::Entity parent, scene::Mesh mesh, vec3 colour, vec3 position);
 
     SceneBuilder& s_;
-    House& house_;
 };
 
 } // namespace sunfleck::assets

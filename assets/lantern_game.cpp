@@ -304,7 +304,7 @@ void place_cameras(SceneBuilder& s) {
 
 void make_lantern_game(SceneBuilder& s) {
     House house(s);
-    GameParts parts(s, house);
+    GameParts parts(s);
     build_shells(house);
     build_ceilings(house);
     build_openings(house);
