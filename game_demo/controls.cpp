@@ -58,11 +58,8 @@ simulation::StepInput Controls::next_step() {
     return step;
 }
 
-bool Controls::pressed(const app::InputState& input, const DemoSettings& settings, Action action) {
-    if (input.hit(settings.bindings[std::size_t(action)]))
-        return true;
-    const bool pad_hit = (pad_now_ & ~pad_before_ & (1u << pad_y)) != 0;
-    return action == Action::indirect_light && pad_hit;
+bool Controls::pad_pressed_indirect_light() const {
+    return (pad_now_ & ~pad_before_ & (1u << pad_y)) != 0;
 }
 
 } // namespace sunfleck::demo

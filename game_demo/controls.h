@@ -12,8 +12,8 @@ public:
     void take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing);
     // Input of the next step: all accumulated look motion, and the held keys.
     simulation::StepInput next_step();
-    // True once per press of the action's key or button.
-    bool pressed(const app::InputState& input, const DemoSettings& settings, Action action);
+    // True once per press of the gamepad's button for indirect light.
+    bool pad_pressed_indirect_light() const;
 
 private:
     vec2 look_{0.0f}; // 1e-4 rad not yet consumed: left, up

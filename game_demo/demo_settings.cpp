@@ -3,6 +3,7 @@
 #include "engine/core/file.h"
 #include "viewer/picture_settings.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -35,6 +36,11 @@ const char* action_name(Action action) {
 }
 const char* action_label(Action action) {
     return actions[std::size_t(action)].label;
+}
+
+std::optional<Action> DemoSettings::action_of(app::Key key) const {
+    const auto found = std::find(bindings.begin(), bindings.end(), key);
+    return found == bindings.end() ? std::nullopt : std::optional(Action(found - bindings.begin()));
 }
 
 DemoSettings::DemoSettings() {

@@ -6,6 +6,7 @@
 #include "viewer/quality.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace sunfleck::demo {
 
@@ -54,6 +55,8 @@ struct DemoSettings {
 
     DemoSettings();
     static const TypeDescription& description();
+    // What `key` does, if anything.
+    std::optional<Action> action_of(app::Key key) const;
 };
 
 // $XDG_CONFIG_HOME/sunfleck/demo.json, or the same under ~/.config. Empty if neither variable is set: settings are kept

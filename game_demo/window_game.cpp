@@ -172,7 +172,7 @@ private:
         const double seconds = std::min(seconds_since(last_), 1.0);
         last_ = Clock::now();
         swapchain_->set_vertical_sync(settings_.vertical_sync);
-        SUNFLECK_TRY(handle_keys(input));
+        handle_keys(input);
         const bool playing = menu_.screen() == Screen::playing && input.focused;
         window_->capture_pointer(playing);
         controls_.take(input, settings_, seconds, playing);
@@ -195,30 +195,43 @@ private:
             log_time("all of the light");
     }
 
-    Status handle_keys(const app::InputState& input) {
+    // In the order in which keys went down: a slow frame may hold several.
+    void handle_keys(const app::InputState& input) {
+        for (const app::Key key : input.went_down)
+            handle_key(key);
         const bool start_button = input.gamepad.pressed(pad_start);
-        if (input.hit(app::key_escape) || (start_button && !start_before_) ||
-            (!input.focused && menu_.screen() == Screen::playing))
+        if ((start_button && !start_before_) || (!input.focused && menu_.screen() == Screen::playing))
             menu_.back();
         start_before_ = start_button;
-        if (menu_.screen() != Screen::playing)
-            return {};
-        const auto pressed = [&](Action action) { return controls_.pressed(input, settings_, action); };
-        if (pressed(Action::indirect_light)) {
-            indirect_ = !indirect_;
-            menu_.say(indirect_ ? "Indirect light on" : "Indirect light off: direct light only", 2.5);
-        }
-        if (pressed(Action::frame_times))
+        if (menu_.screen() == Screen::playing && controls_.pad_pressed_indirect_light())
+            toggle_indirect_light();
+    }
+
+    void handle_key(app::Key key) {
+        if (key == app::key_escape)
+            menu_.back();
+        else if (menu_.screen() == Screen::playing)
+            if (const auto action = settings_.action_of(key))
+                act(*action);
+    }
+
+    // Actions that are held, or part of a step, are left to `controls_`.
+    void act(Action action) {
+        if (action == Action::indirect_light)
+            toggle_indirect_light();
+        else if (action == Action::frame_times)
             settings_.show_times = !settings_.show_times;
-        if (pressed(Action::screenshot))
+        else if (action == Action::screenshot)
             wants_screenshot_ = true;
-        if (pressed(Action::help))
+        else if (action == Action::help)
             menu_.show(Screen::help);
-        if (pressed(Action::full_screen)) {
-            settings_.full_screen = !settings_.full_screen;
-            window_->set_full_screen(settings_.full_screen);
-        }
-        return {};
+        else if (action == Action::full_screen)
+            window_->set_full_screen(settings_.full_screen = !settings_.full_screen);
+    }
+
+    void toggle_indirect_light() {
+        indirect_ = !indirect_;
+        menu_.say(indirect_ ? "Indirect light on" : "Indirect light off: direct light only", 2.5);
     }
 
     // The simulation runs behind the title and stops while paused.
