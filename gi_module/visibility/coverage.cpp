@@ -7,6 +7,13 @@ namespace {
 
 // Blocked light must meet its blocker between these parts of its way: blockers that touch an end do not count as full.
 constexpr double earliest = 2e-4, latest = 1.0 - 2e-4;
+// But a polygon may stand on the gate's border, as a wall on the floor behind it. Both have corners in single
+// precision: by so much of their coordinates, some spacings of floats, may the gate's corners there miss it.
+constexpr double standing_share = 0x1p-21;
+
+double largest_coordinate(dvec3 point) {
+    return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+}
 
 bool is_inside(const std::vector<Plane>& body, dvec3 point) {
     return std::all_of(body.begin(), body.end(), [&](const Plane& plane) { return plane.distance(point) > -touching; });
@@ -29,22 +36,27 @@ bool covers_gate(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon
     if (length < 1e-12)
         return false;
     const dvec3 normal = area / length;
+    bool stands_before = false; // some corner; it then lies before all between them
     for (const dvec3& corner : pyramid.gate_points()) {
         const dvec3 direction = pyramid.to_light(corner);
         const double slope = glm::dot(normal, direction);
         if (std::abs(slope) < 1e-12)
             return false;
-        const double t = glm::dot(normal, polygon[0] - corner) / slope;
-        if (t < earliest || (!pyramid.parallel && t > latest))
+        const double t = glm::dot(normal, polygon[0] - corner) / slope,
+                     standing = standing_share * largest_coordinate(corner);
+        const bool touches = std::abs(t) * glm::length(direction) < standing;
+        if ((t < earliest && !touches) || (!pyramid.parallel && t > latest))
             return false;
+        stands_before = stands_before || !touches;
+        const double inside = touches ? -standing : 1e-7;
         const dvec3 point = corner + t * direction;
         for (std::size_t i = 0; i < polygon.size(); ++i) {
             const dvec3 a = polygon[i], edge = polygon[(i + 1) % polygon.size()] - a;
-            if (glm::dot(glm::cross(normal, edge), point - a) < 1e-7 * glm::length(edge))
+            if (glm::dot(glm::cross(normal, edge), point - a) < inside * glm::length(edge))
                 return false;
         }
     }
-    return true;
+    return stands_before;
 }
 
 bool crosses(const std::vector<Plane>& body, dvec3 corner, dvec3 direction, bool parallel) {

@@ -4,6 +4,7 @@
 #include "assets/test_rooms.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/visibility/visibility_database.h"
+#include "tests/support/exact_rays.h"
 
 #include "engine/raytrace/ray_scene.h"
 
@@ -71,15 +72,17 @@ inline raytrace::Ray shortened(const LightSample& sample, vec3 point) {
 }
 
 struct Agreement {
-    std::uint64_t rays = 0, wrong_none = 0, wrong_full = 0, pairs_free = 0, pairs_free_none = 0;
+    std::uint64_t rays = 0, exact_rays = 0, wrong_none = 0, wrong_full = 0, pairs_free = 0, pairs_free_none = 0;
 };
 
 // Rays from the sample to random points of the patch that it faces.
 struct RayCount {
     int facing = 0, blocked = 0;
 };
+// `certain`, if given, is asked about rays that nothing seems to block: beside a wall's foot, what is left out of a ray
+// may be where it crosses the wall.
 inline RayCount ask_rays(const raytrace::RayScene& rays, const SurfacePatch& patch, const LightSample& sample,
-                         int count, std::mt19937& random) {
+                         int count, std::mt19937& random, const ExactRays* certain = nullptr) {
     RayCount result;
     for (int i = 0; i < count; ++i) {
         const double u = double(uniform(random, 0, 1)), v = double(uniform(random, 0, 1));
@@ -88,15 +91,40 @@ inline RayCount ask_rays(const raytrace::RayScene& rays, const SurfacePatch& pat
         if (sample.kind == SampleKind::surface && dot(sample.normal, vec3(point) - sample.position) <= 1e-4f)
             continue;
         ++result.facing;
-        result.blocked += rays.occluded(shortened(sample, vec3(point)));
+        bool blocked = rays.occluded(shortened(sample, vec3(point)));
+        if (!blocked && certain != nullptr) {
+            const bool parallel = sample.kind == SampleKind::directional;
+            const dvec3 light = parallel ? point - 100.0 * dvec3(sample.normal) : dvec3(sample.position);
+            blocked = certain->meets(light, point, patch.normal, -1e-9);
+        }
+        result.blocked += blocked;
     }
     return result;
 }
 
+// For samples close to the patch's plane.
+inline void compare_with_exact_rays(const ExactRays& rays, const SurfacePatch& patch, const LightSample& sample,
+                                    PairState state, std::mt19937& random, Agreement& result) {
+    if (state == PairState::partial)
+        return;
+    for (int i = 0; i < 64; ++i) { // there are few such pairs
+        const double u = double(uniform(random, 0, 1)), v = double(uniform(random, 0, 1));
+        const dvec3 point =
+            patch.corners[0] + (patch.corners[1] - patch.corners[0]) * u + (patch.corners[3] - patch.corners[0]) * v;
+        const dvec3 light(sample.position);
+        if (sample.kind == SampleKind::surface && glm::dot(dvec3(sample.normal), point - light) <= 1e-6)
+            continue;
+        ++result.exact_rays;
+        result.wrong_none += state == PairState::none && rays.meets(light, point, patch.normal, 1e-6);
+        result.wrong_full += state == PairState::full && !rays.meets(light, point, patch.normal, -1e-9);
+    }
+}
+
 inline Agreement compare_with_rays(VisibilityWorld& world, const VisibilityDatabase& database, int rays_per_pair,
                                    std::uint32_t seed) {
-    std::mt19937 random(seed);
+    std::mt19937 random(seed), creases(seed + 1);
     Agreement result;
+    const ExactRays exact(world.registry, world.meshes);
     const auto& nodes = database.patches().nodes();
     for (std::uint32_t n = 0; n < nodes.size(); ++n) {
         const SurfacePatch& patch = nodes[n];
@@ -107,14 +135,18 @@ inline Agreement compare_with_rays(VisibilityWorld& world, const VisibilityDatab
             if (state == PairState::unlit)
                 continue;
             // Where the sample is less than a centimetre over the patch's plane, 10^-4 of its height is less than the
-            // micrometre that single precision resolves here: a ray's end may lie inside the patch itself.
+            // micrometre that single precision resolves here: a ray's end may lie inside the patch itself. Rays in
+            // double precision tell.
             const LightSample& lamp = world.samples[s];
             if (lamp.kind != SampleKind::directional &&
-                glm::dot(patch.normal, dvec3(lamp.position) - patch.corners[0]) < 0.01)
+                glm::dot(patch.normal, dvec3(lamp.position) - patch.corners[0]) < 0.01) {
+                compare_with_exact_rays(exact, patch, lamp, state, creases, result);
                 continue;
+            }
             // Many rays for one pair in eight, which decide usefulness; few for the others.
             const int count = random() % 8 == 0 ? rays_per_pair : 4;
-            const auto [facing, blocked] = ask_rays(*world.rays, patch, lamp, count, random);
+            const auto [facing, blocked] =
+                ask_rays(*world.rays, patch, lamp, count, random, state == PairState::full ? &exact : nullptr);
             result.rays += std::uint64_t(facing);
             result.wrong_none += state == PairState::none ? std::uint64_t(blocked) : 0;
             result.wrong_full += state == PairState::full ? std::uint64_t(facing - blocked) : 0;

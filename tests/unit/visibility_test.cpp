@@ -13,6 +13,7 @@ TEST(Visibility, StatesAreConservativeAndUseful) {
                                                            assets::make_two_rooms};
     if (tests::long_size())
         scenes.insert(scenes.end(), {assets::make_cornell, assets::make_area_room, assets::make_four_pillars});
+    std::uint64_t exact_rays = 0;
     for (auto make : scenes) {
         VisibilityWorld world(make);
         VisibilityDatabase database;
@@ -22,18 +23,21 @@ TEST(Visibility, StatesAreConservativeAndUseful) {
         const double useful = double(result.pairs_free_none) / double(result.pairs_free);
         const VisibilityCounters& counters = database.counters();
         std::printf(
-            "leaves %u, rays %.1f M, wrong none %llu, wrong full %llu, useful %.3f (full %llu partial %llu none "
+            "leaves %u, rays %.1f M and %llu exact ones, wrong none %llu, wrong full %llu, useful %.3f (full %llu "
+            "partial %llu none "
             "%llu unlit %llu)\n",
-            database.patches().leaves(), double(result.rays) * 1e-6, static_cast<unsigned long long>(result.wrong_none),
-            static_cast<unsigned long long>(result.wrong_full), useful, static_cast<unsigned long long>(counters.full),
-            static_cast<unsigned long long>(counters.partial), static_cast<unsigned long long>(counters.none),
-            static_cast<unsigned long long>(counters.unlit));
+            database.patches().leaves(), double(result.rays) * 1e-6, static_cast<unsigned long long>(result.exact_rays),
+            static_cast<unsigned long long>(result.wrong_none), static_cast<unsigned long long>(result.wrong_full),
+            useful, static_cast<unsigned long long>(counters.full), static_cast<unsigned long long>(counters.partial),
+            static_cast<unsigned long long>(counters.none), static_cast<unsigned long long>(counters.unlit));
         EXPECT_EQ(result.wrong_none, 0u);
         EXPECT_EQ(result.wrong_full, 0u);
         EXPECT_GE(useful, 0.6);
         EXPECT_GT(counters.full, 0u);
         EXPECT_GT(result.rays, 1000000u);
+        exact_rays += result.exact_rays;
     }
+    EXPECT_GT(exact_rays, 4000u);
 }
 
 // A lamp inside of a pillar lights the floor under it: the patch around the pillar's foot is not fully blocked, though
@@ -64,6 +68,25 @@ LightSample sample_above() {
     sample.position = vec3(0.5f, 2.0f, 0.5f);
     sample.normal = vec3(0, -1, 0);
     return sample;
+}
+
+// A wall on the border of a patch hides it from what is behind the wall, though two corners of the patch touch it.
+TEST(Visibility, AWallOnAPatchsBorderHidesAllOfIt) {
+    const auto wall_at = [](double x) { return std::vector<dvec3>{{x, 0, 0}, {x, 2, 0}, {x, 2, 1}, {x, 0, 1}}; };
+    LightSample lamp;
+    lamp.position = vec3(3.0f, 1.0f, 0.5f);
+    lamp.normal = vec3(-1, 0, 0);
+    const auto behind = pyramid_of_patch(lamp, unit_patch, dvec3(0, 1, 0));
+    ASSERT_TRUE(behind);
+    EXPECT_TRUE(covers_gate(*behind, wall_at(1.0)));
+    EXPECT_TRUE(covers_gate(*behind, wall_at(1.001)));
+    EXPECT_FALSE(covers_gate(*behind, wall_at(0.99999))); // a strip before it is lit
+    EXPECT_FALSE(covers_gate(*behind, unit_patch));       // the patch itself
+    lamp.position = vec3(0.2f, 1.0f, 0.5f);
+    lamp.normal = vec3(0, -1, 0);
+    const auto before = pyramid_of_patch(lamp, unit_patch, dvec3(0, 1, 0));
+    ASSERT_TRUE(before);
+    EXPECT_FALSE(covers_gate(*before, wall_at(1.0)));
 }
 
 // A square blocker between.
