@@ -1,7 +1,6 @@
 #include "viewer/quality.h"
 
 #include <algorithm>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,18 +19,34 @@ std::span<const QualityPreset> quality_presets() {
     return presets;
 }
 
+const gi::Settings& usual_lighting() {
+    static const gi::Settings usual = [] {
+        gi::Settings settings;
+        settings.shadow_filter = true; // without it, maps draw their texels on the walls
+        return settings;
+    }();
+    return usual;
+}
+
+std::map<std::string, std::string> unusual_lighting(const gi::Settings& settings) {
+    std::map<std::string, std::string> result;
+    for (const std::string_view name : gi::Settings::names())
+        if (std::string value = settings.get(name); value != usual_lighting().get(name))
+            result.emplace(name, std::move(value));
+    return result;
+}
+
 bool has_transfer() {
     const std::vector<std::string_view>& choices = gi::Settings::find("movers")->choices;
     return std::find(choices.begin(), choices.end(), "prt") != choices.end();
 }
 
 gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
-    gi::Settings result;
+    gi::Settings result = usual_lighting();
     result.lights = preset.light_samples;
     result.map_budget = preset.map_budget;
     result.bounces = quality <= Quality::low ? 3 : 5;
     result.shadow_map_resolution = quality <= Quality::low ? 128 : 256;
-    result.shadow_filter = true; // without it, maps draw their texels on the walls
     result.low_resolution = quality == Quality::ultra ? 1 : 2;
     result.patch_levels = 2; // houses have many small surfaces
     result.dynamic_share = 0.2f;

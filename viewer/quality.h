@@ -4,7 +4,9 @@
 
 #include "gi_module/settings.h"
 
+#include <map>
 #include <span>
+#include <string>
 
 namespace sunfleck::viewer {
 
@@ -21,6 +23,11 @@ struct QualityPreset {
 };
 // In the order of Quality.
 std::span<const QualityPreset> quality_presets();
+
+// Of a picture to look at, where neither scene nor user says otherwise: gi's defaults with filtered shadows.
+const gi::Settings& usual_lighting();
+// The values of `settings` that are not the usual ones, as scene files and presets keep them.
+std::map<std::string, std::string> unusual_lighting(const gi::Settings& settings);
 
 // Whether precomputed radiance transfer is among the techniques of this build.
 bool has_transfer();

@@ -5,6 +5,7 @@
 #include "engine/core/log.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "viewer/quality.h"
 #include "viewer/trace.h"
 #include "viewer/views.h"
 
@@ -41,8 +42,7 @@ void set_view(const std::string& name, viewer::FrameRequest& request) {
 
 // The command line's options come before what the scene file says, that before their defaults.
 Result<gi::Settings> make_settings(const RenderOptions& options, const std::map<std::string, std::string>& of_scene) {
-    gi::Settings settings;
-    settings.shadow_filter = true; // a picture to look at: without it, maps draw their texels on the walls
+    gi::Settings settings = viewer::usual_lighting();
     if (!options.statistics.empty() && gi::Settings::find("count_clamped") != nullptr)
         settings.with("count_clamped", "on");
     for (const auto& [name, value] : of_scene)

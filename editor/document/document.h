@@ -11,7 +11,7 @@
 
 #include "editor/document/history.h"
 #include "engine/io/scene_file.h"
-#include "gi_module/settings.h"
+#include "viewer/quality.h"
 
 #include <filesystem>
 #include <map>
@@ -132,7 +132,7 @@ private:
     ecs::Registry registry_;
     scene::MeshStore meshes_;
     scene::TextureStore textures_;
-    gi::Settings settings_;
+    gi::Settings settings_ = viewer::usual_lighting();
     ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr;
     std::filesystem::path path_;
     std::vector<std::string> notes_;

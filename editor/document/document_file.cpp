@@ -8,15 +8,6 @@ namespace {
 
 constexpr std::string_view scene_ending = ".scene.json";
 
-std::map<std::string, std::string> changed_settings(const gi::Settings& settings) {
-    const gi::Settings usual;
-    std::map<std::string, std::string> result;
-    for (const std::string_view name : gi::Settings::names())
-        if (settings.get(name) != usual.get(name))
-            result[std::string(name)] = settings.get(name);
-    return result;
-}
-
 } // namespace
 
 Status Document::save(const std::filesystem::path& path) {
@@ -31,7 +22,7 @@ Status Document::save(const std::filesystem::path& path) {
         return Error{"cannot save '" + path.string() + "': '" + geometry.filename().string() +
                      "' is there and belongs to something else; choose another name"};
     io::SaveOptions options;
-    options.settings = changed_settings(settings_);
+    options.settings = viewer::unusual_lighting(settings_);
     SUNFLECK_TRY(io::save_scene(path, registry_, meshes_, textures_, options));
     path_ = path;
     saved_serial_ = history_.serial();

@@ -2,6 +2,7 @@
 #include "editor/panels/panel.h"
 #include "editor/window/cost_thread.h"
 #include "editor/window/fields.h"
+#include "viewer/quality.h"
 
 #include <algorithm>
 #include <cctype>
@@ -99,7 +100,7 @@ void Lighting::part(Session& session, const gi::Settings::ConstPart& now, const 
 }
 
 void Lighting::draw(Session& session) {
-    static const gi::Settings usual;
+    const gi::Settings& usual = viewer::usual_lighting();
     const ui::Scope scope("lighting");
     ui::text_box("search", filter_, "Search settings", -9.0f * ui::unit());
     ImGui::SameLine();

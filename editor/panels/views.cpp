@@ -47,6 +47,26 @@ void lighting_views(Session& session) {
     }
 }
 
+// How light becomes the picture; of the viewport, not of the scene.
+void look(Session& session) {
+    static const viewer::PictureSettings usual;
+    ui::heading("Look");
+    if (!begin_fields("look"))
+        return;
+    for (const Field& field : viewer::PictureSettings::description().fields) {
+        FieldSource source;
+        source.field = &field;
+        source.objects = {&session.view.look};
+        source.defaults = &usual;
+        source.gesture = "Set " + readable_name(field.name);
+        source.set = [&](std::size_t, const std::string& text) {
+            return field_from_text(field, &session.view.look, text);
+        };
+        field_row(session, source);
+    }
+    end_fields();
+}
+
 void legend(const Session& session) {
     for (const gi::DebugView* view : gi::debug_views())
         if (view->name == session.view.lighting_view)
@@ -67,6 +87,7 @@ void Views::draw(Session& session) {
     ImGui::TableNextColumn();
     ui::heading("Legend");
     legend(session);
+    look(session);
     ImGui::EndTable();
 }
 

@@ -279,15 +279,10 @@ void Program::tell_scene() {
         recovery_->change(*change);
     keep_edits();
     hidden_.apply(session_->document, session_->hidden, change);
-    ViewRequest wanted;
+    ViewRequest wanted = session_->view.request();
     wanted.camera = session_->camera.view();
     wanted.width = std::uint32_t(session_->viewport_area.z * session_->view.scale);
     wanted.height = std::uint32_t(session_->viewport_area.w * session_->view.scale);
-    wanted.view = session_->view.picture;
-    wanted.lighting_view = session_->view.lighting_view;
-    wanted.show_samples = session_->view.show_samples;
-    wanted.ev100 = session_->view.ev100;
-    wanted.playing = session_->view.playing;
     wanted.read_back = session_->comparison->on();
     session_->comparison->follow(
         change,

@@ -1,6 +1,7 @@
 #include "editor/window/presets.h"
 
 #include "engine/core/file.h"
+#include "viewer/quality.h"
 
 #include <algorithm>
 #include <cctype>
@@ -30,10 +31,8 @@ Status save_preset(const std::filesystem::path& folder, const std::string& name,
     if (name.empty() || name.size() > 60 || !plain)
         return Error{"'" + name + "' cannot be a preset's name: up to 60 letters, digits, spaces, '-' and '_' are"};
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    const gi::Settings usual;
-    for (const std::string_view setting : gi::Settings::names())
-        if (settings.get(setting) != usual.get(setting))
-            json[std::string(setting)] = settings.get(setting);
+    for (const auto& [setting, value] : viewer::unusual_lighting(settings))
+        json[setting] = value;
     std::error_code code;
     std::filesystem::create_directories(folder, code);
     return write_file(folder / (name + preset_ending), json.dump(1) + "\n");
@@ -45,7 +44,7 @@ Result<gi::Settings> load_preset(const std::filesystem::path& folder, const std:
     const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
     if (!json.is_object())
         return Error{"the preset '" + path.string() + "' is damaged"};
-    gi::Settings settings;
+    gi::Settings settings = viewer::usual_lighting();
     for (const auto& [setting, value] : json.items())
         SUNFLECK_TRY(settings.set(setting, value.is_string() ? value.get<std::string>() : value.dump()));
     SUNFLECK_TRY(settings.validate());

@@ -3,6 +3,7 @@
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 #include "engine/io/scene_file.h"
+#include "viewer/quality.h"
 
 #include <algorithm>
 #include <chrono>
@@ -156,10 +157,7 @@ void Recovery::write(std::unique_ptr<Copy>& copy) {
     if (about.count == 0)
         return remove_files();
     io::SaveOptions options;
-    const gi::Settings usual;
-    for (const std::string_view name : gi::Settings::names())
-        if (copy->settings.get(name) != usual.get(name))
-            options.settings[std::string(name)] = copy->settings.get(name);
+    options.settings = viewer::unusual_lighting(copy->settings);
     const nlohmann::json json = {{"file", about.file}, {"edits", about.edits}, {"count", about.count}};
     Status status = io::save_scene(own_ / scene_name, copy->registry, copy->meshes, copy->textures, options);
     if (status)

@@ -19,6 +19,7 @@ constexpr double longest_silence = 3.0; // s: unless the picture has been old fo
 constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
 constexpr std::size_t most_pictures = 8;
+constexpr std::chrono::milliseconds light_interval{10}; // between looks at light that is being prepared
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -91,13 +92,17 @@ bool SceneThread::has_work() const {
 // What the GUI asked for becomes the thread's own. False: the thread ends.
 bool SceneThread::take_work() {
     std::unique_lock lock(mutex_);
-    if (!has_work() && !stop_ && status_.busy) {
+    if (!has_work() && !light_pending_ && !stop_ && status_.busy) {
         status_.busy = busy_ = false;
         lock.unlock();
         wake_();
         lock.lock();
     }
-    changed_.wait(lock, [this] { return stop_ || has_work(); });
+    const auto wakes = [this] { return stop_ || has_work(); };
+    if (light_pending_)
+        changed_.wait_for(lock, light_interval, wakes);
+    else
+        changed_.wait(lock, wakes);
     if (stop_)
         return false;
     status_.busy = busy_ = true;
@@ -130,9 +135,41 @@ void SceneThread::run() {
                 fail(applied.error());
                 continue;
             }
-        if (copy_ != nullptr && view_.width > 0 && view_.height > 0)
+        if (copy_ == nullptr || failed_ || view_.width == 0 || view_.height == 0)
+            continue;
+        follow_light();
+        if (frames_left_ > 0 || view_.playing)
             frame();
     }
+}
+
+// New light that is ready is in use from the next frame on.
+void SceneThread::follow_light() {
+    const Result<bool> changed = light_->advance(copy_->renderer());
+    if (!changed)
+        return fail(Error{"the lighting could not be made: " + changed.error().message});
+    if (*changed) {
+        light_is_slow_ = seconds_since(edited_) > 2.0 * patience;
+        frames_left_ = std::max(frames_left_, frames_after_edit);
+    }
+    note_light();
+}
+
+void SceneThread::note_light() {
+    const bool pending = light_->pending() || copy_->renderer().lighting().outdated();
+    bool tell = false;
+    {
+        const std::scoped_lock lock(mutex_);
+        tell = pending != light_pending_ || (pending && light_->share() > status_.share + 0.02f);
+        status_.builds += light_pending_ && !pending ? 1 : 0;
+        if (pending || light_pending_)
+            status_.building = pending;
+        if (tell)
+            status_.share = light_->share();
+        light_pending_ = pending;
+    }
+    if (tell)
+        wake_();
 }
 
 Status SceneThread::apply_change() {
@@ -141,13 +178,19 @@ Status SceneThread::apply_change() {
     if (copy_ != nullptr && !change.everything && !copy_->takes(change))
         return Error{"the scene has grown too much to be followed; rebuild the lighting"};
     if (change.everything) {
+        light_.reset();
         copy_.reset();
         step_ = 0;
         exposure_is_old_ = true;
         SUNFLECK_ASSIGN(copy_, SceneCopy::create(device_));
+        light_ = std::make_unique<viewer::LightingChanges>(device_);
+        light_is_slow_ = false;
     }
     SUNFLECK_TRY(copy_->apply(change));
     revision_ = change.revision;
+    edited_ = Clock::now();
+    if (light_pending_) // what is being prepared is of the scene before
+        light_->request(copy_->renderer().lighting().settings());
     return {};
 }
 
@@ -181,6 +224,9 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.view = view_.view;
     request.lighting_view = view_.lighting_view;
     request.show_samples = view_.show_samples;
+    request.antialiasing = view_.look.antialiasing;
+    request.glare = view_.look.glare;
+    request.keep_samples = light_is_slow_;
     request.step = step_;
     request.progress = [this](float share) { return go_on(share); };
     return request;
@@ -235,6 +281,7 @@ Status SceneThread::draw(const viewer::FrameRequest& request, ScenePicture* pict
     build_began_ = Clock::now();
     told_ = 0.0;
     SUNFLECK_TRY(renderer.update(request));
+    light_is_slow_ = light_is_slow_ || seconds_since(build_began_) > patience;
     SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
     const std::uint64_t serial = renderer.submission().serial();
     SUNFLECK_TRY(renderer.record(commands, request, copy));
@@ -256,7 +303,7 @@ Status SceneThread::expose(viewer::FrameRequest& request) {
         SUNFLECK_TRY(draw(linear, nullptr));
         SUNFLECK_ASSIGN(const io::Picture radiance, copy_->renderer().read_back());
         automatic_ev100_ = viewer::automatic_exposure(radiance);
-        exposure_is_old_ = false;
+        exposure_is_old_ = frames_left_ > 1; // of the light as it is when it has settled
     }
     request.ev100 = given.value_or(automatic_ev100_);
     return {};
@@ -272,7 +319,8 @@ Status SceneThread::draw_picture() {
     picture->revision = revision_;
     picture->number = ++number_;
     picture->step = step_;
-    picture->settled = frames_left_ <= 1 && !view_.playing;
+    note_light();
+    picture->settled = frames_left_ <= 1 && !view_.playing && !light_pending_;
     picture->ev100 = request.ev100;
     picture->frame_ms = 1e3 * seconds_since(began);
     picture->statistics = copy_->renderer().statistics();
@@ -297,7 +345,7 @@ void SceneThread::frame() {
     const Status drawn = draw_picture();
     {
         const std::scoped_lock lock(mutex_);
-        const bool was_long = std::exchange(status_.building, false);
+        const bool was_long = std::exchange(status_.building, light_pending_) && !light_pending_;
         status_.builds += was_long && drawn ? 1 : 0;
         status_.cancelled += cancelled_ ? 1 : 0;
     }
@@ -326,6 +374,7 @@ void SceneThread::fail(const Error& error) {
     {
         const std::scoped_lock lock(mutex_);
         status_.error = error.message;
+        status_.building = light_pending_ = false;
     }
     wake_();
 }

@@ -2,10 +2,15 @@
 // the pictures of the viewport. Frames are drawn only where something asks for them; where nothing changes any more,
 // the thread sleeps.
 //
+// Where light takes long to make, edits that need new light (a wall moves, another number of samples) show at once in
+// the old one, while the new one is prepared behind the frames (lighting_change.h); a further edit cancels that.
+//
 // All functions may be called from the GUI thread; none of them waits for a frame.
 #pragma once
 
 #include "editor/window/scene_copy.h"
+#include "viewer/lighting_change.h"
+#include "viewer/picture_settings.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -21,6 +26,7 @@ struct ViewRequest {
     std::uint32_t view = shared::view_final;
     std::string lighting_view; // FrameRequest::lighting_view
     bool show_samples = false;
+    viewer::PictureSettings look;
     std::optional<float> ev100; // in place of the scene's, or of what the picture asks for
     bool playing = false;       // movers move
     bool read_back = false;     // settled pictures have their pixels on the CPU, too
@@ -43,7 +49,7 @@ struct ScenePicture {
 // What the thread does, for the status bar and --report.
 struct SceneStatus {
     bool busy = false;     // it draws, or has something to draw
-    bool building = false; // lighting that takes long
+    bool building = false; // lighting that takes long, in a frame or behind the frames
     float share = 0.0f;    // of that, done
     std::string error;     // why there is no picture; empty: there is
     std::uint64_t frames = 0, builds = 0, cancelled = 0;
@@ -85,6 +91,8 @@ private:
     Result<std::shared_ptr<ScenePicture>> free_picture();
     void publish(std::shared_ptr<ScenePicture> picture);
     void fail(const Error& error);
+    void follow_light();
+    void note_light();
 
     gpu::Device& device_;
     const std::function<void()> wake_;
@@ -101,7 +109,9 @@ private:
     std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false};
     // Of the thread alone.
     std::unique_ptr<SceneCopy> copy_;
-    SceneChange change_; // not applied yet
+    std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
+    bool light_pending_ = false;                     // the picture has not got all of its light yet
+    SceneChange change_;                             // not applied yet
     ViewRequest view_;
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
     std::chrono::steady_clock::time_point build_began_, last_frame_;
@@ -109,6 +119,9 @@ private:
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
     bool failed_ = false, exposure_is_old_ = true;
+    // Light of its scene takes so long to make that it is made behind the frames; else the frame makes it.
+    bool light_is_slow_ = false;
+    std::chrono::steady_clock::time_point edited_;
     std::atomic<bool> cancelled_{false};
     double told_ = 0.0; // s after the build began
     float automatic_ev100_ = 0.0f;

@@ -4,6 +4,7 @@
 #include "editor/window/comparison.h"
 #include "editor/window/cost_thread.h"
 #include "editor/window/opening.h"
+#include "viewer/quality.h"
 #include "viewer/scene_renderer.h"
 
 #include <algorithm>
@@ -25,6 +26,17 @@ bool Messages::check(const Status& status) {
     if (!status)
         say(status.error().message, Message::Kind::error);
     return bool(status);
+}
+
+ViewRequest ViewOptions::request() const {
+    ViewRequest result;
+    result.view = picture;
+    result.lighting_view = lighting_view;
+    result.show_samples = show_samples;
+    result.look = look;
+    result.ev100 = ev100;
+    result.playing = playing;
+    return result;
 }
 
 Session::Session(app::Window& the_window, SceneThread& the_scene)
@@ -67,7 +79,7 @@ void Session::measure_cost(const std::string& setting) {
     HiddenFilter::hide(hidden, everything);
     everything.settings = document->settings();
     gi::Settings usual = document->settings();
-    if (messages.check(usual.set(setting, gi::Settings().get(setting))) && messages.check(usual.validate()))
+    if (messages.check(usual.set(setting, viewer::usual_lighting().get(setting))) && messages.check(usual.validate()))
         cost->measure(std::move(everything), setting, usual, shown);
 }
 

@@ -46,8 +46,12 @@ struct ViewOptions {
     std::uint32_t picture = shared::view_final;
     bool show_samples = false, show_grid = false, show_icons = true;
     float scale = 1.0f; // rendered pixels for each of the screen's, along a side
+    viewer::PictureSettings look;
     std::optional<float> ev100;
     bool playing = false;
+
+    // The same for the scene thread, without camera and size.
+    ViewRequest request() const;
 };
 
 enum class GizmoMode { none, move, rotate, scale };

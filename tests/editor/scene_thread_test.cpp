@@ -1,0 +1,143 @@
+// What the viewport shows: the picture that `sunfleck render` draws of the saved file, and, after edits that light
+// follows behind the frames, that of a start with the edited scene.
+#include "editor/window/scene_thread.h"
+
+#include "engine/io/image.h"
+#include "test_places.h"
+#include "tests/editor/random_edits.h"
+#include "tests/support/gpu_world.h"
+#include "tests/support/run_tool.h"
+#include "tests/support/test_size.h"
+
+#include <chrono>
+
+namespace sunfleck::editor {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::by_size;
+using Clock = std::chrono::steady_clock;
+using Picture = std::shared_ptr<const ScenePicture>;
+
+constexpr std::uint32_t width = 96, height = 64;
+constexpr const char* camera_text = "0,1,4,0,1,0,40"; // of the scene below
+
+class EditorScene : public tests::GpuTest {
+protected:
+    EditorScene() : folder_(fs::path(testing::TempDir()) / ("editor_scene_" + std::to_string(getpid()))) {
+        fs::create_directories(folder_);
+    }
+    ~EditorScene() override { fs::remove_all(folder_); }
+
+    // A room with two blocks under a lamp.
+    static std::shared_ptr<Document> open_scene() {
+        auto opened = Document::open(fs::path(SUNFLECK_TOOL).parent_path() / "../scenes/cornell.scene.json");
+        EXPECT_TRUE(opened);
+        return opened ? std::shared_ptr<Document>(std::move(opened).value()) : nullptr;
+    }
+    static ViewRequest view(Document& document) {
+        ViewRequest request;
+        request.width = width;
+        request.height = height;
+        request.read_back = true;
+        const Bounds anywhere{vec3(-1.0f), vec3(1.0f)};
+        request.camera = viewer::find_camera(document.registry(), anywhere, camera_text).value();
+        return request;
+    }
+    // Null if `wanted` does not come about.
+    static Picture wait_for(const SceneThread& scene, const std::function<bool(const ScenePicture&)>& wanted) {
+        for (const auto end = Clock::now() + std::chrono::seconds(120); Clock::now() < end;) {
+            if (Picture picture = scene.picture(); picture != nullptr && wanted(*picture))
+                return picture;
+            if (const std::string error = scene.status().error; !error.empty()) {
+                ADD_FAILURE() << error;
+                return nullptr;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        ADD_FAILURE() << "no such picture within two minutes";
+        return nullptr;
+    }
+    static Picture settled(const SceneThread& scene, const Document& document) {
+        return wait_for(scene, [&](const ScenePicture& picture) {
+            return picture.settled && picture.pixels != nullptr && picture.revision == document.revision();
+        });
+    }
+    static Picture from_nothing(const std::shared_ptr<Document>& document) {
+        SceneThread scene(tests::device(), [] {});
+        scene.change(ChangeCollector::everything(document));
+        scene.show(view(*document));
+        return settled(scene, *document);
+    }
+    static std::size_t differing(const io::Picture& a, const io::Picture& b) {
+        std::size_t count = a.pixels.size() == b.pixels.size() ? 0 : 1;
+        for (std::size_t i = 0; i < std::min(a.pixels.size(), b.pixels.size()); ++i)
+            count += vec3(a.pixels[i]) != vec3(b.pixels[i]) ? 1 : 0;
+        return count;
+    }
+    fs::path folder_;
+};
+
+TEST_F(EditorScene, ShowsWhatRenderDraws) {
+    for (std::uint32_t seed = 1; seed <= by_size(3u, 200u); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const std::shared_ptr<Document> document = open_scene();
+        ASSERT_NE(document, nullptr);
+        tests::RandomEdits edits(*document, seed);
+        for (std::uint32_t left = edits.below(12); left > 0; --left)
+            edits.once();
+        const fs::path file = folder_ / "edited.scene.json", drawn = folder_ / "drawn.png";
+        ASSERT_TRUE(document->save(file));
+        const Picture shown = from_nothing(document);
+        ASSERT_NE(shown, nullptr);
+        const tests::Outcome outcome = tests::shell(std::string(SUNFLECK_TOOL) + " render " + file.string() + " -o " +
+                                                    drawn.string() + " --size " + std::to_string(width) + "x" +
+                                                    std::to_string(height) + " --camera=" + camera_text);
+        ASSERT_EQ(outcome.status, 0) << outcome.output;
+        // Both by way of a file: what is read from one is no longer the bytes of the picture.
+        ASSERT_TRUE(io::write_picture(folder_ / "shown.png", *shown->pixels));
+        const auto wanted = io::read_picture(drawn), found = io::read_picture(folder_ / "shown.png");
+        ASSERT_TRUE(wanted && found);
+        EXPECT_EQ(differing(*found, *wanted), 0u);
+    }
+}
+
+// With so many samples that light is made behind the frames.
+TEST_F(EditorScene, LightFollowsBehindTheFrames) {
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    ASSERT_TRUE(edit_setting(*document, "lights", "800"));
+    SceneThread scene(tests::device(), [] {});
+    ChangeCollector collector;
+    scene.change(*collector.collect(document));
+    scene.show(view(*document));
+    const Picture before = settled(scene, *document);
+    ASSERT_NE(before, nullptr);
+    const std::uint64_t builds = scene.status().builds;
+    if (builds == 0)
+        GTEST_SKIP() << "this machine makes the light within a frame";
+
+    // Three edits of something static, the last two in quick succession.
+    ecs::PoolBase& transforms = pool_of<scene::Transform>(*document);
+    const Entity block = document->find("short block");
+    ASSERT_TRUE(document->exists(block));
+    for (const char* place : {"0.4,0.3,0.6", "0.1,0.3,0.6", "-0.2,0.3,0.5"}) {
+        ASSERT_TRUE(edit_field(*document, {block}, transforms, transforms.description()->fields[0], place));
+        scene.change(*collector.collect(document));
+        const Picture first =
+            wait_for(scene, [&](const ScenePicture& picture) { return picture.revision == document->revision(); });
+        ASSERT_NE(first, nullptr);
+        EXPECT_FALSE(first->settled) << "shown at once, in the old light";
+        EXPECT_LT(first->frame_ms, before->frame_ms + 1e3) << "and not after the new light";
+    }
+    const Picture after = settled(scene, *document);
+    ASSERT_NE(after, nullptr);
+    EXPECT_EQ(scene.status().builds, builds + 1) << "edits cancelled what they made useless";
+    const Picture fresh = from_nothing(document);
+    ASSERT_NE(fresh, nullptr);
+    EXPECT_EQ(differing(*after->pixels, *fresh->pixels), 0u);
+    EXPECT_GT(differing(*after->pixels, *before->pixels), width * height / 100u);
+}
+
+} // namespace
+} // namespace sunfleck::editor
