@@ -1,5 +1,5 @@
 // sunfleck bench: named experiments. Times are medians over repeats; compare speeds only as ratios within one run.
-#include "editor/command_line/bench_runner.h"
+#include "editor/command_line/thesis_experiments.h"
 
 #include "engine/core/file.h"
 #include "engine/core/output.h"
@@ -41,6 +41,21 @@ Status check_techniques(const std::string& suite) {
     return {};
 }
 
+// The thesis's experiments have scenes of their own; of those that take times in all of them, one scene may be chosen.
+Status check_scene(const BenchOptions& options) {
+    const bool times = options.part == "ratios" || options.part == "first_frames";
+    if (options.suite == "thesis" && !times)
+        return Error{"--scene: of the suite 'thesis' only the parts ratios and first_frames take one"};
+    if (options.suite == "thesis" && thesis_cameras.count(options.scene) == 0)
+        return Error{"--scene: '" + options.scene +
+                     "' is none of the thesis's scenes (area_room, table_room, four_pillars)"};
+    if (options.suite == "brute_force" || options.suite == "shadow_maps" || options.suite == "reference")
+        return Error{"--scene: the suite '" + options.suite +
+                     "' has scenes of its own (only kernel, convergence, picture and thesis take one)"};
+    SUNFLECK_TRY(find_scene(options.scene));
+    return {};
+}
+
 Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& plot) {
     if (plot.empty())
         return Error{"--plot: this part of the suite '" + options.suite + "' has no plot"};
@@ -56,12 +71,8 @@ Status bench(const BenchOptions& options) {
     SUNFLECK_TRY(check_techniques(options.suite));
     if (!options.part.empty() && options.suite != "thesis")
         return Error{"--part: only the suite 'thesis' has parts"};
-    if (!options.scene.empty() && options.suite != "kernel" && options.suite != "convergence" &&
-        options.suite != "picture")
-        return Error{"--scene: the suite '" + options.suite +
-                     "' has scenes of its own (only kernel, convergence and picture take one)"};
     if (!options.scene.empty())
-        SUNFLECK_TRY(find_scene(options.scene));
+        SUNFLECK_TRY(check_scene(options));
     if (!options.plot.empty() && options.suite != "convergence" && options.suite != "thesis")
         return Error{"--plot: the suite '" + options.suite + "' has no plot (only convergence and thesis have)"};
     const NamedFile outputs[] = {{"--csv", options.csv}, {"--plot", options.plot}};

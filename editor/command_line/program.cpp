@@ -212,7 +212,7 @@ Command make_bench_command(CLI::App& program) {
     viewer::add_whole(*app, "--repeat", options->repeat, 1, 1000, "Measurements of each row");
     viewer::add_whole(*app, "--turns", options->turns, 1, 1000, "Turns of those whose ratios are taken (thesis)");
     viewer::add_name(*app, "--scene", options->scene,
-                     "Scene, where the suite takes one (kernel, convergence, picture)");
+                     "Scene, where the suite takes one (kernel, convergence, picture, thesis)");
     viewer::add_choice(*app, "--part", options->part, thesis_parts(), "One experiment of the thesis");
     viewer::add_name(*app, "--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options, run_gate] {

@@ -145,18 +145,24 @@ Status first_frames(Experiment& experiment, const std::string& scene) {
     return {};
 }
 
+bool is_chosen(const Experiment& experiment, const std::string& scene) {
+    return experiment.options.scene.empty() || experiment.options.scene == scene;
+}
+
 } // namespace
 
 Status time_ratios(Experiment& experiment) {
     for (const std::string& scene : thesis_scenes)
         for (const std::string& camera : thesis_cameras.at(scene))
-            SUNFLECK_TRY(ratios(experiment, scene, camera, 300));
-    return ratios(experiment, "four_pillars", "bench_1", 1024);
+            if (is_chosen(experiment, scene))
+                SUNFLECK_TRY(ratios(experiment, scene, camera, 300));
+    return is_chosen(experiment, "four_pillars") ? ratios(experiment, "four_pillars", "bench_1", 1024) : Status{};
 }
 
 Status time_first_frames(Experiment& experiment) {
     for (const std::string& scene : thesis_scenes)
-        SUNFLECK_TRY(first_frames(experiment, scene));
+        if (is_chosen(experiment, scene))
+            SUNFLECK_TRY(first_frames(experiment, scene));
     return {};
 }
 

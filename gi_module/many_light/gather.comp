@@ -53,17 +53,20 @@ NodeRow node_row_at(uint i) {
 }
 
 uint find_node(SurfaceInstance instance, vec3 position, vec3 geometric_normal) {
-    uint found = no_node;
-    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && found == no_node; ++i)
-        found = on_chart(chart_plane_at(i), position, geometric_normal) ? i : no_node;
-    if (found == no_node)
-        return box_node(instance, position);
-    SurfaceChart chart = chart_plane_at(found);
-    const uvec4 grid = texelFetch(charts, int(found) * 4 + 3);
-    chart.first_cell = grid.x;
-    chart.columns = grid.y;
-    chart.rows = grid.z;
-    return texelFetch(cells, int(chart_cell(chart, position))).r;
+    bool found = false;
+    SurfaceChart chart;
+    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && !found; ++i) {
+        chart = chart_plane_at(i);
+        if (!on_chart(chart, position, geometric_normal))
+            continue;
+        const uvec4 grid = texelFetch(charts, int(i) * 4 + 3);
+        chart.first_cell = grid.x;
+        chart.columns = grid.y;
+        chart.rows = grid.z;
+        chart.cut_sides = grid.w;
+        found = !beyond_cut(chart, position);
+    }
+    return found ? texelFetch(cells, int(chart_cell(chart, position))).r : box_node(instance, position);
 }
 
 // Position in a patch's grid of texels.

@@ -253,6 +253,19 @@ bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
         from, along, [](const Node&) { return true; }, [](std::uint32_t) { return true; });
 }
 
+void StaticBlockers::visit_polygons(const Bounds& bounds, const std::function<void(const Polygon&)>& visit) const {
+    const auto is_near = [&](const Bounds& other) {
+        return glm::all(glm::lessThanEqual(other.minimum, bounds.maximum)) &&
+               glm::all(glm::lessThanEqual(bounds.minimum, other.maximum));
+    };
+    visit_leaves([&](const Node& node) { return is_near(node.bounds); },
+                 [&](std::uint32_t polygon) {
+                     if (!porous_[polygon] && is_near(bounds_[polygon]))
+                         visit(polygons_[polygon]);
+                     return false;
+                 });
+}
+
 // What takes all light takes that to the middle of the gate.
 bool StaticBlockers::covers(const OcclusionPyramid& pyramid) const {
     if (pyramid.gate_count == 0)

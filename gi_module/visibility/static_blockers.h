@@ -3,6 +3,8 @@
 
 #include "gi_module/visibility/coverage.h"
 
+#include <functional>
+
 namespace sunfleck::gi {
 
 // All static geometry: a tree of polygons.
@@ -24,6 +26,8 @@ public:
     bool covers(const OcclusionPyramid& pyramid) const;
     // Whether anything crosses the segment from `from` to `from + along`.
     bool crosses_segment(dvec3 from, dvec3 along) const;
+    // Calls `visit` with all polygons near a box that are not porous.
+    void visit_polygons(const Bounds& bounds, const std::function<void(const Polygon&)>& visit) const;
     std::size_t polygons() const { return polygons_.size(); }
 
 private:

@@ -25,8 +25,13 @@ struct SurfaceChart {
     uint first_cell;
     uint columns; // of cells
     uint rows;
-    uint unused;
+    uint cut_sides; // where the surface goes on as another chart: chart_cut_low_u and the like
 };
+
+SHARED_CONSTANT uint chart_cut_low_u = 1u;
+SHARED_CONSTANT uint chart_cut_high_u = 2u;
+SHARED_CONSTANT uint chart_cut_low_v = 4u;
+SHARED_CONSTANT uint chart_cut_high_v = 8u;
 
 // State of a pair of node and sample in a visibility row, two bits each, sixteen pairs per word.
 SHARED_CONSTANT uint pair_full = 0u;    // blocked: no light arrives
@@ -39,6 +44,7 @@ SHARED_CONSTANT uint pairs_per_word = 16u;
 SHARED_CONSTANT float chart_distance = 2e-3f; // m, from the chart's plane
 SHARED_CONSTANT float chart_cosine = 0.999f;
 SHARED_CONSTANT float chart_margin = 1e-3f; // beyond the border, as a fraction of the chart's sides
+SHARED_CONSTANT float cut_margin = 1e-6f;   // the same where another chart begins: what rounding may leave between them
 
 // Whether a point with this geometric normal lies on the chart.
 SHARED_FUNCTION bool on_chart(SurfaceChart chart, vec3 position, vec3 geometric_normal) {
@@ -47,6 +53,16 @@ SHARED_FUNCTION bool on_chart(SurfaceChart chart, vec3 position, vec3 geometric_
     return dot(vec3(chart.plane), geometric_normal) > chart_cosine &&
            abs(dot(vec3(chart.plane), position) + chart.plane.w) < chart_distance &&
            abs(u - 0.5f) < 0.5f + chart_margin && abs(v - 0.5f) < 0.5f + chart_margin;
+}
+
+// Whether a point on the chart, or in its margin, lies beyond a side where another chart begins.
+SHARED_FUNCTION bool beyond_cut(SurfaceChart chart, vec3 position) {
+    float u = dot(vec3(chart.u_axis), position) + chart.u_axis.w;
+    float v = dot(vec3(chart.v_axis), position) + chart.v_axis.w;
+    return ((chart.cut_sides & chart_cut_low_u) != 0u && u < -cut_margin) ||
+           ((chart.cut_sides & chart_cut_high_u) != 0u && u > 1.0f + cut_margin) ||
+           ((chart.cut_sides & chart_cut_low_v) != 0u && v < -cut_margin) ||
+           ((chart.cut_sides & chart_cut_high_v) != 0u && v > 1.0f + cut_margin);
 }
 
 // The cell of a point on the chart; the point is clamped to the chart.
@@ -69,8 +85,9 @@ SHARED_FUNCTION uint box_node(SurfaceInstance instance, vec3 position) {
 inline uint find_node(const SurfaceInstance& instance, const SurfaceChart* charts, const uint* cells, vec3 position,
                       vec3 geometric_normal) {
     for (uint i = 0; i < instance.chart_count; ++i)
-        if (on_chart(charts[instance.first_chart + i], position, geometric_normal))
-            return cells[chart_cell(charts[instance.first_chart + i], position)];
+        if (const SurfaceChart& chart = charts[instance.first_chart + i];
+            on_chart(chart, position, geometric_normal) && !beyond_cut(chart, position))
+            return cells[chart_cell(chart, position)];
     return box_node(instance, position);
 }
 #endif

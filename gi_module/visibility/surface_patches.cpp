@@ -11,7 +11,8 @@ constexpr std::size_t charts_per_instance = 64;
 constexpr double octants_from = 0.5; // m: boxes larger than this are divided in eight
 
 // The rectangle of least area around the face that has a side along one of the outline's edges.
-void enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 normal, Chart& chart) {
+ChartRectangle enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 normal) {
+    ChartRectangle chart;
     std::vector<dvec3> points;
     for (const std::uint32_t t : face.triangles)
         for (int k = 0; k < 3; ++k)
@@ -42,6 +43,7 @@ void enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 normal, Chart& 
             chart.v = v * (high_v - low_v);
         }
     chart.normal = normal;
+    return chart;
 }
 
 shared::SurfaceChart row_of(const Chart& chart) {
@@ -56,7 +58,33 @@ shared::SurfaceChart row_of(const Chart& chart) {
     row.first_cell = chart.first_cell;
     row.columns = chart.columns();
     row.rows = chart.rows();
+    row.cut_sides = chart.cut_sides;
     return row;
+}
+
+// Its parts between cuts.
+std::vector<Chart> cut(const ChartRectangle& whole, const ChartCuts& cuts, ecs::Entity entity) {
+    std::vector<double> us = cuts.across_u, vs = cuts.across_v;
+    for (std::vector<double>* places : {&us, &vs}) {
+        places->insert(places->begin(), 0.0);
+        places->push_back(1.0);
+    }
+    std::vector<Chart> parts;
+    parts.reserve((us.size() - 1) * (vs.size() - 1));
+    for (std::size_t row = 0; row + 1 < vs.size(); ++row)
+        for (std::size_t column = 0; column + 1 < us.size(); ++column) {
+            Chart part;
+            part.entity = entity;
+            part.normal = whole.normal;
+            part.origin = whole.origin + whole.u * us[column] + whole.v * vs[row];
+            part.u = whole.u * (us[column + 1] - us[column]);
+            part.v = whole.v * (vs[row + 1] - vs[row]);
+            part.cut_sides =
+                (column > 0 ? shared::chart_cut_low_u : 0u) | (column + 2 < us.size() ? shared::chart_cut_high_u : 0u) |
+                (row > 0 ? shared::chart_cut_low_v : 0u) | (row + 2 < vs.size() ? shared::chart_cut_high_v : 0u);
+            parts.push_back(part);
+        }
+    return parts;
 }
 
 } // namespace
@@ -65,6 +93,7 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
                            StaticBlockers& blockers) {
     *this = {};
     space_ = options.space;
+    std::vector<Surface> surfaces;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
             if (instance.mesh >= meshes.size() || !scene::is_static(registry, entity))
@@ -75,42 +104,61 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
             const scene::Material* material = registry.try_get<scene::Material>(entity);
             const std::uint32_t body =
                 blockers.add(flat, material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
-            add_instance(entity, flat, body, options);
+            surfaces.push_back(surface_of(entity, flat, body));
         });
     blockers.build();
+    for (const Surface& surface : surfaces)
+        add_surface(surface, blockers, options);
     roots_ = std::uint32_t(nodes_.size());
 }
 
-void SurfacePatches::add_instance(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body,
-                                  const PatchOptions& options) {
-    shared::SurfaceInstance instance{};
-    instance.first_chart = std::uint32_t(charts_.size());
-    instance.first_box_node = shared::no_node;
+SurfacePatches::Surface SurfacePatches::surface_of(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body) {
+    Surface surface;
+    surface.entity = entity;
+    surface.body = body;
+    surface.closed = mesh.closed;
     double charted = 0.0;
     for (const PlanarFace& face : mesh.faces) {
         if (face.area < chart_share * mesh.area && face.area < chart_area)
             continue;
-        if (charts_.size() - instance.first_chart + 2 > charts_per_instance)
+        if (surface.rectangles.size() + 2 > charts_per_instance)
             break;
-        add_chart(entity, mesh, face, false, options);
-        if (!mesh.closed) // a sheet can be seen from behind
-            add_chart(entity, mesh, face, true, options);
+        for (const bool reversed : {false, true}) {
+            if (reversed && mesh.closed) // a sheet can be seen from behind
+                continue;
+            const ChartRectangle rectangle = enclose(mesh, face, reversed ? -face.normal : face.normal);
+            if (glm::length(rectangle.u) > 1e-6 && glm::length(rectangle.v) > 1e-6)
+                surface.rectangles.push_back(rectangle);
+        }
         charted += face.area;
     }
-    instance.chart_count = std::uint32_t(charts_.size()) - instance.first_chart;
     if (charted < mesh.area * (1.0 - 1e-6))
-        add_boxes(entity, mesh, body, instance);
-    instances_[entity] = {instance, mesh.closed};
+        for (const dvec3& position : mesh.positions)
+            surface.bounds.add(vec3(position));
+    return surface;
 }
 
-void SurfacePatches::add_chart(ecs::Entity entity, const FlatMesh& mesh, const PlanarFace& face, bool reversed,
-                               const PatchOptions& options) {
-    Chart chart;
-    chart.entity = entity;
-    enclose(mesh, face, reversed ? -face.normal : face.normal, chart);
+void SurfacePatches::add_surface(const Surface& surface, const StaticBlockers& blockers, const PatchOptions& options) {
+    shared::SurfaceInstance instance{};
+    instance.first_chart = std::uint32_t(charts_.size());
+    instance.first_box_node = shared::no_node;
+    std::size_t left = charts_per_instance - surface.rectangles.size(); // for further parts
+    for (const ChartRectangle& rectangle : surface.rectangles) {
+        const ChartCuts cuts = find_chart_cuts(rectangle, blockers, double(options.smallest));
+        const std::size_t more = (cuts.across_u.size() + 1) * (cuts.across_v.size() + 1) - 1;
+        const bool fits = more <= left;
+        left -= fits ? more : 0;
+        for (const Chart& part : cut(rectangle, fits ? cuts : ChartCuts{}, surface.entity))
+            add_chart(part, options);
+    }
+    instance.chart_count = std::uint32_t(charts_.size()) - instance.first_chart;
+    if (!surface.bounds.empty())
+        add_boxes(surface, instance);
+    instances_[surface.entity] = {instance, surface.closed};
+}
+
+void SurfacePatches::add_chart(Chart chart, const PatchOptions& options) {
     const double width = glm::length(chart.u), height = glm::length(chart.v);
-    if (!(width > 1e-6) || !(height > 1e-6))
-        return;
     chart.root_columns = std::uint32_t(std::clamp(std::lround(width / height), 1l, 8l));
     chart.root_rows = std::uint32_t(std::clamp(std::lround(height / width), 1l, 8l));
     const double side = std::min(width / chart.root_columns, height / chart.root_rows);
@@ -141,11 +189,8 @@ SurfacePatch SurfacePatches::patch_of(const Chart& chart, std::uint32_t chart_in
     return patch;
 }
 
-void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body,
-                               shared::SurfaceInstance& instance) {
-    Bounds bounds;
-    for (const dvec3& position : mesh.positions)
-        bounds.add(vec3(position));
+void SurfacePatches::add_boxes(const Surface& surface, shared::SurfaceInstance& instance) {
+    Bounds bounds = surface.bounds;
     bounds.minimum -= vec3(1e-4f);
     bounds.maximum += vec3(1e-4f);
     const vec3 centre = bounds.centre();
@@ -158,10 +203,10 @@ void SurfacePatches::add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::ui
             ((octant >> axis) & 1 ? part.minimum : part.maximum)[axis] = centre[axis];
         SurfacePatch patch;
         patch.planar = false;
-        patch.body = body;
+        patch.body = surface.body;
         patch.box = OrientedBox::of(part);
         patch.bounds = part;
-        patch.entity = entity;
+        patch.entity = surface.entity;
         nodes_.push_back(patch);
     }
 }

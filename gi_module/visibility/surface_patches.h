@@ -7,7 +7,7 @@
 #include "engine/ecs/registry.h"
 #include "engine/scene/components.h"
 #include "engine/scene/scene_space.h"
-#include "gi_module/visibility/static_blockers.h"
+#include "gi_module/visibility/chart_cuts.h"
 #include "gi_module/visibility/surface_lookup_shared.h"
 
 #include <unordered_map>
@@ -32,10 +32,9 @@ struct SurfacePatch {
     bool is_leaf() const { return first_child == shared::no_node; }
 };
 
-struct Chart {
+struct Chart : ChartRectangle {
     ecs::Entity entity;
-    dvec3 origin{0.0}, u{0.0}, v{0.0}; // corner and edges, m
-    dvec3 normal{0.0};
+    std::uint32_t cut_sides = 0; // shared::chart_cut_low_u and the like
     std::uint32_t root_columns = 1, root_rows = 1, first_root = 0;
     std::uint32_t levels = 0; // of subdivision at most
     std::uint32_t first_cell = 0;
@@ -80,10 +79,18 @@ public:
     std::uint32_t node_at(ecs::Entity entity, vec3 position, vec3 geometric_normal) const;
 
 private:
-    void add_instance(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body, const PatchOptions& options);
-    void add_chart(ecs::Entity entity, const FlatMesh& mesh, const PlanarFace& face, bool reversed,
-                   const PatchOptions& options);
-    void add_boxes(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body, shared::SurfaceInstance& instance);
+    // What an instance's charts and boxes are made from, once all that may stand on them is known.
+    struct Surface {
+        ecs::Entity entity;
+        std::vector<ChartRectangle> rectangles;
+        Bounds bounds; // empty if charts are all of it
+        std::uint32_t body = StaticBlockers::no_body;
+        bool closed = false;
+    };
+    static Surface surface_of(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body);
+    void add_surface(const Surface& surface, const StaticBlockers& blockers, const PatchOptions& options);
+    void add_chart(Chart chart, const PatchOptions& options);
+    void add_boxes(const Surface& surface, shared::SurfaceInstance& instance);
     SurfacePatch patch_of(const Chart& chart, std::uint32_t chart_index, vec4 place) const;
 
     std::vector<SurfacePatch> nodes_;

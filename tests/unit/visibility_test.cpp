@@ -146,6 +146,41 @@ TEST(Visibility, DistanceFromAShadowCone) {
     }
 }
 
+// A floor of two rooms is divided at the wall between them, and each side finds its own part, right up to it.
+TEST(SurfacePatches, AreDividedWhereWallsStand) {
+    VisibilityWorld world([](assets::SceneBuilder& s) {
+        const scene::Material white = assets::diffuse(vec3(0.7f));
+        s.quad("floor", vec3(-3, 0, -2), vec3(0, 0, 4), vec3(5, 0, 0), white);
+        s.box("wall", vec3(-0.005f, 0, -2), vec3(0.005f, 2.5f, 0.5f), white);   // a doorway beside it
+        s.box("cupboard", vec3(-2, 0, -0.8f), vec3(-1.2f, 1.8f, 0.5f), white);  // divides no rooms
+        s.quad("sill", vec3(1, 0, -2), vec3(0, 0.1f, 0), vec3(0, 0, 4), white); // too low for a wall
+        s.ceiling_light("lamp", vec3(-1, 2.4f, 0), 0.5f, 0.5f, vec3(4.0f));
+    });
+    VisibilityDatabase database;
+    database.build(world.registry, world.meshes, world.samples, {});
+    const SurfacePatches& patches = database.patches();
+    ecs::Entity floor;
+    int parts = 0;
+    for (const Chart& chart : patches.charts())
+        if (chart.normal.y > 0.99 && chart.origin.y == 0.0 && glm::length(chart.u) * glm::length(chart.v) > 5.0) {
+            floor = chart.entity;
+            const double middle = (chart.origin + 0.5 * (chart.u + chart.v)).x;
+            const double half = 0.5 * (std::abs(chart.u.x) + std::abs(chart.v.x));
+            EXPECT_NEAR(std::abs(middle), half, 1e-9); // from the wall's middle to one end
+            ++parts;
+        }
+    EXPECT_EQ(parts, 2);
+    for (const float z : {-1.5f, 0.0f, 1.5f}) {
+        const auto node = [&](float x) { return patches.node_at(floor, vec3(x, 0, z), vec3(0, 1, 0)); };
+        const float close = 1e-4f;
+        ASSERT_NE(node(-close), shared::no_node);
+        ASSERT_NE(node(close), shared::no_node);
+        EXPECT_LE(patches.nodes()[node(-close)].bounds.maximum.x, 1e-6f);
+        EXPECT_GE(patches.nodes()[node(close)].bounds.minimum.x, -1e-6f);
+        EXPECT_NE(node(0.0f), shared::no_node);
+    }
+}
+
 TEST(SurfacePatches, EveryPointOfAWallFindsItsLeaf) {
     VisibilityWorld world(assets::make_area_room);
     VisibilityDatabase database;

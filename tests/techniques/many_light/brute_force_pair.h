@@ -54,22 +54,28 @@ struct Pair {
 
 struct Difference {
     double mean = 0, beyond_8 = 0, largest = 0, mean_brightness = 0;
+    double worst_block = 0; // mean of 32x32 pixels
 };
 
 inline Difference compare(Pair& pair) {
     const io::Picture a = pair.many.renderer->read_back().value(), b = pair.brute.renderer->read_back().value();
     Difference result;
     double pixels = 0;
+    const std::size_t columns = a.width / 32;
+    std::vector<double> blocks(columns * (a.height / 32), 0.0);
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         if (a.pixels[i].a != b.pixels[i].a)
             result.largest = 1e9;
-        double largest = 0;
+        double largest = 0, mean = 0;
         for (int c = 0; c < 3; ++c) {
             const double d = std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c]));
             largest = std::max(largest, d);
-            result.mean += d / 3.0;
+            mean += d / 3.0;
             result.mean_brightness += double(b.pixels[i][c]) / 3.0;
         }
+        result.mean += mean;
+        if (const std::size_t x = i % a.width / 32, y = i / a.width / 32; x < columns && y < a.height / 32)
+            blocks[y * columns + x] += mean / 1024.0;
         result.largest = std::max(result.largest, largest);
         result.beyond_8 += largest > 8.0 / 255.0;
         pixels += 1;
@@ -77,6 +83,7 @@ inline Difference compare(Pair& pair) {
     result.mean /= pixels;
     result.beyond_8 /= pixels;
     result.mean_brightness /= pixels;
+    result.worst_block = blocks.empty() ? 0.0 : *std::max_element(blocks.begin(), blocks.end());
     return result;
 }
 
