@@ -5,6 +5,7 @@
 #include "engine/core/stop_signals.h"
 #include "engine/simulation/path_movers.h"
 #include "engine/statistics/summary.h"
+#include "game_demo/game/solution.h"
 #include "game_demo/hitch_log.h"
 #include "game_demo/level.h"
 #include "game_demo/options.h"
@@ -86,10 +87,14 @@ public:
     }
 
     Status run(Level& level) {
+        if (recorded_.empty() && Solution::exists(level.game()))
+            solution_ = std::make_unique<Solution>(level.game());
         viewer::Progress progress("playing");
         for (std::uint32_t frame = 0; frame < frames_; ++frame) {
             for (std::uint32_t k = 0; k < stride_; ++k)
                 step(level);
+            if (level.game().has_sensors())
+                times_.cpu["light sensors"].push_back(level.take_sensor_milliseconds());
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
@@ -138,7 +143,9 @@ private:
 
     void step(Level& level) {
         simulation::StepInput input;
-        if (recorded_.empty())
+        if (solution_)
+            input = solution_->next();
+        else if (recorded_.empty())
             input = walk_.next(level.simulation());
         else if (level.simulation().steps() < recorded_.size())
             input = recorded_[level.simulation().steps()];
@@ -151,6 +158,7 @@ private:
     std::vector<simulation::StepInput> recorded_;
     simulation::RecordingWriter recording_;
     WalkThrough walk_;
+    std::unique_ptr<Solution> solution_; // in place of the walk, where there is one
     Times times_;
     HitchLog hitches_;
     std::uint32_t stride_, frames_ = 0, pictures_ = 0;
@@ -166,18 +174,20 @@ Result<std::vector<simulation::StepInput>> recorded_input(const Options& options
     return recorded;
 }
 
-// Steps of the built-in walk, which depend on the world: it waits for lifts and stops at obstacles.
+// Steps of the built-in walk or solution, which depend on the world: it waits for lifts and stops at obstacles.
 Result<std::size_t> walk_length(const LevelSource& source) {
     ecs::Registry registry;
     scene::register_components(registry);
     scene::MeshStore meshes;
     scene::TextureStore textures;
     SUNFLECK_TRY(load_world(source, registry, meshes, textures));
-    simulation::Simulation simulation(registry, meshes);
+    SUNFLECK_ASSIGN(const auto game, GameWorld::create(registry, meshes, &textures, source.sensors));
+    const bool solvable = Solution::exists(*game);
+    Solution solution(*game);
     WalkThrough walk;
-    while (!walk.finished())
-        simulation.step(registry, walk.next(simulation));
-    return std::size_t(simulation.steps());
+    while (solvable ? !solution.ended() : !walk.finished())
+        SUNFLECK_TRY(game->step(solvable ? solution.next() : walk.next(game->simulation())));
+    return std::size_t(game->simulation().steps());
 }
 
 void print_result(const Playback& playback, const Options& options) {

@@ -1,6 +1,7 @@
 #include "game_demo/level.h"
 
 #include "engine/core/file.h"
+#include "engine/core/log.h"
 #include "engine/ecs/world_copy.h"
 #include "game_demo/presets.h"
 #include "viewer/built_in_scenes.h"
@@ -46,10 +47,9 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
         });
     ecs::copy_world(registry, level->start_);
     level->changes_ = std::make_unique<viewer::LightingChanges>(device);
-    level->simulation_ = std::make_unique<simulation::Simulation>(registry, level->renderer_->meshes());
+    SUNFLECK_ASSIGN(level->game_, GameWorld::create(registry, level->renderer_->meshes(), &level->renderer_->textures(),
+                                                    source.sensors));
     SUNFLECK_TRY(level->apply(settings));
-    level->sensor_settings_ = source.sensors;
-    SUNFLECK_TRY(level->sensors_.begin(source.sensors));
     return level;
 }
 
@@ -58,22 +58,23 @@ Status Level::prepare(const DemoSettings& settings, const std::function<bool(flo
     return viewer::prepare_lighting(*renderer_, request(settings, 64, 36), {100.0, progress});
 }
 
-Status Level::restart() {
+void Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
-    simulation_ = std::make_unique<simulation::Simulation>(renderer_->registry(), renderer_->meshes());
-    sensors_ = {};
-    return sensors_.begin(sensor_settings_);
+    game_->restart();
 }
 
 void Level::step(const simulation::StepInput& input) {
-    simulation_->step(renderer_->registry(), input);
-    sensors_.step(renderer_->registry(), renderer_->meshes(), renderer_->textures());
+    const Status stepped = game_->step(input);
+    if (game_->has_sensors())
+        sensor_milliseconds_ += game_->sensors().milliseconds();
+    if (!stepped && !std::exchange(sensors_failed_, true))
+        log_warning("light sensors stay as they are: " + stepped.error().message);
 }
 
 scene::CameraView Level::view(const DemoSettings& settings) const {
     scene::CameraView view;
-    view.position = simulation_->player().eye();
-    view.target = view.position + simulation_->player().forward();
+    view.position = game_->simulation().player().eye();
+    view.target = view.position + game_->simulation().player().forward();
     view.vertical_field_of_view = glm::radians(settings.field_of_view);
     return view;
 }
@@ -122,7 +123,7 @@ std::optional<float> Level::light_share() const {
 viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height) {
     viewer::FrameRequest request;
     request.simulate = false;
-    request.step = simulation_->steps();
+    request.step = game_->simulation().steps();
     request.camera = view(settings);
     request.screen_width = width;
     request.screen_height = height;

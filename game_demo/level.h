@@ -1,11 +1,11 @@
-// A loaded level: the renderer and the simulation of one scene.
+// A loaded level: the renderer and the game of one scene.
 #pragma once
 
-#include "engine/simulation/simulation.h"
 #include "game_demo/demo_settings.h"
+#include "game_demo/game/game_world.h"
 #include "viewer/lighting_change.h"
 
-#include "game_demo/game/level_sensors.h"
+#include <utility>
 
 namespace sunfleck::demo {
 
@@ -32,14 +32,18 @@ public:
     Status prepare(const DemoSettings& settings, const std::function<bool(float)>& progress);
 
     viewer::SceneRenderer& renderer() { return *renderer_; }
-    simulation::Simulation& simulation() { return *simulation_; }
+    GameWorld& game() { return *game_; }
+    simulation::Simulation& simulation() { return game_->simulation(); }
+    // Readings of sensors stay as they are if rays fail; the log says so once.
     void step(const simulation::StepInput& input);
+    // What light sensors took since the last call, ms.
+    double take_sensor_milliseconds() { return std::exchange(sensor_milliseconds_, 0.0); }
     // The person's view.
     scene::CameraView view(const DemoSettings& settings) const;
     // The view behind the title: the scene's cameras in turn, slowly panning.
     scene::CameraView title_camera(double seconds) const;
     // The world as it was loaded, at step 0; the light stays.
-    Status restart();
+    void restart();
     // Applies the player's settings at once; makes the next frame wait for their light.
     Status apply(const DemoSettings& settings);
     // The same beside the frames (viewer/lighting_change.h), which go on with the present light. Once each frame, so
@@ -57,11 +61,11 @@ private:
     std::unique_ptr<viewer::SceneRenderer> renderer_;
     std::unique_ptr<viewer::LightingChanges> changes_;
     gi::Settings wanted_; // applied last
-    std::unique_ptr<simulation::Simulation> simulation_;
+    std::unique_ptr<GameWorld> game_;
+    double sensor_milliseconds_ = 0.0;
+    bool sensors_failed_ = false;
     std::vector<scene::CameraView> cameras_;
     float ev100_ = 8.0f;
-    gi::SensorSettings sensor_settings_;
-    LevelSensors sensors_;
 };
 
 } // namespace sunfleck::demo

@@ -82,6 +82,7 @@ void Menu::back() {
         screen_ = came_from_;
         break;
     case Screen::title:
+    case Screen::finished:
         break;
     }
 }
@@ -93,16 +94,19 @@ Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::
     Decision decision = Decision::none;
     switch (screen_) {
     case Screen::title:
-        decision = title_screen(enter);
+        decision = title_screen(data, enter);
         break;
     case Screen::paused:
-        decision = pause_screen(enter);
+        decision = pause_screen(data, enter);
         break;
     case Screen::settings:
         settings_screen(settings, input, changed);
         break;
     case Screen::help:
         help_screen(settings);
+        break;
+    case Screen::finished:
+        decision = end_screen(data, enter);
         break;
     case Screen::playing:
         prompts(settings, data);
@@ -141,7 +145,7 @@ void Menu::loading_screen(float share) {
     line("Press Escape to quit", 0.66f, 0.8f, IM_COL32(150, 142, 130, 255));
 }
 
-Decision Menu::title_screen(bool enter) {
+Decision Menu::title_screen(const OverlayData& data, bool enter) {
     Decision decision = Decision::none;
     place_next(0.08f, 0.5f, 0.0f, 0.5f);
     ImGui::Begin("title", nullptr, plain);
@@ -151,6 +155,8 @@ Decision Menu::title_screen(bool enter) {
     if (wide_button("Start") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
+    if (data.can_resume && wide_button("Continue"))
+        decision = Decision::resume;
     settings_and_help_buttons();
     if (wide_button("Quit"))
         decision = Decision::quit;
@@ -158,7 +164,7 @@ Decision Menu::title_screen(bool enter) {
     return decision;
 }
 
-Decision Menu::pause_screen(bool enter) {
+Decision Menu::pause_screen(const OverlayData& data, bool enter) {
     Decision decision = Decision::none;
     place_next(0.5f, 0.5f, 0.5f, 0.5f);
     ImGui::Begin("paused", nullptr, plain);
@@ -166,9 +172,32 @@ Decision Menu::pause_screen(bool enter) {
     if (wide_button("Resume") || enter)
         decision = Decision::play;
     ImGui::SetItemDefaultFocus();
+    if (data.is_game && wide_button("Hint"))
+        decision = Decision::hint;
+    if (data.is_game && wide_button("Reset this room"))
+        decision = Decision::reset_room;
+    if (data.can_resume && wide_button("Last checkpoint"))
+        decision = Decision::resume;
     settings_and_help_buttons();
     if (wide_button("Restart"))
         decision = Decision::restart;
+    if (wide_button("Quit"))
+        decision = Decision::quit;
+    ImGui::End();
+    return decision;
+}
+
+Decision Menu::end_screen(const OverlayData& data, bool enter) {
+    Decision decision = Decision::none;
+    place_next(0.5f, 0.5f, 0.5f, 0.5f);
+    ImGui::Begin("finished", nullptr, plain);
+    heading("The light has found its way", 1.4f);
+    const int seconds = int(data.game_seconds);
+    ImGui::Text("All doors are open, after %d:%02d minutes.", seconds / 60, seconds % 60);
+    ImGui::Dummy(ImVec2(0.0f, 0.4f * unit()));
+    if (wide_button("Play once more") || enter)
+        decision = Decision::restart;
+    ImGui::SetItemDefaultFocus();
     if (wide_button("Quit"))
         decision = Decision::quit;
     ImGui::End();

@@ -10,8 +10,8 @@
 
 namespace sunfleck::demo {
 
-enum class Screen { title, playing, paused, settings, help };
-enum class Decision { none, play, restart, quit };
+enum class Screen { title, playing, paused, settings, help, finished };
+enum class Decision { none, play, resume, restart, hint, reset_room, quit };
 
 // Data for the overlays.
 struct OverlayData {
@@ -23,6 +23,8 @@ struct OverlayData {
     std::uint32_t rendered_width = 0, rendered_height = 0;
     std::optional<float> light_share; // how far a change of light is, 0 to 1; none: there is none
     std::string device;
+    bool is_game = false, can_resume = false; // the level has areas; there is a checkpoint
+    double game_seconds = 0.0;
 };
 
 class Menu {
@@ -40,8 +42,9 @@ public:
     void say(std::string message, double seconds = 3.5);
 
 private:
-    Decision title_screen(bool enter);
-    Decision pause_screen(bool enter);
+    Decision title_screen(const OverlayData& data, bool enter);
+    Decision pause_screen(const OverlayData& data, bool enter);
+    static Decision end_screen(const OverlayData& data, bool enter);
     void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed);

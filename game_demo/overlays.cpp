@@ -11,9 +11,9 @@ namespace {
 const char* verb(simulation::Interaction interaction) {
     switch (interaction) {
     case simulation::Interaction::open:
-        return "open the door";
+        return "open";
     case simulation::Interaction::close:
-        return "close the door";
+        return "close";
     case simulation::Interaction::switch_lamps:
         return "switch the lamp";
     case simulation::Interaction::take:

@@ -5,8 +5,10 @@
 #include "engine/core/stop_signals.h"
 #include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
+#include "game_demo/game_session.h"
 #include "game_demo/hitch_log.h"
-#include "game_demo/level_loader.h"
+#include "game_demo/kept_settings.h"
+#include "game_demo/loading_screen.h"
 #include "game_demo/menu.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
@@ -56,7 +58,7 @@ private:
         };
         for (std::uint32_t frame = 0; !ends(frame);) {
             const auto began = Clock::now();
-            if (loader_) {
+            if (loading_) {
                 SUNFLECK_TRY(loading_frame());
                 std::this_thread::sleep_until(began + std::chrono::milliseconds(33));
                 continue;
@@ -88,12 +90,7 @@ private:
     }
 
     Status start() {
-        settings_path_ =
-            options_.settings_file.empty() ? settings_path() : std::filesystem::path(options_.settings_file);
-        LoadedSettings loaded = settings_path_.empty() ? LoadedSettings() : load_settings(settings_path_);
-        if (settings_path_.empty())
-            loaded.problem = "Settings are not kept: neither HOME nor XDG_CONFIG_HOME is set (--settings FILE names a "
-                             "file)";
+        LoadedSettings loaded = kept_.load(options_.settings_file);
         settings_ = loaded.settings;
         SUNFLECK_ASSIGN(window_, app::Window::create("Lantern House", options_.width, options_.height));
         SUNFLECK_ASSIGN(device_,
@@ -106,8 +103,7 @@ private:
             settings_.transfer = *options_.transfer;
             settings_.preset = Preset::custom;
         }
-        first_settings_ = settings_text(settings_);
-        saved_settings_ = loaded.found ? first_settings_ : std::string();
+        kept_.begin(settings_, loaded.found);
         SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
         start_loading();
         window_->set_full_screen(settings_.full_screen);
@@ -121,36 +117,22 @@ private:
 
     void start_loading() {
         window_->set_title("Lantern House - loading");
-        loader_ = std::make_unique<LevelLoader>(*device_, source_of(options_), first_light(settings_));
+        loading_ = std::make_unique<LoadingScreen>(*device_, source_of(options_), first_light(settings_));
     }
 
-    // One frame of the loading screen. The device is idle when the level takes over, because submission serials
-    // restart.
+    // The device is idle when the level takes over, because submission serials restart.
     Status loading_frame() {
-        const app::InputState& input = window_->poll();
-        if (input.hit(app::key_escape))
-            window_->close();
-        if (loader_->finished()) {
-            SUNFLECK_ASSIGN(level_, loader_->take());
-            loader_.reset();
-            SUNFLECK_TRY(device_->wait_idle());
-            blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
-            window_->set_title("Lantern House");
-            level_->apply_later(settings_); // all of the light comes in view
-            log_time("first picture");
-            last_ = Clock::now();
+        SUNFLECK_ASSIGN(level_, loading_->frame(*window_, *swapchain_, *screen_, ui_scale(swapchain_->extent())));
+        if (!level_)
             return {};
-        }
-        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(screen_->serial()));
-        if (!visible) {
-            window_->wait(0.05);
-            return {};
-        }
-        const VkExtent2D extent = swapchain_->extent();
-        screen_->gui().begin_frame(input, extent.width, extent.height, 1.0 / 30.0, ui_scale(extent));
-        Menu::loading_screen(loader_->share());
-        screen_->gui().end_frame();
-        return screen_->present();
+        loading_.reset();
+        SUNFLECK_TRY(device_->wait_idle());
+        blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
+        window_->set_title("Lantern House");
+        level_->apply_later(settings_); // all of the light comes in view
+        log_time("first picture");
+        last_ = Clock::now();
+        return {};
     }
 
     viewer::SceneRenderer::Overlay overlay() {
@@ -243,12 +225,21 @@ private:
         accumulator_ += std::min(seconds, max_catch_up);
         while (accumulator_ >= simulation::step_seconds) {
             accumulator_ -= simulation::step_seconds;
-            const simulation::StepInput step = controls_.next_step();
+            simulation::StepInput step = controls_.next_step();
+            if (std::exchange(wants_reset_, false))
+                step.buttons |= simulation::button_reset;
             level_->step(step);
             if (started_)
                 recording_.add(step);
         }
         recording_.save_if_due();
+        if (!started_)
+            return;
+        session_.update(seconds);
+        if (const std::string message = session_.take_message(); !message.empty())
+            menu_.say(message, 8.0);
+        if (session_.finished())
+            menu_.show(Screen::finished);
     }
 
     Status show(const app::InputState& input, double seconds) {
@@ -263,6 +254,8 @@ private:
         renderer.collect_statistics();
         log_hitch(seconds);
         screen_->gui().begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
+        if (menu_.screen() == Screen::playing)
+            session_.draw();
         bool changed = false;
         const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
         screen_->gui().end_frame();
@@ -277,7 +270,7 @@ private:
         if (changed) {
             level_->apply_later(settings_);
             window_->set_full_screen(settings_.full_screen);
-            if (const Status status = store_settings(); !status)
+            if (const Status status = kept_.store(settings_); !status)
                 menu_.say(status.error().message, 6.0);
         }
         decide(decision);
@@ -302,6 +295,11 @@ private:
         result.frame_ms = smooth_ms_;
         result.gpu_ms = statistics.gpu_ms;
         result.cpu_ms = statistics.cpu_ms;
+        if (level_->game().has_sensors())
+            result.cpu_ms["light sensors"] = level_->take_sensor_milliseconds();
+        result.is_game = level_->game().area() != nullptr;
+        result.can_resume = result.is_game && session_.can_resume();
+        result.game_seconds = session_.seconds();
         result.light_samples = statistics.counters["light_samples"];
         result.rendered_width = request.width;
         result.rendered_height = request.height;
@@ -321,11 +319,21 @@ private:
         case Decision::play:
             menu_.show(Screen::playing);
             if (!started_)
-                restart();
+                restart(false);
             started_ = true;
             break;
+        case Decision::resume:
         case Decision::restart:
-            restart();
+            restart(decision == Decision::resume);
+            started_ = true;
+            menu_.show(Screen::playing);
+            break;
+        case Decision::hint:
+            session_.show_hint();
+            menu_.show(Screen::playing);
+            break;
+        case Decision::reset_room:
+            wants_reset_ = true;
             menu_.show(Screen::playing);
             break;
         case Decision::quit:
@@ -334,31 +342,21 @@ private:
         }
     }
 
-    void restart() {
-        if (const Status status = level_->restart(); !status)
-            menu_.say(status.error().message, 6.0);
+    // `resume`: at the last checkpoint.
+    void restart(bool resume) {
+        level_->restart();
+        session_.begin(level_->game(), resume);
         accumulator_ = 0.0;
         recording_.clear();
     }
 
-    // Where the file says something else.
-    Status store_settings() {
-        std::string text = settings_text(settings_);
-        if (settings_path_.empty() || text == saved_settings_)
-            return {};
-        if (const Status status = save_settings(settings_path_, settings_); !status)
-            return Error{"the settings are not saved: " + status.error().message};
-        saved_settings_ = std::move(text);
-        return {};
-    }
-
     Status finish() {
-        loader_.reset();
+        loading_.reset();
         if (options_.hitches)
             log_information(hitches_.summary());
-        const Status stored = store_settings(), recorded = recording_.finish();
+        const Status stored = kept_.store(settings_), recorded = recording_.finish();
         SUNFLECK_TRY(device_->wait_idle());
-        if (settings_text(settings_) != first_settings_) // else nothing is lost
+        if (kept_.differ_from_start(settings_)) // else nothing is lost
             SUNFLECK_TRY(stored);
         SUNFLECK_TRY(recorded);
         if (device_->validation_messages() > 0)
@@ -368,23 +366,23 @@ private:
 
     const Options& options_;
     DemoSettings settings_;
-    std::filesystem::path settings_path_;
+    KeptSettings kept_;
     std::unique_ptr<app::Window> window_;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<app::Swapchain> swapchain_;
     std::unique_ptr<gpu::FrameResources> blit_resources_;
     std::unique_ptr<Level> level_;
-    std::unique_ptr<LevelLoader> loader_;
+    std::unique_ptr<LoadingScreen> loading_;
     std::unique_ptr<app::GuiScreen> screen_;
     Menu menu_;
+    GameSession session_{options_.scene, checkpoint_folder()};
     Controls controls_;
     HitchLog hitches_;
     Clock::time_point last_;
     double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
-    bool started_ = false, indirect_ = true, wants_screenshot_ = false, start_before_ = false;
+    bool started_ = false, indirect_ = true, wants_screenshot_ = false, wants_reset_ = false, start_before_ = false;
     const Clock::time_point began_ = Clock::now();
     simulation::RecordingWriter recording_;
-    std::string first_settings_, saved_settings_; // as text: at the start, and in the file
 };
 
 } // namespace

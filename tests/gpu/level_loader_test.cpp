@@ -62,9 +62,9 @@ TEST_F(LevelLoaderTest, ARestartedWorldIsAFreshOne) {
         return hashes;
     };
     const std::vector<std::uint64_t> fresh = play(700); // takes the lantern, opens a door, pushes a ball
-    ASSERT_TRUE((*level)->restart());
+    (*level)->restart();
     EXPECT_EQ(play(700), fresh);
-    ASSERT_TRUE((*level)->restart());
+    (*level)->restart();
     EXPECT_EQ(play(150), std::vector<std::uint64_t>(fresh.begin(), fresh.begin() + 2));
 }
 

@@ -1,0 +1,145 @@
+#include "game_demo/game_session.h"
+
+#include "engine/simulation/path_movers.h"
+#include "game_demo/gui_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace sunfleck::demo {
+namespace {
+
+constexpr double title_time = 5.0, hint_time = 12.0; // s
+constexpr double patience = 120.0;                   // s in a room until its hint shows by itself
+
+// Corners of a colour's shape; it is told by shape alone, too.
+int corners_of(vec3 threshold) {
+    const bool r = threshold.x > 0.0f, g = threshold.y > 0.0f, b = threshold.z > 0.0f;
+    return r && g && b ? 40 : r && b ? 5 : r ? 3 : g ? 4 : 6;
+}
+
+ImU32 colour_of(vec3 threshold) {
+    const float most = std::max({threshold.x, threshold.y, threshold.z, 1e-6f});
+    const auto part = [&](float value) { return int(std::lround(90.0f + 165.0f * value / most)); };
+    return IM_COL32(part(threshold.x), part(threshold.y), part(threshold.z), 255);
+}
+
+// The closed sensor of the area, or else an open one.
+ecs::Entity sensor_in(const GameWorld& world, const scene::GameArea& area, vec3 centre) {
+    ecs::Entity found;
+    bool found_open = true;
+    world.registry().view<scene::LightSensor, scene::SensorReading, scene::WorldTransform>().each(
+        [&](ecs::Entity entity, const scene::LightSensor&, const scene::SensorReading& reading,
+            const scene::WorldTransform& place) {
+            const vec3 away = glm::abs(vec3(place.matrix[3]) - centre) - area.half_size;
+            if (std::max({away.x, away.y, away.z}) <= 0.0f && (found.is_null() || (found_open && !reading.open))) {
+                found = entity;
+                found_open = reading.open;
+            }
+        });
+    return found;
+}
+
+void text_window(const char* name, const std::string& text, float y, float alpha) {
+    const float width = 0.62f * ImGui::GetIO().DisplaySize.x;
+    place_next(0.5f, y, 0.5f, 0.5f);
+    ImGui::SetNextWindowBgAlpha(alpha);
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0.0f, 0.0f), ImVec2(width, 1e6f));
+    ImGui::Begin(name, nullptr, behind);
+    ImGui::PushTextWrapPos(width - unit());
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+} // namespace
+
+GameSession::GameSession(std::string level, std::filesystem::path folder)
+    : files_(folder, std::move(level)), has_folder_(!folder.empty()) {}
+
+void GameSession::begin(GameWorld& world, bool resume) {
+    world_ = &world;
+    if (resume && has_folder_)
+        files_.load(world, message_);
+    seconds_ = double(world.simulation().steps()) * simulation::step_seconds;
+    area_ = world.area_entity(); // the first area is no reason for a checkpoint: the last one stays
+    title_seconds_ = title_time;
+    hint_seconds_ = area_seconds_ = 0.0;
+}
+
+void GameSession::update(double seconds) {
+    if (!has_areas() || world_->finished())
+        return;
+    seconds_ = double(world_->simulation().steps()) * simulation::step_seconds;
+    title_seconds_ = std::max(title_seconds_ - seconds, 0.0);
+    hint_seconds_ = std::max(hint_seconds_ - seconds, 0.0);
+    area_seconds_ += seconds;
+    if (area_seconds_ >= patience) {
+        area_seconds_ = 0.0;
+        show_hint();
+    }
+    if (world_->area_entity() == area_)
+        return;
+    area_ = world_->area_entity();
+    title_seconds_ = title_time;
+    hint_seconds_ = area_seconds_ = 0.0;
+    if (!has_folder_)
+        return;
+    if (const Status saved = files_.save(*world_); !saved)
+        message_ = "No checkpoint: " + saved.error().message;
+}
+
+void GameSession::show_hint() {
+    hint_seconds_ = hint_time;
+}
+
+void GameSession::draw() const {
+    if (!has_areas())
+        return;
+    draw_title();
+    draw_sensor();
+}
+
+void GameSession::draw_title() const {
+    const scene::GameArea& area = *world_->area();
+    if (title_seconds_ > 0.0)
+        text_window("area title", area.title, 0.16f, 0.5f);
+    if (hint_seconds_ > 0.0 && !area.hint.empty())
+        text_window("area hint", area.hint, 0.80f, 0.65f);
+}
+
+// Shape, name and share of the room's sensor: a bar with a line where it is enough.
+void GameSession::draw_sensor() const {
+    const scene::GameArea& area = *world_->area();
+    const ecs::Registry& registry = world_->registry();
+    const vec3 centre(scene::world_matrix(registry, world_->area_entity())[3]);
+    const ecs::Entity entity = sensor_in(*world_, area, centre);
+    if (entity.is_null())
+        return;
+    const auto& sensor = registry.get<scene::LightSensor>(entity);
+    const auto& reading = registry.get<scene::SensorReading>(entity);
+    place_next(0.02f, 0.97f, 0.0f, 1.0f);
+    ImGui::SetNextWindowBgAlpha(0.5f);
+    ImGui::Begin("sensor", nullptr, behind);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImU32 colour = colour_of(sensor.threshold);
+    list->AddNgonFilled(ImVec2(at.x + 0.8f * unit(), at.y + 0.8f * unit()), 0.7f * unit(), colour,
+                        corners_of(sensor.threshold));
+    const float left = at.x + 2.0f * unit(), wide = 9.0f * unit(), top = at.y + 0.35f * unit(), high = 0.9f * unit();
+    const float full = scene::sensor_gauge_end;
+    const auto x_of = [&](float share) { return left + wide * std::min(share / full, 1.0f); };
+    list->AddRectFilled(ImVec2(left, top), ImVec2(left + wide, top + high), IM_COL32(40, 40, 40, 200));
+    list->AddRectFilled(ImVec2(left, top), ImVec2(x_of(reading.share), top + high), colour);
+    list->AddLine(ImVec2(x_of(1.0f), top - 0.2f * unit()), ImVec2(x_of(1.0f), top + high + 0.2f * unit()),
+                  IM_COL32(255, 255, 255, 255), 0.12f * unit());
+    ImGui::Dummy(ImVec2(11.5f * unit(), 1.6f * unit()));
+    if (reading.open)
+        ImGui::TextUnformatted("open");
+    else
+        ImGui::Text("gets %.0f %% of the light that it needs", double(100.0f * reading.share));
+    ImGui::End();
+}
+
+} // namespace sunfleck::demo

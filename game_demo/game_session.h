@@ -1,0 +1,43 @@
+// A game in a window: what the player is told (titles, hints, what a sensor gets and needs, the end), and checkpoints.
+#pragma once
+
+#include "game_demo/demo_settings.h"
+#include "game_demo/game/checkpoint_files.h"
+
+#include <utility>
+
+namespace sunfleck::demo {
+
+class GameSession {
+public:
+    // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
+    GameSession(std::string level, std::filesystem::path folder);
+
+    // Of a level that was just loaded. `resume`: goes on at the last checkpoint.
+    void begin(GameWorld& world, bool resume);
+    bool can_resume() const { return has_folder_ && files_.any(); }
+    // After a frame's steps: notices new areas, saves a checkpoint there.
+    void update(double seconds);
+    void show_hint();
+    bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
+    bool finished() const { return world_ != nullptr && world_->finished(); }
+    double seconds() const { return seconds_; }
+
+    // Draws over the picture, between Gui::begin_frame and end_frame.
+    void draw() const;
+    // What is to be told once, such as a checkpoint that was set aside; empty: nothing.
+    std::string take_message() { return std::exchange(message_, {}); }
+
+private:
+    void draw_title() const;
+    void draw_sensor() const;
+
+    CheckpointFiles files_;
+    bool has_folder_ = false;
+    GameWorld* world_ = nullptr;
+    ecs::Entity area_;
+    double seconds_ = 0.0, title_seconds_ = 0.0, hint_seconds_ = 0.0, area_seconds_ = 0.0;
+    std::string message_;
+};
+
+} // namespace sunfleck::demo
