@@ -13,6 +13,10 @@ namespace {
 constexpr float noticed_share = 1e-3f;
 constexpr std::size_t paths_per_chunk = 16;
 constexpr std::uint32_t usual_rays = 8; // of a path that was never followed
+// While lamps move, a sensor's paths are followed once in so many steps, which is less than half a second; and where
+// none of the last paths changed, since the lamps do not reach it, in eight times as many. As soon as a path changes,
+// or the lamps rest, the sensor is as fast as the others.
+constexpr std::uint32_t steps_a_round = 24, quiet_factor = 8, quiet_paths = 128;
 
 bool touch(const Bounds& a, const Bounds& b) {
     for (int i = 0; i < 3; ++i)
@@ -55,9 +59,10 @@ const TypeDescription& SensorSettings::description() {
         "SensorSettings",
         1,
         "Light sensors of a game: by `Context::set`, and by the demo's `--sensor-rays` and `--sensors`.",
-        {SUNFLECK_FIELD(SensorSettings, sensor_rays, "rays", 1, 1e7,
-                        "About how many rays are traced at each fixed step where something moves; fewer is faster, but "
-                        "readings lag behind"),
+        {SUNFLECK_FIELD(
+             SensorSettings, sensor_rays, "rays", 1, 1e7,
+             "About how many rays are traced at most at each fixed step where something moves; fewer is faster, "
+             "but readings lag behind"),
          SUNFLECK_CHOICE(SensorSettings, sensors, "The light that sensors measure", "all", "direct")}};
     return type;
 }
@@ -135,6 +140,7 @@ void LightSensors::mark_changes(ecs::Registry& registry, const scene::MeshStore&
                     mark_touched(drawable->bounds);
         }
     }
+    changing_ = changes.emitters_changed();
     if (changes.everything || changes.emitters_changed() || changes.static_geometry)
         take_emitters(registry, meshes, changes);
 }
@@ -185,44 +191,67 @@ void LightSensors::mark_lit_by(const Emitter& emitter) {
     const EmitterReach reach(emitter);
     for (Sensor& sensor : sensors_) {
         const float noticed = noticed_share * sensor.place.scale;
+        if (sensor.pending_count == sensor.paths.size() || reach.strongest(sensor.vertices) <= noticed)
+            continue;
         for (std::size_t i = 0; i < sensor.paths.size(); ++i)
             if (sensor.pending[i] == 0 && reach.strongest(sensor.paths[i].vertices) > noticed)
                 mark(sensor, i);
     }
 }
 
-// The sensor's next pending path, if it has one.
-bool LightSensors::add_next(std::size_t index, std::uint32_t& rays) {
+// The sensor's next pending path becomes a job. Returns about the rays that it needs; 0: there is none.
+std::uint32_t LightSensors::add_next(std::size_t index) {
     Sensor& sensor = sensors_[index];
     if (sensor.pending_count == 0)
-        return false;
+        return 0;
     while (sensor.pending[sensor.next] == 0)
         sensor.next = (sensor.next + 1) % sensor.paths.size();
     sensor.pending[sensor.next] = 0;
     --sensor.pending_count;
     jobs_.push_back({index, sensor.next});
-    rays += sensor.paths[sensor.next].rays > 0 ? sensor.paths[sensor.next].rays : usual_rays;
-    return true;
+    return sensor.paths[sensor.next].rays > 0 ? sensor.paths[sensor.next].rays : usual_rays;
 }
 
-// Sensors take turns, so that each gets its share of the rays.
-void LightSensors::choose_jobs() {
-    jobs_.clear();
-    std::uint32_t unlimited = 0, rays = 0;
+// Of a sensor in this step. In a world at rest, all that the setting allows: then its reading is soon complete.
+std::uint32_t LightSensors::most_rays(const Sensor& sensor) const {
+    if (!changing_)
+        return settings_.sensor_rays;
+    std::uint32_t rays = 0;
+    for (const SensorPath& path : sensor.paths)
+        rays += path.rays;
+    const std::uint32_t steps = sensor.unchanged >= quiet_paths ? quiet_factor * steps_a_round : steps_a_round;
+    return std::max(rays / steps, 1u);
+}
+
+void LightSensors::choose_fresh_jobs() {
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
         Sensor& sensor = sensors_[i];
         if (!sensor.fresh)
             continue;
         for (std::size_t path = 0; path < sensor.paths.size(); ++path)
             mark(sensor, path);
-        while (add_next(i, unlimited)) {
+        while (add_next(i) > 0) {
         }
         sensor.fresh = false;
     }
+}
+
+// Sensors take turns, so that each gets its share of the rays.
+void LightSensors::choose_jobs() {
+    jobs_.clear();
+    choose_fresh_jobs();
+    std::vector<std::uint32_t> left(sensors_.size());
+    for (std::size_t i = 0; i < sensors_.size(); ++i)
+        left[i] = most_rays(sensors_[i]);
+    std::uint32_t rays = 0;
     for (bool more = true; more && rays < settings_.sensor_rays;) {
         more = false;
-        for (std::size_t i = 0; i < sensors_.size(); ++i)
-            more = add_next(i, rays) || more;
+        for (std::size_t i = 0; i < sensors_.size(); ++i) {
+            const std::uint32_t needed = left[i] > 0 ? add_next(i) : 0;
+            left[i] -= std::min(left[i], needed);
+            rays += needed;
+            more = more || needed > 0;
+        }
     }
 }
 
@@ -231,15 +260,20 @@ void LightSensors::follow_jobs() {
     parallel_for_chunks(jobs_.size(), paths_per_chunk, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Sensor& sensor = sensors_[jobs_[i].sensor];
-            sensor.paths[jobs_[i].path] =
-                follow_sensor_path(scene_, sensor.place, std::uint32_t(jobs_[i].path), reflected);
+            SensorPath& path = sensor.paths[jobs_[i].path];
+            const vec3 before = path.light;
+            path = follow_sensor_path(scene_, sensor.place, std::uint32_t(jobs_[i].path), reflected);
+            jobs_[i].changed = path.light != before;
         }
     });
     rays_ = 0;
     for (const Job& job : jobs_) {
         const SensorPath& path = sensors_[job.sensor].paths[job.path];
+        Sensor& sensor = sensors_[job.sensor];
         rays_ += path.rays;
-        sensors_[job.sensor].extent.add(path.extent);
+        sensor.extent.add(path.extent);
+        sensor.vertices.add(path.vertices);
+        sensor.unchanged = job.changed ? 0 : sensor.unchanged + 1;
     }
 }
 

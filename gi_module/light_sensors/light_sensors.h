@@ -21,7 +21,7 @@ namespace sunfleck::gi {
 enum class SensedLight : std::uint32_t { all, direct };
 
 struct SensorSettings {
-    std::uint32_t sensor_rays = 2048; // a step, about
+    std::uint32_t sensor_rays = 2048; // a step, about; fewer while lamps move: no more than half a second asks for
     SensedLight sensors = SensedLight::all;
     bool operator==(const SensorSettings&) const = default;
     static const TypeDescription& description();
@@ -57,12 +57,14 @@ private:
         std::vector<SensorPath> paths;
         std::vector<std::uint8_t> pending; // by path
         std::size_t pending_count = 0, next = 0;
-        bool fresh = true; // all of its paths are to be followed at once
-        Bounds extent;     // of all paths
+        std::uint32_t unchanged = 0; // paths followed last, one after another, that had the light that they had before
+        bool fresh = true;           // all of its paths are to be followed at once
+        Bounds extent, vertices;     // of all paths
     };
     // A path to follow.
     struct Job {
         std::size_t sensor = 0, path = 0;
+        bool changed = true; // its light
     };
 
     LightSensors() = default;
@@ -73,7 +75,9 @@ private:
     static void mark(Sensor& sensor, std::size_t path);
     void mark_touched(const Bounds& box);
     void mark_lit_by(const Emitter& emitter);
-    bool add_next(std::size_t sensor, std::uint32_t& rays);
+    std::uint32_t add_next(std::size_t sensor);
+    std::uint32_t most_rays(const Sensor& sensor) const;
+    void choose_fresh_jobs();
     void choose_jobs();
     void follow_jobs();
     void write_readings(ecs::Registry& registry) const;
@@ -86,6 +90,7 @@ private:
     std::vector<Sensor> sensors_;   // by entity
     std::vector<Job> jobs_;
     bool forget_ = false;
+    bool changing_ = false; // lamps, in the last step
     std::uint32_t rays_ = 0;
     double milliseconds_ = 0.0;
 };

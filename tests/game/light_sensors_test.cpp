@@ -196,22 +196,52 @@ TEST(LightSensors, ReadTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(bits_of_a_walk(1), bits_of_a_walk(2));
 }
 
-TEST(LightSensors, TraceAboutAsManyRaysAStepAsTheSettingSays) {
+// A lamp that never rests delays nothing: half a second after the last large movement, sensors read what fresh ones do.
+TEST(LightSensors, FollowAChangeWhileTheLampKeepsMoving) {
+    SensorRoom room;
+    room.place(vec3(2.4f, 1.2f, 1.8f), vec3(1.8f, 0.3f, 1.6f));
+    room.step(2 * steps_a_second);
+    const auto place = [&](std::uint32_t k) {
+        room.place(vec3(-1.4f + 1e-4f * float(k), 1.2f, -0.6f), vec3(1.8f, 0.3f, 1.6f));
+    };
+    for (std::uint32_t k = 0; k < steps_a_second / 2; ++k) {
+        place(k);
+        room.step();
+    }
+    std::vector<float> shares;
+    for (std::size_t i = 0; i < room.entities.size(); ++i)
+        shares.push_back(room.reading(i).share);
+    room.sensors = LightSensors::create().value();
+    room.step();
+    EXPECT_GT(std::max({shares[0], shares[1], shares[2]}), 0.5f);
+    for (std::size_t i = 0; i < room.entities.size(); ++i)
+        EXPECT_NEAR(room.reading(i).share, shares[i], 0.02f) << i;
+}
+
+// Rays a step while a lantern moves.
+double rays_traced(SensorRoom& room, std::uint32_t rays) {
+    SensorSettings settings;
+    settings.sensor_rays = rays;
+    EXPECT_TRUE(room.sensors->set_settings(settings));
+    std::uint64_t traced = 0;
+    constexpr std::uint32_t steps = 60;
+    for (std::uint32_t k = 0; k < steps; ++k) {
+        room.place(vec3(-1.5f, 1.4f, 0.02f * float(k)), vec3(1.8f, 0.3f, 1.6f));
+        room.step();
+        traced += room.sensors->rays();
+    }
+    return double(traced) / double(steps);
+}
+
+// With few rays, as many as the setting says; with more, no more than half a second asks for.
+TEST(LightSensors, TraceNoMoreRaysAStepThanTheSettingSays) {
     SensorRoom room;
     room.step();
-    for (const std::uint32_t rays : {300u, 3000u}) {
-        SensorSettings settings;
-        settings.sensor_rays = rays;
-        ASSERT_TRUE(room.sensors->set_settings(settings));
-        std::uint64_t traced = 0;
-        constexpr std::uint32_t steps = 60;
-        for (std::uint32_t k = 0; k < steps; ++k) {
-            room.place(vec3(-1.5f, 1.4f, 0.02f * float(k)), vec3(1.8f, 0.3f, 1.6f));
-            room.step();
-            traced += room.sensors->rays();
-        }
-        EXPECT_NEAR(double(traced) / double(steps * rays), 1.0, 0.15) << rays;
-    }
+    EXPECT_NEAR(rays_traced(room, 300), 300.0, 45.0);
+    const double many = rays_traced(room, 3000), more = rays_traced(room, 30000);
+    EXPECT_GT(many, 345.0);
+    EXPECT_LT(many, 3000.0);
+    EXPECT_NEAR(more, many, 0.1 * many);
     SensorSettings none;
     none.sensor_rays = 0;
     EXPECT_FALSE(room.sensors->set_settings(none));
