@@ -3,14 +3,9 @@
 namespace sunfleck::assets {
 namespace {
 
-const vec3 brass(0.72f, 0.52f, 0.20f), dark(0.05f), steel(0.30f, 0.32f, 0.34f);
+const vec3 dark(0.05f), steel(0.30f, 0.32f, 0.34f);
 
 constexpr float gauge_height = 0.9f;
-
-// Without any extension of glTF beside the one that says so, which readers need not understand together.
-void show_base_colour(scene::Material& material) {
-    material.unlit = material.specular = true;
-}
 
 // Sides of the sign's shape; many: a disc.
 int sides_of(Sign sign) {
@@ -94,13 +89,6 @@ void GameParts::ornament(ecs::Entity entity) {
     s_.registry().emplace<scene::ShadowCasting>(entity, {false});
 }
 
-ecs::Entity GameParts::hung(const std::string& name, ecs::Entity parent, scene::Mesh mesh, vec3 colour, vec3 position) {
-    const ecs::Entity entity = s_.add(name, std::move(mesh), diffuse(colour), placed(position));
-    s_.registry().emplace<scene::Parent>(entity, {parent});
-    ornament(entity);
-    return entity;
-}
-
 void GameParts::sensor(const std::string& name, vec3 position, vec3 normal, const scene::LightSensor& sensor) {
     const ecs::Entity entity = empty(name, position);
     s_.registry().patch<scene::Transform>(entity, [&](scene::Transform& t) { t.rotation = facing(normal); });
@@ -164,26 +152,6 @@ void GameParts::block(const std::string& name, vec3 foot, float side, float mass
     body.friction = 0.5f;
     body.restitution = 0.0f;
     s_.registry().emplace<scene::RigidBody>(entity, body);
-}
-
-void GameParts::lantern(const std::string& name, vec3 foot, vec3 intensity) {
-    const ecs::Entity lantern = empty(name, foot);
-    s_.mover(lantern, {});
-    s_.registry().emplace<scene::Lantern>(lantern, {});
-    hung(name + " base", lantern, scene::make_cylinder(0.1f, 0.03f, 20), brass, vec3(0.0f, 0.015f, 0.0f));
-    hung(name + " cap", lantern, scene::make_cylinder(0.085f, 0.03f, 20), brass, vec3(0.0f, 0.425f, 0.0f));
-    for (int i = 0; i < 3; ++i) {
-        const float angle = 2.0f * pi * (float(i) + 0.5f) / 3.0f;
-        hung(name + " post " + std::to_string(i), lantern, scene::make_cylinder(0.006f, 0.4f, 8), brass,
-             vec3(0.08f * std::cos(angle), 0.22f, 0.08f * std::sin(angle)));
-    }
-    // The flame is only visible; the point light above it gives the light.
-    const ecs::Entity flame = hung(name + " flame", lantern, scene::make_sphere(0.04f, 16, 8), vec3(1.0f, 0.93f, 0.72f),
-                                   vec3(0.0f, 0.2f, 0.0f));
-    s_.registry().patch<scene::Material>(flame, show_base_colour);
-    const ecs::Entity light = empty(name + " light", vec3(0.0f, 0.3f, 0.0f));
-    s_.registry().emplace<scene::Parent>(light, {lantern});
-    s_.registry().emplace<scene::PointLight>(light, {intensity});
 }
 
 void GameParts::sun(const std::string& name, vec3 position, vec3 target, vec3 intensity, vec2 angles) {

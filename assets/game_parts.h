@@ -27,8 +27,6 @@ public:
     void shutter(const std::string& name, const Box& box, vec3 hinge, float angle, vec3 colour);
     // A block to push.
     void block(const std::string& name, vec3 foot, float side, float mass, vec3 colour);
-    // Taller than the house's, with its light 0.3 m above its foot.
-    void lantern(const std::string& name, vec3 foot, vec3 intensity);
     void sun(const std::string& name, vec3 position, vec3 target, vec3 intensity, vec2 angles);
     void area(const std::string& name, const Room& room, const scene::GameArea& area);
 
@@ -36,7 +34,6 @@ private:
     ecs::Entity empty(const std::string& name, vec3 position);
     // Takes no part in physics and casts no shadow.
     void ornament(ecs::Entity entity);
-    ecs::Entity hung(const std::string& name, ecs::Entity parent, scene::Mesh mesh, vec3 colour, vec3 position);
 
     SceneBuilder& s_;
 };

@@ -202,24 +202,43 @@ void House::crate(const std::string& name, vec3 centre, float side, float mass, 
     s_.registry().emplace<scene::SurfacePattern>(entity, {PatternKind::planks, vec3(0.30f, 0.18f, 0.09f), 0.11f});
 }
 
-void House::lantern(const std::string& name, vec3 foot, vec3 intensity, vec3 colour) {
+void show_base_colour(scene::Material& material) {
+    material.unlit = material.specular = true;
+}
+
+void House::lantern(const std::string& name, vec3 foot, vec3 intensity, vec3 colour, const LanternForm& form) {
     const ecs::Entity lantern = group(name, foot);
     s_.mover(lantern, {});
     s_.registry().emplace<scene::Lantern>(lantern, {});
-    part(name + " base", lantern, scene::make_cylinder(0.085f, 0.03f, 20), colour, vec3(0.0f, 0.015f, 0.0f));
-    part(name + " cap", lantern, scene::make_cylinder(0.075f, 0.03f, 20), colour, vec3(0.0f, 0.265f, 0.0f));
+    // Plates of 3 cm, into which the posts reach by 1 cm.
+    const auto plate = [&](const char* which, float radius, float height) {
+        part(name + which, lantern, scene::make_cylinder(radius, 0.03f, 20), colour, vec3(0.0f, height, 0.0f));
+    };
+    plate(" base", form.base_radius, 0.015f);
+    plate(" cap", form.cap_radius, form.posts + 0.025f);
+    const float middle = 0.5f * form.posts + 0.02f;
     for (int i = 0; i < 3; ++i) {
         const float angle = 2.0f * pi * (float(i) + 0.5f) / 3.0f;
-        part(name + " post " + std::to_string(i), lantern, scene::make_cylinder(0.006f, 0.24f, 8), colour,
-             vec3(0.07f * std::cos(angle), 0.14f, 0.07f * std::sin(angle)));
+        part(name + " post " + std::to_string(i), lantern, scene::make_cylinder(0.006f, form.posts, 8), colour,
+             vec3(form.ring_radius * std::cos(angle), middle, form.ring_radius * std::sin(angle)));
     }
+    flame(name, lantern, intensity, form);
     // The flame is only visible; the point light above it gives the light.
-    const ecs::Entity flame =
-        part(name + " flame", lantern, scene::make_sphere(0.03f, 16, 8), vec3(0.0f), vec3(0.0f, 0.09f, 0.0f));
-    s_.registry().patch<scene::Material>(flame, [&](scene::Material& m) { m.emission = 3.0f * intensity; });
-    const ecs::Entity light = group(name + " light", vec3(0.0f, 0.16f, 0.0f));
+    const ecs::Entity light = group(name + " light", vec3(0.0f, form.light_height, 0.0f));
     s_.registry().emplace<scene::Parent>(light, {lantern});
     s_.registry().emplace<scene::PointLight>(light, {intensity});
+}
+
+void House::flame(const std::string& name, ecs::Entity lantern, vec3 intensity, const LanternForm& form) {
+    const ecs::Entity flame =
+        part(name + " flame", lantern, scene::make_sphere(form.flame_radius, 16, 8),
+             form.flame_emits ? vec3(0.0f) : vec3(1.0f, 0.93f, 0.72f), vec3(0.0f, form.flame_height, 0.0f));
+    s_.registry().patch<scene::Material>(flame, [&](scene::Material& material) {
+        if (form.flame_emits)
+            material.emission = 3.0f * intensity;
+        else
+            show_base_colour(material);
+    });
 }
 
 } // namespace sunfleck::assets

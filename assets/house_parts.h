@@ -32,6 +32,18 @@ struct Covering {
     float scale = 1.0f;
 };
 
+// Two plates that three posts hold apart, a flame between them, and the point light that it stands for. Metres.
+struct LanternForm {
+    float posts = 0.24f; // their length
+    float base_radius = 0.085f, cap_radius = 0.075f, ring_radius = 0.07f, flame_radius = 0.03f;
+    float flame_height = 0.09f, light_height = 0.16f;
+    bool flame_emits = true; // or else it only looks bright: nothing that moves is an area light then
+};
+
+// Images show the base colour as it is: without any extension of glTF beside the one that says so, which readers need
+// not understand together.
+void show_base_colour(scene::Material& material);
+
 class House {
 public:
     static constexpr float wall_thickness = 0.09f; // of each room's own wall
@@ -70,9 +82,10 @@ public:
     void ball(const std::string& name, vec3 centre, float radius, float mass, vec3 colour);
     void glowing_ball(const std::string& name, vec3 centre, float radius, float mass, vec3 radiance);
     void crate(const std::string& name, vec3 centre, float side, float mass, vec3 colour);
-    void lantern(const std::string& name, vec3 foot, vec3 intensity, vec3 colour);
+    void lantern(const std::string& name, vec3 foot, vec3 intensity, vec3 colour, const LanternForm& form = {});
 
 private:
+    void flame(const std::string& name, ecs::Entity lantern, vec3 intensity, const LanternForm& form);
     ecs::Entity sphere_light(const std::string& name, vec3 centre, float radius, vec3 radiance);
     ecs::Entity group(const std::string& name, vec3 position);
     ecs::Entity part(const std::string& name, ecs::Entity parent, scene::Mesh mesh, vec3 colour, vec3 position);

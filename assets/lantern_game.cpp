@@ -14,6 +14,9 @@ const vec3 red(0.68f, 0.06f, 0.05f), green(0.08f, 0.60f, 0.10f), blue(0.06f, 0.1
 const vec3 night_light(8.0f, 7.4f, 6.4f); // radiance of the lamps that are always on, W/(sr m2)
 const vec3 daylight(2.5f, 3.1f, 4.1f);    // of the sky in the windows
 
+// Its light is high enough to clear what it stands on.
+constexpr LanternForm tall_lantern{0.4f, 0.1f, 0.085f, 0.08f, 0.04f, 0.2f, 0.3f, false};
+
 constexpr float door_top = 2.15f, upper_floor = 3.44f;
 
 const Room porch{vec3(-3.0f, 0.0f, 6.24f), vec3(3.0f, 3.0f, 10.24f)};
@@ -108,7 +111,7 @@ scene::LightSensor opens(const std::string& which, vec3 threshold, float purity)
 void furnish_porch_and_corner(House& house, GameParts& parts) {
     house.add("pedestal", scene::make_cylinder(0.28f, 0.9f, 28), stone, vec3(0.0f, 0.45f, 8.0f));
     house.pattern("pedestal", {PatternKind::marble, vec3(0.34f, 0.33f, 0.32f), 0.22f});
-    parts.lantern("lantern", vec3(0.0f, 0.9f, 8.0f), vec3(3.2f, 3.1f, 2.95f));
+    house.lantern("lantern", vec3(0.0f, 0.9f, 8.0f), vec3(3.2f, 3.1f, 2.95f), brass, tall_lantern);
     house.boxes("porch bench",
                 {{vec3(-2.8f, 0.38f, 7.4f), vec3(-2.4f, 0.45f, 9.2f)},
                  {vec3(-2.75f, 0.0f, 7.5f), vec3(-2.45f, 0.38f, 7.6f)},

@@ -1,7 +1,7 @@
 #include "game_demo/walk_through.h"
 
-#include <algorithm>
-#include <cmath>
+#include "game_demo/game/turning.h"
+
 #include <iterator>
 
 namespace sunfleck::demo {
@@ -9,7 +9,6 @@ namespace {
 
 constexpr float near_enough = 0.25f;      // m
 constexpr std::uint32_t walk_limit = 900; // steps for one leg
-constexpr std::int32_t max_turn = 450;    // 1e-4 rad per step: 2.7 rad/s
 constexpr float look_tolerance = 0.05f;   // rad
 
 using Task = WalkThrough::Task;
@@ -98,20 +97,6 @@ const Task route[] = {
 } // namespace
 
 WalkThrough::WalkThrough() : tasks_(std::begin(route), std::end(route)) {}
-
-simulation::StepInput WalkThrough::turn_to(const simulation::Character& person, vec3 target, float& off) const {
-    const vec3 way = target - person.eye();
-    const float yaw = std::remainder(std::atan2(-way.x, -way.z) - person.yaw(), 2.0f * pi);
-    const float pitch = std::atan2(way.y, std::sqrt(way.x * way.x + way.z * way.z)) - person.pitch();
-    off = std::max(std::abs(yaw), std::abs(pitch));
-    const auto eased = [](float angle) { // slows down near the end
-        return std::clamp(std::int32_t(angle * 0.09f / simulation::look_unit), -max_turn, max_turn);
-    };
-    simulation::StepInput input;
-    input.turn = eased(yaw);
-    input.look_up = eased(pitch);
-    return input;
-}
 
 bool WalkThrough::perform(const Task& task, const simulation::Simulation& simulation,
                           simulation::StepInput& input) const {

@@ -23,7 +23,6 @@ public:
 private:
     // The input of the current step; true if the task is done.
     bool perform(const Task& task, const simulation::Simulation& simulation, simulation::StepInput& input) const;
-    simulation::StepInput turn_to(const simulation::Character& person, vec3 target, float& off) const;
 
     std::vector<Task> tasks_;
     std::size_t place_ = 0;

@@ -1,15 +1,12 @@
 #include "game_demo/game/solution.h"
 
 #include "game_demo/game/solution_route.h"
-
-#include <algorithm>
-#include <cmath>
+#include "game_demo/game/turning.h"
 
 namespace sunfleck::demo {
 namespace {
 
 constexpr float near_enough = 0.2f;                  // m
-constexpr std::int32_t max_turn = 450;               // 1e-4 rad per step: 2.7 rad/s
 constexpr float look_tolerance = 0.05f;              // rad
 constexpr float at_bottom = 0.13f, slow_down = 0.8f; // m
 constexpr std::int32_t pace = 52, slow_pace = 45;    // % of full speed
@@ -38,27 +35,12 @@ bool Solution::ended() const {
     return world_.finished() || !problem_.empty() || place_ >= tasks_.size();
 }
 
-simulation::StepInput Solution::turn_to(vec3 target, float& off) const {
-    const simulation::Character& person = world_.simulation().player();
-    const vec3 way = target - person.eye();
-    const float yaw = std::remainder(std::atan2(-way.x, -way.z) - person.yaw(), 2.0f * pi);
-    const float pitch = std::atan2(way.y, std::sqrt(way.x * way.x + way.z * way.z)) - person.pitch();
-    off = std::max(std::abs(yaw), std::abs(pitch));
-    const auto eased = [](float angle) { // slows down near the end
-        return std::clamp(std::int32_t(angle * 0.09f / simulation::look_unit), -max_turn, max_turn);
-    };
-    simulation::StepInput input;
-    input.turn = eased(yaw);
-    input.look_up = eased(pitch);
-    return input;
-}
-
 bool Solution::walk(const Task& task, simulation::StepInput& input) const {
     const simulation::Character& person = world_.simulation().player();
     const vec3 foot = person.capsule().foot;
     const float distance = glm::length(vec2(task.target.x - foot.x, task.target.z - foot.z));
     float off = 0.0f;
-    input = turn_to(vec3(task.target.x, person.eye().y - 0.15f, task.target.z), off);
+    input = turn_to(person, vec3(task.target.x, person.eye().y - 0.15f, task.target.z), off);
     input.forward = off > 0.6f ? 0 : distance < slow_down ? slow_pace : pace;
     return distance < near_enough;
 }
@@ -70,7 +52,7 @@ bool Solution::perform(const Task& task, simulation::StepInput& input) {
     case Task::walk:
         return walk(task, input);
     case Task::look:
-        input = turn_to(task.target, off);
+        input = turn_to(world_.simulation().player(), task.target, off);
         return off < look_tolerance;
     case Task::wait:
         return false;
@@ -78,7 +60,7 @@ bool Solution::perform(const Task& task, simulation::StepInput& input) {
         input.buttons = spent_ == 0 ? task.button : 0;
         return false;
     case Task::until_open: {
-        input = turn_to(task.target, off);
+        input = turn_to(world_.simulation().player(), task.target, off);
         const auto* reading = world_.registry().try_get<scene::SensorReading>(entity());
         return reading != nullptr && reading->open;
     }

@@ -31,7 +31,6 @@ public:
 
 private:
     bool perform(const Task& task, simulation::StepInput& input);
-    simulation::StepInput turn_to(vec3 target, float& off) const;
     bool walk(const Task& task, simulation::StepInput& input) const;
     std::string area_name() const;
 
