@@ -75,7 +75,9 @@ const TypeDescription& DemoSettings::description() {
          SUNFLECK_FIELD(DemoSettings, vertical_sync, "", 0, 1, "Synchronises frames with the display to avoid tearing"),
          SUNFLECK_FIELD(DemoSettings, full_screen, "", 0, 1, "Uses the whole screen"),
          SUNFLECK_FIELD(DemoSettings, show_times, "", 0, 1, "Shows the time of each GPU pass and CPU stage"),
-         SUNFLECK_FIELD(DemoSettings, ui_scale, "", 0.5, 3, "Size of text and menus")}};
+         SUNFLECK_FIELD(DemoSettings, ui_scale, "", 0.5, 3, "Size of text and menus"),
+         SUNFLECK_FIELD(DemoSettings, volume, "", 0, 1, "Loudness of all sounds; 0 is silent"),
+         SUNFLECK_FIELD(DemoSettings, subtitles, "", 0, 1, "Writes what is heard, and on which side")}};
     return type;
 }
 

@@ -51,6 +51,8 @@ struct DemoSettings {
     bool full_screen = false;
     bool show_times = false;
     float ui_scale = 1.0f;
+    float volume = 0.6f;
+    bool subtitles = false;
     std::array<app::Key, action_count> bindings{};
 
     DemoSettings();

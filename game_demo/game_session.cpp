@@ -11,7 +11,7 @@ namespace sunfleck::demo {
 namespace {
 
 constexpr double title_time = 5.0, hint_time = 12.0; // s
-constexpr double patience = 120.0;                   // s in a room until its hint shows by itself
+constexpr double patience = 75.0;                    // s in a room until its hint shows by itself
 
 // Corners of a colour's shape; it is told by shape alone, too.
 int corners_of(vec3 threshold) {
@@ -58,14 +58,15 @@ void text_window(const char* name, const std::string& text, float y, float alpha
 GameSession::GameSession(std::string level, std::filesystem::path folder)
     : files_(folder, std::move(level)), has_folder_(!folder.empty()) {}
 
-void GameSession::begin(GameWorld& world, bool resume) {
+bool GameSession::begin(GameWorld& world, bool resume) {
     world_ = &world;
-    if (resume && has_folder_)
-        files_.load(world, message_);
+    const bool resumed = resume && has_folder_ && files_.load(world, message_);
     seconds_ = double(world.simulation().steps()) * simulation::step_seconds;
     area_ = world.area_entity(); // the first area is no reason for a checkpoint: the last one stays
     title_seconds_ = title_time;
-    hint_seconds_ = area_seconds_ = 0.0;
+    area_seconds_ = 0.0;
+    hint_seconds_ = resumed ? 0.0 : hint_time; // the first one says what the game is about
+    return resumed || !resume;
 }
 
 void GameSession::update(double seconds) {
@@ -92,6 +93,20 @@ void GameSession::update(double seconds) {
 
 void GameSession::show_hint() {
     hint_seconds_ = hint_time;
+}
+
+GameProgress GameSession::progress() const {
+    if (world_ == nullptr)
+        return {"", vec3(0.0f), 0.0f, 0, false, false, false, can_resume()};
+    const simulation::Simulation& simulation = world_->simulation();
+    return {has_areas() ? world_->area()->title : std::string(),
+            simulation.player().capsule().foot,
+            simulation.player().yaw(),
+            simulation.steps(),
+            hint_seconds_ > 0.0,
+            world_->finished(),
+            simulation.carries_lantern(),
+            can_resume()};
 }
 
 void GameSession::draw() const {

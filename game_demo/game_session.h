@@ -8,17 +8,27 @@
 
 namespace sunfleck::demo {
 
+struct GameProgress {
+    std::string area; // the title of where the person is
+    vec3 place{0.0f}; // of their feet, m
+    float yaw = 0.0f; // rad
+    std::uint64_t steps = 0;
+    bool hint = false, finished = false, carries_lantern = false, can_resume = false;
+};
+
 class GameSession {
 public:
     // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
     GameSession(std::string level, std::filesystem::path folder);
 
-    // Of a level that was just loaded. `resume`: goes on at the last checkpoint.
-    void begin(GameWorld& world, bool resume);
+    // Of a level that was just loaded. `resume`: goes on at the last checkpoint. False: none is good, and the level
+    // must be loaded once more.
+    bool begin(GameWorld& world, bool resume);
     bool can_resume() const { return has_folder_ && files_.any(); }
     // After a frame's steps: notices new areas, saves a checkpoint there.
     void update(double seconds);
     void show_hint();
+    GameProgress progress() const;
     bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
     bool finished() const { return world_ != nullptr && world_->finished(); }
     double seconds() const { return seconds_; }

@@ -1,5 +1,6 @@
 #include "game_demo/hitch_log.h"
 
+#include "engine/core/log.h"
 #include "engine/statistics/summary.h"
 
 #include <algorithm>
@@ -64,6 +65,25 @@ std::string HitchLog::summary() const {
                   frames_, ratios_.empty() ? 0.0 : statistics::percentile(ratios_, 0.99), window,
                   ratios_.empty() ? 0.0 : *std::max_element(ratios_.begin(), ratios_.end()), above, noticed);
     return text;
+}
+
+void WindowHitches::log(const char* what, double seconds) const {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s after %.2f s", what, seconds);
+    if (on_)
+        log_information(text);
+}
+
+void WindowHitches::log(double seconds, const viewer::FrameStatistics& statistics) {
+    if (!on_)
+        return;
+    if (const std::string line = log_.add(1e3 * seconds, statistics); !line.empty())
+        log_information(line);
+}
+
+void WindowHitches::log_summary() const {
+    if (on_)
+        log_information(log_.summary());
 }
 
 } // namespace sunfleck::demo

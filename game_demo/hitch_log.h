@@ -31,4 +31,19 @@ private:
     std::size_t frames_ = 0;
 };
 
+// The same for a window, written to the log.
+class WindowHitches {
+public:
+    explicit WindowHitches(bool on) : on_(on) {}
+    // For measurements of the start: what came when, in seconds.
+    void log(const char* what, double seconds) const;
+    // The time from frame to frame, presents included; the passes are those of the newest finished frame.
+    void log(double seconds, const viewer::FrameStatistics& statistics);
+    void log_summary() const;
+
+private:
+    bool on_;
+    HitchLog log_;
+};
+
 } // namespace sunfleck::demo

@@ -31,6 +31,9 @@ void add_run_options(CLI::App& program, demo::Options& options) {
                      "Recorded input to replay when headless (default: the built-in walk)", "FILE");
     viewer::add_name(program, "--record", options.record,
                      "Record the input to this file, which is written every second", "FILE");
+    viewer::add_name(program, "--state", options.state,
+                     "With a window: keeps what the game does in this file, as JSON, for programs that press its keys",
+                     "FILE");
     viewer::add_whole(program, "--pictures", options.pictures, 0, most_frames,
                       "Number of images that a headless run writes, evenly spaced from its first frame to its last");
     viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,

@@ -8,10 +8,6 @@
 namespace sunfleck::demo {
 namespace {
 
-bool wide_button(const char* label) {
-    return ImGui::Button(label, ImVec2(13.0f * unit(), 0.0f));
-}
-
 void heading(const char* text, float scale) {
     ImGui::SetWindowFontScale(scale);
     ImGui::TextUnformatted(text);
@@ -52,6 +48,18 @@ ImVec2 settings_size() {
 
 } // namespace
 
+const char* screen_name(Screen screen) {
+    constexpr const char* names[] = {"title", "playing", "paused", "settings", "help", "finished"};
+    return names[std::size_t(screen)];
+}
+
+bool Menu::wide_button(const char* label) {
+    const bool pressed = ImGui::Button(label, ImVec2(13.0f * unit(), 0.0f));
+    if (ImGui::IsItemFocused())
+        selected_ = label;
+    return pressed;
+}
+
 void Menu::say(std::string message, double seconds) {
     message_ = std::move(message);
     message_seconds_ = seconds;
@@ -89,6 +97,7 @@ void Menu::back() {
 
 Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::InputState& input, bool& changed) {
     changed = false;
+    selected_.clear();
     // Until keyboard or gamepad navigation has selected something, Enter activates the first entry.
     const bool enter = input.hit(app::key_enter) && !ImGui::GetIO().NavVisible;
     Decision decision = Decision::none;
@@ -150,13 +159,18 @@ Decision Menu::title_screen(const OverlayData& data, bool enter) {
     place_next(0.08f, 0.5f, 0.0f, 0.5f);
     ImGui::Begin("title", nullptr, plain);
     heading("Lantern House", 1.9f);
-    ImGui::TextUnformatted("A Sunfleck demo of indirect light");
+    ImGui::TextUnformatted(data.is_game ? "Doors that open to bounced light" : "A Sunfleck demo of indirect light");
     ImGui::Dummy(ImVec2(0.0f, 0.6f * unit()));
-    if (wide_button("Start") || enter)
+    // The first entry is what Enter does: whoever has a checkpoint wants to go on.
+    if (data.can_resume) {
+        if (wide_button("Continue") || enter)
+            decision = Decision::resume;
+        ImGui::SetItemDefaultFocus();
+    }
+    if (wide_button(data.can_resume ? "New game" : "Start") || (enter && !data.can_resume))
         decision = Decision::play;
-    ImGui::SetItemDefaultFocus();
-    if (data.can_resume && wide_button("Continue"))
-        decision = Decision::resume;
+    if (!data.can_resume)
+        ImGui::SetItemDefaultFocus();
     settings_and_help_buttons();
     if (wide_button("Quit"))
         decision = Decision::quit;
@@ -269,6 +283,10 @@ void Menu::settings_tabs(DemoSettings& settings, const app::InputState& input, b
     };
     tab("Image", [&] { image_tab(settings, changed); });
     tab("Display", [&] { display_tab(settings, changed); });
+    tab("Sound", [&] {
+        changed |= field(settings, "volume", "Volume");
+        changed |= field(settings, "subtitles", "Subtitles");
+    });
     tab("Controls", [&] { bindings_tab(settings, input, changed); });
     ImGui::EndTabBar();
 }
@@ -337,6 +355,7 @@ void Menu::help_screen(const DemoSettings& settings) {
     ImGui::Dummy(ImVec2(0.0f, 0.4f * unit()));
     ImGui::TextUnformatted("Gamepad: left stick: walk; right stick: look; A: use; B: crouch;\n"
                            "X: put down; Y: indirect light; left bumper: run; Start: pause.\n\n"
+                           "In the menus, D-pad or arrows choose, A or Enter takes.\n"
                            "Walk into balls and crates to push them. The lift in the green room\n"
                            "leads to the attic. Switches beside the doors turn lamps on and off.");
     if (wide_button("Back"))

@@ -11,6 +11,8 @@
 namespace sunfleck::demo {
 
 enum class Screen { title, playing, paused, settings, help, finished };
+// "title", "playing", "paused", ...
+const char* screen_name(Screen screen);
 enum class Decision { none, play, resume, restart, hint, reset_room, quit };
 
 // Data for the overlays.
@@ -40,11 +42,16 @@ public:
     static void loading_screen(float share);
     // Shows a message at the top for a few seconds.
     void say(std::string message, double seconds = 3.5);
+    // The button that the keyboard or gamepad has selected; empty: none.
+    const std::string& selected() const { return selected_; }
+    // What is said now.
+    std::string message_text() const { return message_seconds_ > 0.0 ? message_ : std::string(); }
 
 private:
+    bool wide_button(const char* label);
     Decision title_screen(const OverlayData& data, bool enter);
     Decision pause_screen(const OverlayData& data, bool enter);
-    static Decision end_screen(const OverlayData& data, bool enter);
+    Decision end_screen(const OverlayData& data, bool enter);
     void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed);
@@ -61,6 +68,7 @@ private:
     Screen screen_ = Screen::title, came_from_ = Screen::title;
     int rebinding_ = -1;                 // action that is waiting for a key
     std::optional<float> dragged_scale_; // of text, while its slider is held: the slider must not move meanwhile
+    std::string selected_;
     std::string message_;
     double message_seconds_ = 0.0;
 };

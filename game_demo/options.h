@@ -22,6 +22,7 @@ struct Options {
     bool indirect = true;
     std::uint32_t memory_mib = 0;  // that may be taken; 0: three quarters of what is free
     std::string settings_file;     // empty: the default one
+    std::string state;             // file for what the window's game does; see state_file.h
     std::string screenshots = "."; // folder
     bool allow_outside = false;
 };

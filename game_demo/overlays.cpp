@@ -99,7 +99,7 @@ void Menu::times(const OverlayData& data) {
 }
 
 void Menu::light_progress(float share) {
-    place_next(0.01f, 0.98f, 0.0f, 1.0f);
+    place_next(0.99f, 0.98f, 1.0f, 1.0f);
     ImGui::SetNextWindowBgAlpha(0.45f);
     ImGui::Begin("light", nullptr, behind);
     ImGui::Text("Preparing the light: %.0f %%", 100.0 * double(share));

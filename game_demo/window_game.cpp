@@ -6,6 +6,7 @@
 #include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
 #include "game_demo/game_session.h"
+#include "game_demo/game_sounds.h"
 #include "game_demo/hitch_log.h"
 #include "game_demo/kept_settings.h"
 #include "game_demo/loading_screen.h"
@@ -13,6 +14,7 @@
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
 #include "game_demo/screenshot.h"
+#include "game_demo/state_file.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,7 +34,8 @@ double seconds_since(Clock::time_point start) {
 
 class Game {
 public:
-    explicit Game(const Options& options) : options_(options), recording_(options.record) {}
+    explicit Game(const Options& options)
+        : options_(options), state_(options.state), hitches_(options.hitches), recording_(options.record) {}
 
     // However it ends, settings and recording are written.
     Status run() {
@@ -46,7 +49,8 @@ public:
 
 private:
     Status check_files() const {
-        const NamedFile outputs[] = {{"--record", options_.record}, {"--settings", options_.settings_file}};
+        const NamedFile outputs[] = {
+            {"--record", options_.record}, {"--settings", options_.settings_file}, {"--state", options_.state}};
         const NamedFile inputs[] = {{"--scene", options_.scene}};
         SUNFLECK_TRY(check_outputs(outputs, inputs));
         return options_.record.empty() ? Status() : try_output(options_.record);
@@ -79,14 +83,6 @@ private:
         constexpr double preparing = 6.0; // Hz
         const bool prepares = !started_ && level_->light_share();
         return prepares ? std::min(preparing, double(settings_.frame_cap)) : double(settings_.frame_cap);
-    }
-
-    // For measurements of the start.
-    void log_time(const char* what) {
-        char text[80];
-        std::snprintf(text, sizeof text, "%s after %.2f s", what, seconds_since(began_));
-        if (options_.hitches)
-            log_information(text);
     }
 
     Status start() {
@@ -130,7 +126,7 @@ private:
         blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
         window_->set_title("Lantern House");
         level_->apply_later(settings_); // all of the light comes in view
-        log_time("first picture");
+        hitches_.log("first picture", seconds_since(began_));
         last_ = Clock::now();
         return {};
     }
@@ -159,10 +155,12 @@ private:
         window_->capture_pointer(playing);
         controls_.take(input, settings_, seconds, playing);
         simulate(seconds);
+        sounds_.update(level_->game(), settings_, seconds, started_ && playing);
         follow_light();
         SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(level_->renderer().submission().serial()));
         if (!visible) {
             window_->wait(0.05);
+            SUNFLECK_TRY(state_.write(state()));
             return false;
         }
         SUNFLECK_TRY(show(input, seconds));
@@ -174,7 +172,7 @@ private:
         if (const Status status = level_->advance_light(); !status)
             menu_.say("The new settings could not be applied: " + status.error().message, 6.0);
         else if (changes && !level_->light_share())
-            log_time("all of the light");
+            hitches_.log("all of the light", seconds_since(began_));
     }
 
     // In the order in which keys went down: a slow frame may hold several.
@@ -252,10 +250,10 @@ private:
         request.keep_samples = true;               // new ones are prepared beside the frames
         request.milliseconds = 1e3 * seconds_since(began_);
         renderer.collect_statistics();
-        log_hitch(seconds);
+        hitches_.log(seconds, renderer.statistics());
         screen_->gui().begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
         if (menu_.screen() == Screen::playing)
-            session_.draw();
+            draw_game();
         bool changed = false;
         const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
         screen_->gui().end_frame();
@@ -274,15 +272,17 @@ private:
                 menu_.say(status.error().message, 6.0);
         }
         decide(decision);
-        return {};
+        return state_.write(state());
     }
 
-    // The time from frame to frame, presents included; the passes are those of the newest finished frame.
-    void log_hitch(double seconds) {
-        if (!options_.hitches)
-            return;
-        if (const std::string line = hitches_.add(1e3 * seconds, level_->renderer().statistics()); !line.empty())
-            log_information(line);
+    void draw_game() const {
+        session_.draw();
+        sounds_.draw();
+    }
+
+    GameState state() const {
+        return {screen_name(menu_.screen()), menu_.selected(),    session_.progress(), sounds_.device(),
+                sounds_.subtitles(),         menu_.message_text()};
     }
 
     OverlayData overlay_data(const viewer::FrameRequest& request, double seconds) {
@@ -317,14 +317,10 @@ private:
         case Decision::none:
             break;
         case Decision::play:
-            menu_.show(Screen::playing);
-            if (!started_)
-                restart(false);
-            started_ = true;
-            break;
         case Decision::resume:
         case Decision::restart:
-            restart(decision == Decision::resume);
+            if (decision != Decision::play || !started_)
+                restart(decision == Decision::resume);
             started_ = true;
             menu_.show(Screen::playing);
             break;
@@ -345,15 +341,16 @@ private:
     // `resume`: at the last checkpoint.
     void restart(bool resume) {
         level_->restart();
-        session_.begin(level_->game(), resume);
+        sounds_.forget();
+        if (!session_.begin(level_->game(), resume))
+            return restart(false);
         accumulator_ = 0.0;
         recording_.clear();
     }
 
     Status finish() {
         loading_.reset();
-        if (options_.hitches)
-            log_information(hitches_.summary());
+        hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
         SUNFLECK_TRY(device_->wait_idle());
         if (kept_.differ_from_start(settings_)) // else nothing is lost
@@ -375,9 +372,11 @@ private:
     std::unique_ptr<LoadingScreen> loading_;
     std::unique_ptr<app::GuiScreen> screen_;
     Menu menu_;
+    GameSounds sounds_;
+    StateFile state_;
     GameSession session_{options_.scene, checkpoint_folder()};
     Controls controls_;
-    HitchLog hitches_;
+    WindowHitches hitches_;
     Clock::time_point last_;
     double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
     bool started_ = false, indirect_ = true, wants_screenshot_ = false, wants_reset_ = false, start_before_ = false;

@@ -2,22 +2,14 @@
 // (--widgets), keys, letters.
 #pragma once
 
-#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/file.h"
 #include "test_places.h"
-#include "tests/support/run_tool.h"
+#include "tests/support/driven_display.h"
 
-#include <chrono>
-#include <fcntl.h>
-#include <filesystem>
-#include <functional>
 #include <optional>
-#include <string>
-#include <thread>
-#include <unistd.h>
-#include <vector>
+#include <utility>
 
 namespace sunfleck::tests {
 
@@ -28,21 +20,11 @@ struct Widget {
 
 class DrivenEditor {
 public:
-    // What has to be installed.
-    static bool possible() { return shell("command -v Xvfb && command -v xdotool && command -v openbox").status == 0; }
+    static bool possible() { return DrivenDisplay::possible(); }
 
     explicit DrivenEditor(std::filesystem::path folder, const std::string& size = "1280x800")
-        : folder_(std::move(folder)), size_(size) {
-        std::filesystem::create_directories(folder_);
-        start_display();
-    }
-    ~DrivenEditor() {
-        for (const pid_t process : {editor_, manager_, display_})
-            if (process > 0) {
-                ::kill(process, SIGTERM);
-                ::waitpid(process, nullptr, 0);
-            }
-    }
+        : folder_(std::move(folder)), size_(size), display_(folder_) {}
+    ~DrivenEditor() { DrivenDisplay::end(editor_, SIGTERM); }
     DrivenEditor(const DrivenEditor&) = delete;
     DrivenEditor& operator=(const DrivenEditor&) = delete;
 
@@ -58,11 +40,9 @@ public:
                                      "--settings",
                                      file("settings.json")};
         all.insert(all.end(), arguments.begin(), arguments.end());
-        editor_ = launch(all, folder_ / "log");
+        editor_ = display_.launch(all, folder_ / "log");
         wait_until([&] { return find("viewport/picture").has_value(); });
-        window_ = run("xdotool search --sync --onlyvisible --name Sunfleck").output;
-        window_ = window_.substr(window_.find_last_of('\n', window_.size() - 2) + 1);
-        window_.erase(window_.find_last_not_of('\n') + 1);
+        window_ = display_.window("Sunfleck");
         run("xdotool windowfocus --sync " + window_);
     }
 
@@ -87,15 +67,8 @@ public:
         const std::optional<Widget> widget = find(name);
         return widget ? widget->value : "(not there)";
     }
-    // False: it did not come true in time.
     static bool wait_until(const std::function<bool()>& condition, double seconds = 25.0) {
-        const auto start = std::chrono::steady_clock::now();
-        while (!condition()) {
-            if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds)
-                return false;
-            std::this_thread::sleep_for(std::chrono::milliseconds(30));
-        }
-        return true;
+        return DrivenDisplay::wait_until(condition, seconds);
     }
     bool wait_for(const std::string& name, const std::string& wanted, double seconds = 25.0) const {
         return wait_until([&] { return value(name) == wanted; }, seconds);
@@ -143,75 +116,26 @@ public:
         return true;
     }
 
-    Outcome run(const std::string& command) const {
-        return shell("DISPLAY=:" + std::to_string(number_) + " " + command);
-    }
+    Outcome run(const std::string& command) const { return display_.run(command); }
     // Ends as by a signal, and what it reported; null if it did not end by itself.
     nlohmann::json end() {
-        ::kill(editor_, SIGINT);
-        int status = 0;
-        ::waitpid(editor_, &status, 0);
-        editor_ = -1;
+        DrivenDisplay::end(std::exchange(editor_, -1), SIGINT);
         const auto text = read_file(folder_ / "report.json");
         return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
     }
     // As a crash would.
-    void crash() {
-        ::kill(editor_, SIGKILL);
-        ::waitpid(editor_, nullptr, 0);
-        editor_ = -1;
-    }
+    void crash() { DrivenDisplay::end(std::exchange(editor_, -1), SIGKILL); }
     // Waits for the program to end by itself; its exit status.
-    int wait_for_end() {
-        int status = 0;
-        ::waitpid(editor_, &status, 0);
-        editor_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    }
+    int wait_for_end() { return DrivenDisplay::end(std::exchange(editor_, -1), 0); }
     std::string log() const { return read_file(folder_ / "log").value(); }
     std::string file(const std::string& name) const { return (folder_ / name).string(); }
     pid_t process() const { return editor_; }
 
 private:
-    pid_t launch(const std::vector<std::string>& arguments, const std::filesystem::path& log, int keep = -1) const {
-        std::vector<char*> pointers;
-        pointers.reserve(arguments.size() + 1);
-        for (const std::string& argument : arguments)
-            pointers.push_back(const_cast<char*>(argument.c_str()));
-        pointers.push_back(nullptr);
-        const pid_t process = ::fork();
-        if (process != 0)
-            return process;
-        const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-        ::dup2(output, 1);
-        ::dup2(output, 2);
-        if (keep >= 0)
-            ::dup2(keep, 9);
-        if (number_ >= 0)
-            ::setenv("DISPLAY", (":" + std::to_string(number_)).c_str(), 1);
-        ::execvp(pointers[0], pointers.data());
-        ::_exit(127);
-    }
-    void start_display() {
-        int ends[2];
-        if (::pipe2(ends, O_CLOEXEC) != 0)
-            return;
-        display_ = launch({"Xvfb", "-displayfd", "9", "-screen", "0", "1920x1200x24", "-noreset", "-nolisten", "tcp"},
-                          folder_ / "display.log", ends[1]);
-        ::close(ends[1]);
-        char text[16] = {};
-        std::size_t length = 0;
-        while (length < sizeof text - 1 && ::read(ends[0], text + length, 1) == 1 && text[length] != '\n')
-            ++length;
-        ::close(ends[0]);
-        number_ = std::atoi(text);
-        manager_ = launch({"openbox", "--config-file", "/dev/null"}, folder_ / "display.log");
-    }
-
     std::filesystem::path folder_;
     std::string size_, window_;
-    pid_t display_ = -1, manager_ = -1, editor_ = -1;
-    int number_ = -1;
+    DrivenDisplay display_;
+    pid_t editor_ = -1;
 };
 
 } // namespace sunfleck::tests

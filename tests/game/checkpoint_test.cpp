@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <functional>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -85,6 +86,30 @@ TEST(GameCheckpoints, WhatIsNotGoodIsSetAside) {
             return text.replace(text.find(mark), mark.size(), "\"other_level\"");
         },
         "another level");
+}
+
+// A limit on the size of files fails a write as a full disk does: in the middle.
+TEST(GameCheckpoints, AFullDiskLeavesTheLastOne) {
+    const Folder folder;
+    const CheckpointFiles files(folder.path, "lantern_game");
+    Played played, other;
+    ASSERT_TRUE(files.save(*played.world));
+    const std::uint64_t saved = hash_of(played);
+    played.step({50, 0, 30, 0, 0});
+    const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    const rlimit small{64, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const Status failed = files.save(*played.world);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    std::signal(SIGXFSZ, ignored);
+    ASSERT_FALSE(failed);
+    EXPECT_NE(failed.error().message.find(folder.path.string()), std::string::npos) << failed.error().message;
+    std::string message;
+    ASSERT_TRUE(files.load(*other.world, message)) << message;
+    EXPECT_EQ(message, "");
+    EXPECT_EQ(hash_of(other), saved);
 }
 
 TEST(GameCheckpoints, KilledWritersLeaveAGoodOne) {

@@ -2,6 +2,7 @@
 // a soak has a short relative among them and its full size with SUNFLECK_TEST_SIZE=long (./run test --long).
 #pragma once
 
+#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
@@ -25,6 +26,14 @@ inline bool sanitized() {
 template <typename T>
 T by_size(T in_short, T in_long) {
     return long_size() ? in_long : in_short;
+}
+
+// Of a test that goes through many independent items: whether this run does the item. SUNFLECK_TEST_PART=K/N does those
+// whose number is K modulo N, so that a long test is run piece by piece (tests/bench/game.sh).
+inline bool in_part(unsigned item) {
+    const char* part = std::getenv("SUNFLECK_TEST_PART");
+    unsigned which = 0, of = 1;
+    return part == nullptr || std::sscanf(part, "%u/%u", &which, &of) != 2 || of == 0 || item % of == which;
 }
 
 } // namespace sunfleck::tests

@@ -1,0 +1,34 @@
+#include "game_demo/state_file.h"
+
+#include "engine/core/file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace sunfleck::demo {
+
+Status StateFile::write(const GameState& state) {
+    if (path_.empty())
+        return {};
+    const vec3 place = state.progress.place;
+    const nlohmann::ordered_json json = {{"screen", state.screen},
+                                         {"selected", state.selected},
+                                         {"place", {place.x, place.y, place.z}},
+                                         {"yaw", state.progress.yaw},
+                                         {"area", state.progress.area},
+                                         {"steps", state.progress.steps},
+                                         {"hint", state.progress.hint},
+                                         {"finished", state.progress.finished},
+                                         {"carries_lantern", state.progress.carries_lantern},
+                                         {"can_resume", state.progress.can_resume},
+                                         {"sound_device", state.device},
+                                         {"subtitles", state.subtitles},
+                                         {"message", state.message}};
+    const std::string text = json.dump() + "\n";
+    if (text == written_)
+        return {};
+    SUNFLECK_TRY(write_file(path_, text));
+    written_ = text;
+    return {};
+}
+
+} // namespace sunfleck::demo

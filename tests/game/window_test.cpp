@@ -1,0 +1,200 @@
+// The game in a real window with real keys, from outside: each step waits for what it should bring about, never for a
+// time.
+#include "engine/core/file.h"
+#include "tests/support/command_line.h"
+#include "tests/support/driven_display.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace sunfleck {
+namespace {
+
+namespace fs = std::filesystem;
+
+using tests::CommandLine, tests::DrivenDisplay;
+
+// The demo on a display of its own, and the state that it writes.
+class DrivenGame {
+public:
+    explicit DrivenGame(fs::path folder) : folder_(std::move(folder)), display_(folder_ / "display") {}
+    ~DrivenGame() { DrivenDisplay::end(process_, SIGTERM); }
+    DrivenGame(const DrivenGame&) = delete;
+    DrivenGame& operator=(const DrivenGame&) = delete;
+
+    // `sound`: OpenAL's drivers.
+    bool start(const std::string& sound) {
+        fs::remove(state_file());
+        process_ =
+            display_.launch({"env", "XDG_CONFIG_HOME=" + folder_.string(), "XDG_DATA_HOME=" + folder_.string(),
+                             "ALSOFT_DRIVERS=" + sound, SUNFLECK_DEMO, "--scene", "lantern_game", "--size", "192x108",
+                             "--settings", (folder_ / "settings.json").string(), "--state", state_file().string()},
+                            folder_ / "log");
+        if (!shows("title", 120.0))
+            return false;
+        window_ = display_.window("Lantern House$");
+        display_.run("xdotool windowfocus --sync " + window_);
+        return true;
+    }
+
+    nlohmann::json state() const {
+        const auto text = read_file(state_file());
+        const auto json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+        return json.is_object() ? json : nlohmann::json::object();
+    }
+    std::string value(const char* name) const { return state().value(name, std::string()); }
+    float place(std::size_t axis) const {
+        const nlohmann::json now = state();
+        return now.contains("place") ? now["place"][axis].get<float>() : 0.0f;
+    }
+    bool shows(const std::string& screen, double seconds = 30.0) const {
+        return DrivenDisplay::wait_until([&] { return value("screen") == screen; }, seconds);
+    }
+
+    // Presses until the condition holds. A slow program may take a while: the key comes once more only after seconds.
+    bool press_until(const std::string& key, const std::function<bool()>& condition) const {
+        for (int round = 0; round < 12; ++round) {
+            display_.run("xdotool key " + key);
+            if (DrivenDisplay::wait_until(condition, 4.0))
+                return true;
+        }
+        return false;
+    }
+    bool hold_until(const std::string& key, const std::function<bool()>& condition, double seconds = 60.0) const {
+        display_.run("xdotool keydown " + key);
+        const bool came = DrivenDisplay::wait_until(condition, seconds);
+        display_.run("xdotool keyup " + key);
+        return came;
+    }
+    // Crouched, and to and fro, until the person stands between both.
+    bool strafe_between(float low, float high) const {
+        display_.run("xdotool keydown c");
+        bool inside = false;
+        for (int round = 0; round < 10 && !inside; ++round) {
+            const float x = place(0);
+            if (x > high)
+                hold_until(
+                    "a", [&] { return place(0) < high; }, 20.0);
+            else if (x < low)
+                hold_until(
+                    "d", [&] { return place(0) > low; }, 20.0);
+            rests();
+            inside = place(0) >= low && place(0) <= high;
+        }
+        display_.run("xdotool keyup c");
+        return inside;
+    }
+    // The person has come to a stop: steps went by, and they are where they were.
+    bool rests() const {
+        nlohmann::json before = state();
+        return DrivenDisplay::wait_until([&] {
+            const nlohmann::json now = state();
+            if (now.value("steps", 0) < before.value("steps", 0) + 12)
+                return false;
+            return std::exchange(before, now)["place"] == now["place"];
+        });
+    }
+    // From the paused game: the menu's entry of this name is selected, then taken.
+    bool take(const std::string& entry) const {
+        for (int round = 0; round < 16 && value("selected") != entry; ++round) {
+            const std::string before = value("selected");
+            display_.run("xdotool key Down");
+            DrivenDisplay::wait_until([&] { return value("selected") != before; }, 3.0);
+        }
+        if (value("selected") != entry)
+            return false;
+        display_.run("xdotool key Return");
+        return true;
+    }
+
+    int end(int signal) { return DrivenDisplay::end(std::exchange(process_, -1), signal); }
+    tests::Outcome run(const std::string& command) const { return display_.run(command); }
+    const std::string& window() const { return window_; }
+    std::string log() const {
+        const auto text = read_file(folder_ / "log");
+        return text ? *text : std::string();
+    }
+
+private:
+    fs::path state_file() const { return folder_ / "state.json"; }
+
+    fs::path folder_;
+    DrivenDisplay display_;
+    pid_t process_ = -1;
+    std::string window_;
+};
+
+class GameWindow : public CommandLine {
+protected:
+    void SetUp() override {
+        CommandLine::SetUp();
+        if (!DrivenDisplay::possible())
+            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+    }
+    fs::path checkpoint() const { return folder / "sunfleck/lantern_game.checkpoint"; }
+};
+
+// From the title through the first door, whose room is a checkpoint.
+void walk_to_the_corner(const DrivenGame& game) {
+    const auto heard = [&] {
+        for (const auto& line : game.state().value("subtitles", nlohmann::json::array()))
+            if (line.get<std::string>().find("porch door slides") != std::string::npos)
+                return true;
+        return false;
+    };
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    EXPECT_EQ(game.value("area"), "The porch");
+    EXPECT_TRUE(game.state().value("hint", false)) << "the first hint says what the game is about";
+    ASSERT_TRUE(game.strafe_between(0.75f, 2.5f)) << game.state();
+    ASSERT_TRUE(game.hold_until("w", [&] { return game.place(2) < 7.3f; })) << game.state();
+    ASSERT_TRUE(game.strafe_between(-0.2f, 0.2f)) << game.state();
+    EXPECT_TRUE(DrivenDisplay::wait_until(heard)) << game.state();
+    ASSERT_TRUE(game.hold_until("w", [&] { return game.value("area") == "The corner"; })) << game.state();
+}
+
+// Paused, nothing moves; so it does when the window loses the focus.
+void pause_and_lose_focus(const DrivenGame& game) {
+    ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    game.run("xdotool windowminimize " + game.window());
+    EXPECT_TRUE(game.shows("paused"));
+    game.run("xdotool windowmap --sync " + game.window());
+    game.run("xdotool windowfocus --sync " + game.window());
+    const auto steps = game.state().value("steps", std::uint64_t(0));
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    EXPECT_TRUE(DrivenDisplay::wait_until([&] { return game.state().value("steps", std::uint64_t(0)) > steps; }));
+}
+
+TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
+    ASSERT_TRUE(write_file(folder / "settings.json", "{\"subtitles\": true, \"preset\": \"software\"}\n"));
+    DrivenGame game(folder);
+    ASSERT_TRUE(game.start("none")) << game.log();
+    EXPECT_EQ(game.value("sound_device"), "") << "there is none, and the game does not mind";
+    EXPECT_FALSE(game.state().value("can_resume", true));
+    walk_to_the_corner(game);
+    ASSERT_TRUE(DrivenDisplay::wait_until([&] { return game.state().value("can_resume", false); }));
+    EXPECT_TRUE(fs::exists(checkpoint()));
+    pause_and_lose_focus(game);
+    ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
+    ASSERT_TRUE(game.take("Quit")) << game.state();
+    EXPECT_EQ(game.end(0), 0) << game.log();
+
+    ASSERT_TRUE(game.start("null")) << game.log();
+    EXPECT_NE(game.value("sound_device"), "");
+    EXPECT_TRUE(game.state().value("can_resume", false));
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    EXPECT_EQ(game.value("area"), "The corner") << "Enter goes on at the checkpoint";
+    EXPECT_LT(game.place(2), 6.24f);
+    EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
+}
+
+TEST_F(GameWindow, AMissingLevelIsOneMessage) {
+    const DrivenDisplay display(folder);
+    expect_clear_error(
+        display.run("XDG_CONFIG_HOME=" + folder.string() + " " SUNFLECK_DEMO " --scene no_such_level.glb"),
+        {"error: ", "no_such_level.glb"});
+}
+
+} // namespace
+} // namespace sunfleck

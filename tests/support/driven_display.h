@@ -1,0 +1,113 @@
+// A display of the test's own, on which a program is driven by X events as a user would.
+#pragma once
+
+#include <csignal>
+
+#include "tests/support/run_tool.h"
+
+#include <chrono>
+#include <fcntl.h>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace sunfleck::tests {
+
+class DrivenDisplay {
+public:
+    // What has to be installed.
+    static bool possible() { return shell("command -v Xvfb && command -v xdotool && command -v openbox").status == 0; }
+
+    // The folder is for logs.
+    explicit DrivenDisplay(std::filesystem::path folder) : folder_(std::move(folder)) {
+        std::filesystem::create_directories(folder_);
+        start_display();
+    }
+    ~DrivenDisplay() {
+        for (const pid_t process : {manager_, display_})
+            end(process, SIGTERM);
+    }
+    DrivenDisplay(const DrivenDisplay&) = delete;
+    DrivenDisplay& operator=(const DrivenDisplay&) = delete;
+
+    // Starts a program whose output goes to the log.
+    pid_t launch(const std::vector<std::string>& arguments, const std::filesystem::path& log, int keep = -1) const {
+        std::vector<char*> pointers;
+        pointers.reserve(arguments.size() + 1);
+        for (const std::string& argument : arguments)
+            pointers.push_back(const_cast<char*>(argument.c_str()));
+        pointers.push_back(nullptr);
+        const pid_t process = ::fork();
+        if (process != 0)
+            return process;
+        const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+        ::dup2(output, 1);
+        ::dup2(output, 2);
+        if (keep >= 0)
+            ::dup2(keep, 9);
+        if (number_ >= 0)
+            ::setenv("DISPLAY", (":" + std::to_string(number_)).c_str(), 1);
+        ::execvp(pointers[0], pointers.data());
+        ::_exit(127);
+    }
+    // Sends the signal, unless it is 0, and waits for the program to end, at most a minute. Its exit status, or 128 +
+    // the signal that ended it.
+    static int end(pid_t process, int signal) {
+        if (process <= 0)
+            return -1;
+        if (signal != 0)
+            ::kill(process, signal);
+        int status = 0;
+        const auto ended = [&] { return ::waitpid(process, &status, WNOHANG) == process; };
+        if (!wait_until(ended, 60.0)) {
+            ::kill(process, SIGKILL);
+            ::waitpid(process, &status, 0);
+        }
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+    Outcome run(const std::string& command) const {
+        return shell("DISPLAY=:" + std::to_string(number_) + " " + command);
+    }
+    // The visible window of this title, as xdotool names it.
+    std::string window(const std::string& title) const {
+        std::string found = run("xdotool search --sync --onlyvisible --name '" + title + "'").output;
+        found.erase(found.find_last_not_of('\n') + 1);
+        return found.substr(found.find_last_of('\n') + 1);
+    }
+    // False: it did not come true in time.
+    static bool wait_until(const std::function<bool()>& condition, double seconds = 25.0) {
+        const auto start = std::chrono::steady_clock::now();
+        while (!condition()) {
+            if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds)
+                return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        }
+        return true;
+    }
+
+private:
+    void start_display() {
+        int ends[2];
+        if (::pipe2(ends, O_CLOEXEC) != 0)
+            return;
+        display_ = launch({"Xvfb", "-displayfd", "9", "-screen", "0", "1920x1200x24", "-noreset", "-nolisten", "tcp"},
+                          folder_ / "display.log", ends[1]);
+        ::close(ends[1]);
+        char text[16] = {};
+        std::size_t length = 0;
+        while (length < sizeof text - 1 && ::read(ends[0], text + length, 1) == 1 && text[length] != '\n')
+            ++length;
+        ::close(ends[0]);
+        number_ = std::atoi(text);
+        manager_ = launch({"openbox", "--config-file", "/dev/null"}, folder_ / "display.log");
+    }
+
+    std::filesystem::path folder_;
+    pid_t display_ = -1, manager_ = -1;
+    int number_ = -1;
+};
+
+} // namespace sunfleck::tests
