@@ -16,10 +16,6 @@ int sides_of(Sign sign) {
         return 4;
     case Sign::violet:
         return 5;
-    case Sign::tower:
-        return 6;
-    case Sign::sun:
-        return 12;
     case Sign::white:
         break;
     }
@@ -34,10 +30,6 @@ vec3 colour_of(Sign sign) {
         return {0.12f, 0.70f, 0.15f};
     case Sign::violet:
         return {0.62f, 0.14f, 0.75f};
-    case Sign::tower:
-        return {0.35f, 0.65f, 0.85f};
-    case Sign::sun:
-        return {0.95f, 0.72f, 0.15f};
     case Sign::white:
         break;
     }

@@ -6,8 +6,8 @@
 
 namespace sunfleck::assets {
 
-// A sensor's colour, which is a shape, too: on the sensor, and on the gauge beside the door that it opens.
-enum class Sign { white, red, green, sun, violet, tower };
+// The colour that a sensor needs, which is a shape, too: on the sensor, and on the gauge beside the door that it opens.
+enum class Sign { white, red, green, violet };
 
 class GameParts {
 public:

@@ -73,7 +73,7 @@ void build_ceilings(House& house) {
     house.ceiling("colours", colours, slate, lamp("colours lamp", 11.0f, 1.5f));
     house.ceiling("tower", tower, white, {});
     house.ceiling("lamp room", lamp_room, white,
-                  {{"great lamp", vec2(12.48f, -10.3f), 1.1f, 1.1f, vec3(14.0f, 11.5f, 8.0f)}});
+                  {{"great lamp", vec2(12.48f, -10.3f), 1.1f, 1.1f, vec3(8.0f, 6.6f, 4.6f)}});
     house.wall_lamp("tower lamp", vec3(15.46f, 1.9f, -2.4f), vec3(-1, 0, 0), 0.6f, 0.4f, 1.5f * night_light);
 }
 
@@ -173,8 +173,8 @@ void furnish_shutters(House& house, GameParts& parts) {
         stone);
     house.boxes("sun shelf", {{vec3(8.2f, 1.04f, -4.1f), vec3(9.24f, 1.10f, -3.1f)}}, dark_oak);
     parts.sensor("sun sensor", vec3(8.6f, 1.01f, -3.6f), vec3(0, -1, 0), opens("sun", vec3(1.9f), 0.0f));
-    parts.sign("sun sign", Sign::sun, vec3(7.09f, 0.8f, -3.6f), vec3(-1, 0, 0), 0.2f);
-    parts.gauge("sun gauge", Sign::sun, vec3(7.25f, 0.9f, -0.252f), vec3(0, 0, -1));
+    parts.sign("sun sign", Sign::white, vec3(7.09f, 0.8f, -3.6f), vec3(-1, 0, 0), 0.2f);
+    parts.gauge("sun gauge", Sign::white, vec3(7.25f, 0.9f, -0.252f), vec3(0, 0, -1));
 }
 
 // A beam runs along the wall into a black board. The green block on its rails can be pushed into it; the eye looks at
@@ -242,8 +242,8 @@ void furnish_tower(House& house, GameParts& parts) {
     house.boxes("railing", rail, oak);
     house.boxes("tower bracket", {{vec3(11.85f, 5.22f, -6.24f), vec3(12.35f, 5.28f, -5.6f)}}, stone);
     parts.sensor("tower sensor", vec3(12.1f, 5.34f, -5.85f), vec3(0, 1, 0), opens("tower", vec3(0.6f), 0.0f));
-    parts.sign("tower sign", Sign::tower, vec3(12.1f, 5.0f, -6.228f), vec3(0, 0, 1));
-    parts.gauge("tower gauge", Sign::tower, vec3(14.5f, upper_floor + 0.6f, -6.228f), vec3(0, 0, 1));
+    parts.sign("tower sign", Sign::white, vec3(12.1f, 5.0f, -6.228f), vec3(0, 0, 1));
+    parts.gauge("tower gauge", Sign::white, vec3(14.5f, upper_floor + 0.6f, -6.228f), vec3(0, 0, 1));
 }
 
 void furnish_lamp_room(House& house) {
