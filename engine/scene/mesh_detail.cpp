@@ -7,11 +7,13 @@ namespace sunfleck::scene {
 namespace {
 
 constexpr std::size_t min_mesh = 64, min_triangles = 24; // below these, fewer triangles gain nothing
+constexpr std::size_t large_mesh = 300000;               // triangles
 
-std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices) {
-    std::vector<std::uint32_t> sorted = indices;
-    std::sort(sorted.begin(), sorted.end());
-    return std::uint32_t(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
+std::uint32_t count_vertices(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
+    std::vector<std::uint8_t> used(vertices, 0);
+    for (const std::uint32_t index : indices)
+        used[index] = 1;
+    return std::uint32_t(std::count(used.begin(), used.end(), std::uint8_t(1)));
 }
 
 // The mesh's indices, with coincident vertices counted as one.
@@ -33,21 +35,23 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
     if (mesh.indices.empty())
         return details;
     const float* positions = &mesh.positions[0].x;
-    whole.vertex_count = count_vertices(whole.indices);
+    whole.vertex_count = count_vertices(whole.indices, mesh.positions.size());
     const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
     std::size_t target = whole.indices.size() / 6 * 3;
     while (details.size() < 32 && mesh.triangle_count() >= min_mesh && target / 3 >= min_triangles) {
         MeshDetail detail;
-        detail.indices.resize(mesh.indices.size());
+        detail.indices.resize(details.front().indices.size());
         float error = 0.0f;
-        // Each level is simplified from the whole mesh, so that its error is relative to the original.
-        detail.indices.resize(meshopt_simplify(detail.indices.data(), details.front().indices.data(),
-                                               details.front().indices.size(), positions, mesh.positions.size(),
-                                               sizeof(vec3), target, 0.25f, 0, &error));
+        // Each level is simplified from the whole mesh, so that its error is relative to the original; of large meshes,
+        // where that would take minutes, from the level before, and errors add up.
+        const MeshDetail& from = mesh.triangle_count() > large_mesh ? details.back() : details.front();
+        detail.indices.resize(meshopt_simplify(detail.indices.data(), from.indices.data(), from.indices.size(),
+                                               positions, mesh.positions.size(), sizeof(vec3), target, 0.25f, 0,
+                                               &error));
         if (detail.indices.size() * 10 > details.back().indices.size() * 9 || detail.indices.empty())
             break;
-        detail.error = error * scale;
-        detail.vertex_count = count_vertices(detail.indices);
+        detail.error = from.error + error * scale;
+        detail.vertex_count = count_vertices(detail.indices, mesh.positions.size());
         details.push_back(std::move(detail));
         target = target / 6 * 3;
     }

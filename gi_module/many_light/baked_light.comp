@@ -49,36 +49,62 @@ Pixel pixel_at(LightMapJob job, uint i) {
     return pixel;
 }
 
+// What a change adds to a texel: light in fixed point.
+ivec3 change_of(uint change, LightRow light, Pixel texel) {
+    const float untested = (change & light_map_test) != 0u ? 0.0 : 1.0;
+    const int direction = (change & light_map_subtract) != 0u ? -1 : 1;
+    const LightFactor factor = light_factor(light, texel, true);
+    const vec3 arriving = light.intensity_slot.rgb * (factor.unshadowed * max(factor.visibility, untested));
+    return ivec3(arriving * constants.fixed_point + 0.5) * direction;
+}
+
+ivec3 sum_before(LightMapJob job, uint i) {
+    return job.clear != 0u ? ivec3(0) : sums[job.first_texel + i].xyz;
+}
+
+void sum_many(LightMapJob job, uint begin, uint end) {
+    Pixel texel[texels_per_invocation];
+    ivec3 sum[texels_per_invocation];
+    [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
+        const uint i = min(begin + k * lanes + gl_LocalInvocationID.x, end - 1u);
+        texel[k] = pixel_at(job, i);
+        sum[k] = sum_before(job, i);
+    }
+    for (uint c = 0; c < job.change_count; ++c) {
+        const uint change = changes[job.first_change + c];
+        const LightRow light = lights[change & light_map_sample_mask];
+        [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k)
+            sum[k] += change_of(change, light, texel[k]);
+    }
+    [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
+        const uint i = begin + k * lanes + gl_LocalInvocationID.x;
+        if (i < end)
+            sums[job.first_texel + i] = ivec4(sum[k], 0);
+    }
+}
+
+// The same for as many texels as there are lanes: most of what small surfaces have.
+void sum_few(LightMapJob job, uint begin, uint end) {
+    const uint i = min(begin + gl_LocalInvocationID.x, end - 1u);
+    const Pixel texel = pixel_at(job, i);
+    ivec3 sum = sum_before(job, i);
+    for (uint c = 0; c < job.change_count; ++c) {
+        const uint change = changes[job.first_change + c];
+        sum += change_of(change, lights[change & light_map_sample_mask], texel);
+    }
+    if (begin + gl_LocalInvocationID.x < end)
+        sums[job.first_texel + i] = ivec4(sum, 0);
+}
+
 void main() {
     const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
     if (number >= constants.jobs)
         return;
     const LightMapJob job = jobs[number];
     const uint end = job.first + job.count;
-    for (uint begin = job.first; begin < end; begin += lanes * texels_per_invocation) {
-        Pixel texel[texels_per_invocation];
-        ivec3 sum[texels_per_invocation];
-        [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
-            const uint i = min(begin + k * lanes + gl_LocalInvocationID.x, end - 1u);
-            texel[k] = pixel_at(job, i);
-            sum[k] = job.clear != 0u ? ivec3(0) : sums[job.first_texel + i].xyz;
-        }
-        for (uint c = 0; c < job.change_count; ++c) {
-            const uint change = changes[job.first_change + c];
-            const LightRow light = lights[change & light_map_sample_mask];
-            const float untested = (change & light_map_test) != 0u ? 0.0 : 1.0;
-            const int direction = (change & light_map_subtract) != 0u ? -1 : 1;
-            [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
-                const LightFactor factor = light_factor(light, texel[k], true);
-                const vec3 arriving =
-                    light.intensity_slot.rgb * (factor.unshadowed * max(factor.visibility, untested));
-                sum[k] += ivec3(arriving * constants.fixed_point + 0.5) * direction;
-            }
-        }
-        [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
-            const uint i = begin + k * lanes + gl_LocalInvocationID.x;
-            if (i < end)
-                sums[job.first_texel + i] = ivec4(sum[k], 0);
-        }
-    }
+    uint begin = job.first;
+    for (; begin + lanes < end; begin += lanes * texels_per_invocation)
+        sum_many(job, begin, end);
+    for (; begin < end; begin += lanes)
+        sum_few(job, begin, end);
 }

@@ -1,5 +1,6 @@
 #include "gi_module/many_light/baked_light.h"
 
+#include "engine/core/jobs.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
@@ -168,26 +169,48 @@ void BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<
     baked_rows_.assign(rows.begin(), rows.end());
 }
 
+// How many of those that wait are baked in this frame, from the last on. What they evaluate is counted for many at
+// once.
+std::uint32_t BakedLight::take_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                                       std::uint64_t most) {
+    constexpr std::size_t at_once = 1024;
+    std::size_t count = 0;
+    std::vector<std::uint64_t> evaluations;
+    while (count < waiting_.size() && evaluations_ < most) {
+        evaluations.assign(std::min(at_once, waiting_.size() - count), 0);
+        parallel_for_chunks(evaluations.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const Piece& piece = pieces_[waiting_[waiting_.size() - 1 - count - i]];
+                std::uint64_t reaching = 1;
+                for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
+                    if (held_by_light_maps(samples[sample]))
+                        reaching += test_flag(database, piece.nodes, sample).has_value();
+                evaluations[i] = reaching * piece.texels();
+            }
+        });
+        for (std::size_t i = 0; i < evaluations.size() && evaluations_ < most; ++i, ++count)
+            evaluations_ += evaluations[i];
+    }
+    return std::uint32_t(count);
+}
+
 void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
                               std::uint64_t most) {
     const std::uint32_t now = std::uint32_t(job_rows_.size()); // the rows as they are at present
     job_rows_.insert(job_rows_.end(), baked_rows_.begin(), baked_rows_.end());
-    while (!waiting_.empty() && evaluations_ < most) {
-        const Piece& piece = pieces_[waiting_.back()];
-        waiting_.pop_back();
-        jobs_.add(piece.job, true);
-        finish_.add(piece.job, false);
-        for (std::uint32_t sample = 0; sample < samples.size(); ++sample) {
-            if (!held_by_light_maps(samples[sample]))
-                continue;
-            const auto flag = test_flag(database, piece.nodes, sample);
-            if (!flag)
-                continue;
-            jobs_.add_change((now + sample) | *flag);
-            evaluations_ += piece.texels();
-        }
-        evaluations_ += piece.texels();
-    }
+    const std::uint32_t count = take_waiting(database, samples, most);
+    const auto piece_at = [&](std::uint32_t i) -> const Piece& { return pieces_[waiting_[waiting_.size() - 1 - i]]; };
+    for (std::uint32_t i = 0; i < count; ++i)
+        finish_.add(piece_at(i).job, false);
+    jobs_.add_all(count, [&](LightMapJobs& jobs, std::uint32_t i) {
+        const Piece& piece = piece_at(i);
+        jobs.add(piece.job, true);
+        for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
+            if (held_by_light_maps(samples[sample]))
+                if (const auto flag = test_flag(database, piece.nodes, sample))
+                    jobs.add_change((now + sample) | *flag);
+    });
+    waiting_.resize(waiting_.size() - count);
 }
 
 Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed,

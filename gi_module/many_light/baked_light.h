@@ -75,6 +75,8 @@ private:
                           std::span<const std::uint32_t> changed);
     void bake_later(std::uint32_t piece);
     void add_wipe(gpu::FrameGraph& graph);
+    std::uint32_t take_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
+                               std::uint64_t most);
     void bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples, std::uint64_t most);
 
     gpu::Device& device_;

@@ -1,5 +1,7 @@
 #include "gi_module/many_light/light_map_jobs.h"
 
+#include "engine/core/jobs.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -34,6 +36,31 @@ void LightMapJobs::add(shared::LightMapJob job, bool clear) {
     job.clear = clear;
     job.first_change = std::uint32_t(changes_.size());
     jobs_.push_back(job);
+}
+
+void LightMapJobs::add_all(std::size_t count,
+                           const std::function<void(LightMapJobs& jobs, std::uint32_t index)>& add_one) {
+    constexpr std::size_t at_once = 256;
+    std::vector<LightMapJobs> parts((count + at_once - 1) / at_once);
+    parallel_for_chunks(count, at_once, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t index = begin; index < end; ++index)
+            add_one(parts[begin / at_once], std::uint32_t(index));
+    });
+    std::size_t jobs = jobs_.size(), changes = changes_.size();
+    for (const LightMapJobs& part : parts) {
+        jobs += part.jobs_.size();
+        changes += part.changes_.size();
+    }
+    jobs_.reserve(jobs);
+    changes_.reserve(changes);
+    for (LightMapJobs& part : parts) {
+        for (shared::LightMapJob job : part.jobs_) {
+            job.first_change += std::uint32_t(changes_.size());
+            jobs_.push_back(job);
+        }
+        changes_.insert(changes_.end(), part.changes_.begin(), part.changes_.end());
+        part = {};
+    }
 }
 
 // A job's invocations process its texels in turn, and all changes at every texel.

@@ -8,6 +8,7 @@
 #include "gi_module/transport/light_sample.h"
 #include "gi_module/visibility/visibility_database.h"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ public:
         changes_.push_back(change);
         ++jobs_.back().change_count;
     }
+    // Calls add_one(jobs, index) for each index below `count`, concurrently for several, with jobs of the call's own;
+    // all follow those that are there in the order of the indices.
+    void add_all(std::size_t count, const std::function<void(LightMapJobs& jobs, std::uint32_t index)>& add_one);
     // Call after the last change: splits large maps with many changes into several jobs, for work groups of
     // `invocations`.
     void split(std::uint32_t invocations);

@@ -139,14 +139,14 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     const double rounding = std::sqrt(double(samples.size()) / 12.0) / double(fixed_point_);
     steps_are_coarse_ = flux > 0.0 && rounding * covered_area(database) > rounding_share * flux;
     SUNFLECK_TRY(lay_out(database, light_map_texel(bound), resources));
-    for (std::uint32_t node = 0; node < node_rows_.size(); ++node) {
+    jobs_.add_all(node_rows_.size(), [&](LightMapJobs& jobs, std::uint32_t node) {
         if (node_rows_[node].first_texel == shared::no_light_map)
-            continue;
-        jobs_.add(database.patches().nodes()[node], node_rows_[node], true);
+            return;
+        jobs.add(database.patches().nodes()[node], node_rows_[node], true);
         for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
             if (held_by_light_maps(samples[sample]) && reaches(database.state(node, sample)))
-                jobs_.add_change(sample);
-    }
+                jobs.add_change(sample);
+    });
     jobs_.split(invocations);
     counters_.updates = jobs_.changes().size();
     return {};

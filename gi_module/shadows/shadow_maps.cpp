@@ -1,8 +1,7 @@
 #include "gi_module/shadows/shadow_maps.h"
 
 #include "engine/gpu/rendering.h"
-#include "gi_module/shadows/octahedral_map.h"
-#include "gi_module/shadows/shadow_jobs.h"
+#include "gi_module/shadows/map_chunk.h"
 
 #include <algorithm>
 #include <iterator>
@@ -23,17 +22,6 @@ VkFormat depth_format(std::uint32_t bits) {
 }
 
 } // namespace
-
-// Everything that one pair of passes (draw, copy) needs; lives in the passes' closures.
-struct ShadowMaps::Chunk {
-    gpu::UploadSlice jobs, commands;
-    std::uint32_t command_count = 0;
-    std::uint32_t culled_count = 0; // of the commands, those after the plain ones draw faces towards the light only
-    // The last commands draw surfaces with holes, each with its texture.
-    std::vector<std::int32_t> hole_textures;
-    std::vector<std::uint32_t> slots; // by layer
-    std::vector<MapAreas> areas;      // that occluders cover, by layer; then, that is copied
-};
 
 Result<std::unique_ptr<ShadowMaps>> ShadowMaps::create(gpu::Device& device, gpu::PipelineStore& pipelines,
                                                        const MapNames& names) {
@@ -133,99 +121,6 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     shown_before_.clear();
     movers_shown_.assign(slots, {}); // of maps that hold nothing yet: their static part comes first
     return true;
-}
-
-Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
-                                                    std::span<const ShadowRequest> requests, Occluders occluders,
-                                                    bool detail, ShadowCounters& counters) const {
-    Chunk chunk;
-    for (const ShadowRequest& request : requests)
-        chunk.slots.push_back(request.slot);
-    chunk.areas.resize(requests.size());
-    std::vector<shared::ShadowJob> jobs;
-    std::vector<VkDrawIndexedIndirectCommand> commands, culled_commands, hole_commands;
-    std::vector<std::uint32_t> seen(requests.size());
-    for (const scene::DrawItem& item : scene.draws()) {
-        if (!item.casts_shadow ||
-            (occluders != Occluders::all && item.is_static != (occluders == Occluders::static_only)))
-            continue;
-        // Jobs by level of detail: one command draws all maps that show the item at one level.
-        std::vector<std::vector<shared::ShadowJob>> by_level((detail ? item.details.size() : 1) * 2);
-        for (std::uint32_t layer = 0; layer < requests.size(); ++layer) {
-            if (requests[layer].hides(item.entity))
-                continue;
-            const MapPart part = part_covered(requests[layer], item.bounds, occluders == Occluders::movers);
-            const std::uint32_t faces = part.faces;
-            seen[layer] |= faces;
-            if (occluders == Occluders::movers)
-                chunk.areas[layer].add(part.area);
-            const bool has_holes = item.kind == scene::surface_kind_holes;
-            const std::size_t level = has_holes ? 0
-                                                : (detail ? detail_level(requests[layer], item) : 0) * 2 +
-                                                      (detail && shows_front_faces_only(requests[layer], item) ? 1 : 0);
-            for (std::uint32_t face = 0; faces >> face; ++face)
-                if ((faces >> face) & 1u)
-                    by_level[level].push_back(make_shadow_job(requests[layer].light, requests[layer].light_class,
-                                                              {layer, face, resolution_, requests[layer].tile},
-                                                              item.constants, item.row));
-        }
-        for (std::size_t level = 0; level < by_level.size(); ++level) {
-            const std::uint32_t count = std::uint32_t(by_level[level].size());
-            if (count == 0)
-                continue;
-            const std::uint32_t first = std::uint32_t(jobs.size());
-            jobs.insert(jobs.end(), by_level[level].begin(), by_level[level].end());
-            const bool has_holes = item.kind == scene::surface_kind_holes;
-            auto& list = has_holes ? hole_commands : level % 2 ? culled_commands : commands;
-            if (has_holes)
-                chunk.hole_textures.push_back(item.textures[0]);
-            if (detail && !has_holes) {
-                const scene::DetailRange& range = item.details[level / 2];
-                list.push_back({range.index_count, count, range.first_index, item.vertex_offset, first});
-                counters.vertices += std::uint64_t(count) * range.vertex_count;
-            } else {
-                list.push_back({item.index_count, count, item.first_index, item.vertex_offset, first});
-                counters.vertices += std::uint64_t(count) * item.vertex_count;
-            }
-        }
-    }
-    for (const std::uint32_t faces : seen)
-        counters.faces += std::uint64_t(std::popcount(faces));
-    counters.draws += (commands.empty() ? 0 : 1) + hole_commands.size();
-    chunk.command_count = std::uint32_t(commands.size() + culled_commands.size());
-    chunk.culled_count = std::uint32_t(culled_commands.size());
-    commands.insert(commands.end(), culled_commands.begin(), culled_commands.end());
-    commands.insert(commands.end(), hole_commands.begin(), hole_commands.end());
-    SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(jobs)));
-    SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(commands)));
-    return chunk;
-}
-
-// The coarsest level whose surface is not off by more than the request allows where the object is nearest to the light.
-std::size_t ShadowMaps::detail_level(const ShadowRequest& request, const scene::DrawItem& item) const {
-    float texel;
-    if (request.light_class == shared::light_class_directional) {
-        texel = 2.0f / (request.light.tangent_scale.w * float(resolution_) * request.tile.scale);
-    } else {
-        const float radius = 0.5f * glm::length(item.bounds.extent());
-        const float distance = glm::length(item.bounds.centre() - vec3(request.light.position_bound)) - radius;
-        texel = 2.0f / (float(resolution_) * request.tile.scale) * std::max(distance, 0.0f);
-        if (request.has_cone_map())
-            texel /= std::max(request.light.position_bound.w, 1.0f);
-    }
-    std::size_t level = 0;
-    while (level + 1 < item.details.size() &&
-           item.details[level + 1].error * item.scale < request.detail_texels * texel)
-        ++level;
-    return level;
-}
-
-// A light outside a closed mesh sees its front faces, and they hide all others.
-bool ShadowMaps::shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item) {
-    const vec3 position(request.light.position_bound);
-    const bool inside = glm::all(glm::greaterThanEqual(position, item.bounds.minimum)) &&
-                        glm::all(glm::lessThanEqual(position, item.bounds.maximum));
-    return item.closed && !inside && request.light_class == shared::light_class_surface;
 }
 
 Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& scene, gpu::FrameResources& resources,

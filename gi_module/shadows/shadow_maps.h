@@ -104,12 +104,15 @@ public:
 private:
     ShadowMaps(gpu::Device& device, const MapNames& names) : device_(device), names_(names) {}
     struct Chunk;
+    struct ChunkPart;
     // What a box may cover of a map: faces, and texels (none if no face).
     struct MapPart {
         std::uint32_t faces = 0;
         MapArea area;
     };
     enum class Occluders { all, static_only, movers };
+    void add_item(const scene::DrawItem& item, std::span<const ShadowRequest> requests, Occluders occluders,
+                  bool detail, ChunkPart& part) const;
     Result<Chunk> prepare_chunk(const scene::GpuScene& scene, gpu::FrameResources& resources,
                                 std::span<const ShadowRequest> requests, Occluders occluders, bool detail,
                                 ShadowCounters& counters) const;

@@ -1,5 +1,6 @@
 #include "gi_module/shadows/shadow_service.h"
 
+#include "engine/core/jobs.h"
 #include "gi_module/shadows/light_batches.h"
 #include "gi_module/shadows/map_contributions.h"
 
@@ -185,11 +186,15 @@ std::vector<ShadowRequest> ShadowService::requests(const SampleSet& samples,
                             scheduler_.is_static_stale(sample),
                             samples.samples()[sample].bounce == 0 ? direct_detail_texels : indirect_detail_texels,
                             {}});
-        if (database_ != nullptr)
-            requests.back().hidden = database_->hidden_entities(sample);
-        if (samples.samples()[sample].on_mover)
-            hide(samples.samples()[sample].emitter, requests.back().hidden);
     }
+    parallel_for_chunks(drawn.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (database_ != nullptr)
+                requests[i].hidden = database_->hidden_entities(drawn[i]);
+            if (samples.samples()[drawn[i]].on_mover)
+                hide(samples.samples()[drawn[i]].emitter, requests[i].hidden);
+        }
+    });
     return requests;
 }
 

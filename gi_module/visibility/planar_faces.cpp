@@ -1,9 +1,7 @@
 #include "gi_module/visibility/planar_faces.h"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <unordered_map>
 
 namespace sunfleck::gi {
 namespace {
@@ -13,17 +11,30 @@ constexpr std::size_t longest_outline = 16;
 
 // For each vertex the first one at the same place.
 std::vector<std::uint32_t> weld(const std::vector<vec3>& positions) {
-    struct Less {
-        bool operator()(const vec3& a, const vec3& b) const {
-            return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-        }
-    };
-    std::map<vec3, std::uint32_t, Less> first;
-    std::vector<std::uint32_t> result;
-    for (std::uint32_t i = 0; i < positions.size(); ++i)
-        result.push_back(first.emplace(positions[i], i).first->second);
+    std::vector<std::uint32_t> order(positions.size()), result(positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t k) {
+        const vec3 &a = positions[i], &b = positions[k];
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < k;
+    });
+    std::uint32_t first = 0;
+    for (const std::uint32_t i : order) {
+        if (positions[i] != positions[first] || i == order.front())
+            first = i;
+        result[i] = first;
+    }
     return result;
 }
+
+// A triangle at an edge, whose vertices' numbers are the key.
+struct EdgeUse {
+    std::uint64_t key;
+    std::uint32_t triangle;
+    bool forward;
+    bool operator<(const EdgeUse& other) const {
+        return key != other.key ? key < other.key : triangle < other.triangle;
+    }
+};
 
 class Sets {
 public:
@@ -79,6 +90,7 @@ Polygon hull_of(std::vector<Flat> points) {
 FlatMesh find_planar_faces(const scene::Mesh& mesh, const mat4& matrix) {
     FlatMesh flat;
     flat.indices = mesh.indices;
+    flat.positions.reserve(mesh.positions.size());
     for (const vec3& position : mesh.positions)
         flat.positions.push_back(dvec3(vec3(matrix * vec4(position, 1.0f))));
     const std::vector<std::uint32_t> welded = weld(mesh.positions);
@@ -86,11 +98,8 @@ FlatMesh find_planar_faces(const scene::Mesh& mesh, const mat4& matrix) {
     const bool mirrored = glm::determinant(mat3(matrix)) < 0.0f;
     std::vector<dvec3> normals(count);
     std::vector<double> areas(count);
-    struct Edge {
-        std::uint32_t triangle;
-        bool forward;
-    };
-    std::unordered_map<std::uint64_t, std::vector<Edge>> edges;
+    std::vector<EdgeUse> edges;
+    edges.reserve(std::size_t(count) * 3);
     for (std::uint32_t t = 0; t < count; ++t) {
         const dvec3 cross = glm::cross(flat.corner(t, 1) - flat.corner(t, 0), flat.corner(t, 2) - flat.corner(t, 0));
         const double length = glm::length(cross);
@@ -101,16 +110,17 @@ FlatMesh find_planar_faces(const scene::Mesh& mesh, const mat4& matrix) {
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t a = welded[mesh.indices[t * 3 + std::uint32_t(k)]];
             const std::uint32_t b = welded[mesh.indices[t * 3 + std::uint32_t((k + 1) % 3)]];
-            edges[(std::uint64_t(std::min(a, b)) << 32) | std::max(a, b)].push_back({t, a < b});
+            edges.push_back({(std::uint64_t(std::min(a, b)) << 32) | std::max(a, b), t, a < b});
         }
     }
     Sets sets(count);
     flat.closed = !edges.empty();
-    for (const auto& [key, users] : edges) {
-        flat.closed = flat.closed && users.size() == 2 && users[0].forward != users[1].forward;
-        for (std::size_t i = 1; i < users.size(); ++i)
-            if (glm::dot(normals[users[0].triangle], normals[users[i].triangle]) > cosine_limit)
-                sets.join(users[0].triangle, users[i].triangle);
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t first = 0, end = 0; first < edges.size(); first = end) {
+        for (end = first + 1; end < edges.size() && edges[end].key == edges[first].key; ++end)
+            if (glm::dot(normals[edges[first].triangle], normals[edges[end].triangle]) > cosine_limit)
+                sets.join(edges[first].triangle, edges[end].triangle);
+        flat.closed = flat.closed && end == first + 2 && edges[first].forward != edges[first + 1].forward;
     }
     std::vector<std::uint32_t> face_of(count, 0xffffffffu);
     for (std::uint32_t t = 0; t < count; ++t) {

@@ -188,25 +188,40 @@ bool is_inside(const OcclusionPyramid& pyramid, const Bounds& bounds) {
 
 } // namespace
 
-bool StaticBlockers::any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body) const {
-    bool found = false;
+bool StaticBlockers::any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body, LikelyBlockers* likely) const {
+    const auto enters_it = [&](std::uint32_t polygon) {
+        return (own_body == no_body || body_of_[polygon] != own_body) && enters(pyramid, polygons_[polygon]);
+    };
+    if (likely != nullptr && likely->any(enters_it))
+        return true;
+    std::uint32_t found = no_body; // a polygon
     const auto meets = [&](const Node& node) {
-        if (found || !may_enter(pyramid, node.bounds))
+        if (found != no_body || !may_enter(pyramid, node.bounds))
             return false;
         // What lies inside the region altogether enters it, without a look at its polygons.
-        found = own_body == no_body && is_inside(pyramid, node.bounds);
-        return !found;
+        if (own_body == no_body && is_inside(pyramid, node.bounds))
+            found = a_polygon_of(node);
+        return found == no_body;
     };
-    return visit_leaves(meets,
-                        [&](std::uint32_t polygon) {
-                            return (own_body == no_body || body_of_[polygon] != own_body) &&
-                                   enters(pyramid, polygons_[polygon]);
-                        }) ||
-           found;
+    visit_leaves(meets, [&](std::uint32_t polygon) {
+        if (enters_it(polygon))
+            found = polygon;
+        return found != no_body;
+    });
+    if (found != no_body && likely != nullptr)
+        likely->add(found);
+    return found != no_body;
 }
 
-Blocking StaticBlockers::test(const OcclusionPyramid& pyramid, std::uint32_t own_body) const {
-    if (!any_enters(pyramid, own_body))
+std::uint32_t StaticBlockers::a_polygon_of(const Node& node) const {
+    const Node* leaf = &node;
+    while (leaf->count == 0)
+        leaf = &nodes_[leaf->first];
+    return order_[leaf->first];
+}
+
+Blocking StaticBlockers::test(const OcclusionPyramid& pyramid, std::uint32_t own_body, LikelyBlockers* likely) const {
+    if (!any_enters(pyramid, own_body, likely))
         return Blocking::none;
     return covers(pyramid) ? Blocking::full : Blocking::partial;
 }

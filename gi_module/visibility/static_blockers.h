@@ -3,9 +3,35 @@
 
 #include "gi_module/visibility/coverage.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace sunfleck::gi {
+
+// Polygons that were in the way of neighbouring pyramids, the last one first: they are likely to be in that of the
+// next.
+class LikelyBlockers {
+public:
+    template <typename Enters>
+    bool any(const Enters& enters) {
+        for (std::size_t i = 0; i < count_; ++i)
+            if (enters(polygons_[i])) {
+                std::rotate(polygons_.begin(), polygons_.begin() + std::ptrdiff_t(i),
+                            polygons_.begin() + std::ptrdiff_t(i) + 1);
+                return true;
+            }
+        return false;
+    }
+    void add(std::uint32_t polygon) {
+        count_ = std::min(count_ + 1, polygons_.size());
+        std::shift_right(polygons_.begin(), polygons_.end(), 1);
+        polygons_[0] = polygon;
+    }
+
+private:
+    std::array<std::uint32_t, 6> polygons_{};
+    std::size_t count_ = 0;
+};
 
 // All static geometry: a tree of polygons.
 class StaticBlockers {
@@ -19,8 +45,9 @@ public:
     void build();
 
     // `own_body`: that the receiver is a part of. It does not count: a convex body lies behind each of its faces that
-    // the light can see.
-    Blocking test(const OcclusionPyramid& pyramid, std::uint32_t own_body = no_body) const;
+    // the light can see. `likely` saves work and changes no result; of the same receiver, from call to call.
+    Blocking test(const OcclusionPyramid& pyramid, std::uint32_t own_body = no_body,
+                  LikelyBlockers* likely = nullptr) const;
     // Whether one polygon or body surely takes all light: what `test` calls full. It then takes the light to the middle
     // of the gate, so that only what a single segment crosses has to be looked at.
     bool covers(const OcclusionPyramid& pyramid) const;
@@ -39,7 +66,8 @@ private:
     };
     std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth);
     std::uint32_t split(std::uint32_t first, std::uint32_t count, const Bounds& centres, std::uint32_t depth);
-    bool any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body) const;
+    bool any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body, LikelyBlockers* likely) const;
+    std::uint32_t a_polygon_of(const Node& node) const;
     // Calls `visit` with the polygons of all leaves that `meets` accepts, as all nodes above them, until it returns
     // true.
     template <typename Meets, typename Visit>

@@ -1,5 +1,7 @@
 #include "gi_module/visibility/surface_patches.h"
 
+#include "engine/core/jobs.h"
+
 #include <algorithm>
 
 namespace sunfleck::gi {
@@ -45,6 +47,12 @@ ChartRectangle enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 norma
     chart.normal = normal;
     return chart;
 }
+
+struct Placed { // a mesh of static geometry
+    ecs::Entity entity;
+    std::uint32_t mesh = 0;
+    mat4 matrix{1.0f};
+};
 
 shared::SurfaceChart row_of(const Chart& chart) {
     const auto axis = [&](dvec3 edge) {
@@ -94,18 +102,31 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
     *this = {};
     space_ = options.space;
     std::vector<Surface> surfaces;
+    std::vector<Placed> placed;
     registry.view<scene::MeshInstance, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::MeshInstance& instance, const scene::WorldTransform& world) {
-            if (instance.mesh >= meshes.size() || !scene::is_static(registry, entity))
-                return;
-            const FlatMesh flat = find_planar_faces(meshes[instance.mesh], space_.place(world.matrix));
-            if (!(flat.area > 0.0))
-                return;
+            if (instance.mesh < meshes.size() && scene::is_static(registry, entity))
+                placed.push_back({entity, instance.mesh, space_.place(world.matrix)});
+        });
+    // Some at a time: what is known of their faces takes more memory than the meshes.
+    constexpr std::size_t at_once = 512;
+    std::vector<FlatMesh> flat;
+    for (std::size_t first = 0; first < placed.size(); first += at_once) {
+        flat.assign(std::min(at_once, placed.size() - first), {});
+        parallel_for_chunks(flat.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                flat[i] = find_planar_faces(meshes[placed[first + i].mesh], placed[first + i].matrix);
+        });
+        for (std::size_t i = 0; i < flat.size(); ++i) {
+            if (!(flat[i].area > 0.0))
+                continue;
+            const ecs::Entity entity = placed[first + i].entity;
             const scene::Material* material = registry.try_get<scene::Material>(entity);
             const std::uint32_t body =
-                blockers.add(flat, material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
-            surfaces.push_back(surface_of(entity, flat, body));
-        });
+                blockers.add(flat[i], material != nullptr && material->alpha_mode != scene::AlphaMode::opaque);
+            surfaces.push_back(surface_of(entity, flat[i], body));
+        }
+    }
     blockers.build();
     for (const Surface& surface : surfaces)
         add_surface(surface, blockers, options);

@@ -79,9 +79,11 @@ bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& prog
         parallel_for_chunks(end - first, 4, [&](std::size_t begin, std::size_t stop) {
             if (reporter.stopped())
                 return;
-            for (std::uint32_t node = first + std::uint32_t(begin); node < first + stop; ++node)
+            for (std::uint32_t node = first + std::uint32_t(begin); node < first + stop; ++node) {
+                LikelyBlockers likely;
                 for (std::uint32_t sample = 0; sample < samples_.size() && is_exact(node); ++sample)
-                    static_states_[at(node, sample)] = std::uint8_t(decide_static(node, sample));
+                    static_states_[at(node, sample)] = std::uint8_t(decide_static(node, sample, &likely));
+            }
             reporter.add(stop - begin);
         });
         if (reporter.stopped())
@@ -106,7 +108,7 @@ bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& prog
     return true;
 }
 
-PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sample) const {
+PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sample, LikelyBlockers* likely) const {
     if (samples_[sample].dynamic)
         return PairState::partial; // until all nodes are known: see decide_all_static
     const SurfacePatch& patch = patches_.nodes()[node];
@@ -116,11 +118,12 @@ PairState VisibilityDatabase::decide_static(std::uint32_t node, std::uint32_t sa
     if (parent == PairState::full || parent == PairState::unlit)
         return parent;
     if (!patch.planar)
-        return decide_box(patch, samples_[sample]);
+        return decide_box(patch, samples_[sample], likely);
     const auto pyramid = pyramid_of_patch(samples_[sample], patch.corners, patch.normal);
     if (!pyramid)
         return PairState::unlit;
-    return parent == PairState::none ? PairState::none : state_of(static_blockers_.test(*pyramid));
+    return parent == PairState::none ? PairState::none
+                                     : state_of(static_blockers_.test(*pyramid, StaticBlockers::no_body, likely));
 }
 
 // Of a part of a chart: only whether the sample's tangent plane hides it is looked at.
@@ -159,9 +162,10 @@ std::vector<PairState> VisibilityDatabase::decide_all_static(std::uint32_t sampl
     return result;
 }
 
-PairState VisibilityDatabase::decide_box(const SurfacePatch& patch, const LightSample& sample) const {
+PairState VisibilityDatabase::decide_box(const SurfacePatch& patch, const LightSample& sample,
+                                         LikelyBlockers* likely) const {
     const auto pyramid = pyramid_of_box(sample, patch.box);
-    return pyramid ? state_of(static_blockers_.test(*pyramid, patch.body)) : PairState::unlit;
+    return pyramid ? state_of(static_blockers_.test(*pyramid, patch.body, likely)) : PairState::unlit;
 }
 
 // Movers shadow themselves, so all that static geometry can add is to hide them: if their middle is in sight, it does
@@ -230,18 +234,27 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
     counters_.tests += walk.tests;
 }
 
+// Each node has words of its own in the rows.
 void VisibilityDatabase::recount() {
+    constexpr std::size_t nodes_at_once = 256;
+    std::vector<VisibilityCounters> parts((node_count() + nodes_at_once - 1) / nodes_at_once);
+    parallel_for_chunks(node_count(), nodes_at_once, [&](std::size_t begin, std::size_t end) {
+        VisibilityCounters& part = parts[begin / nodes_at_once];
+        for (std::uint32_t node = std::uint32_t(begin); node < end; ++node)
+            for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
+                const PairState now = state(node, sample);
+                write_pair(node, sample, now);
+                write_flags(node, sample);
+                if (counts(node))
+                    ++part.of(now);
+            }
+    });
     const std::uint64_t tests = counters_.tests;
     counters_ = {};
     counters_.tests = tests;
-    for (std::uint32_t node = 0; node < node_count(); ++node)
-        for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
-            const PairState now = state(node, sample);
-            write_pair(node, sample, now);
-            write_flags(node, sample);
-            if (counts(node))
-                ++count_of(now);
-        }
+    for (VisibilityCounters& part : parts)
+        for (const PairState state : {PairState::full, PairState::partial, PairState::none, PairState::unlit})
+            counters_.of(state) += part.of(state);
     std::fill(dirty_.begin(), dirty_.end(), std::uint8_t(1));
 }
 

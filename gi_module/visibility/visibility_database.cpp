@@ -191,28 +191,14 @@ bool VisibilityDatabase::counts(std::uint32_t node) const {
     return !mover_slots_[node - patches_.nodes().size()].is_null();
 }
 
-std::uint64_t& VisibilityDatabase::count_of(PairState state) {
-    switch (state) {
-    case PairState::full:
-        return counters_.full;
-    case PairState::partial:
-        return counters_.partial;
-    case PairState::none:
-        return counters_.none;
-    case PairState::unlit:
-        break;
-    }
-    return counters_.unlit;
-}
-
 void VisibilityDatabase::record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after) {
     write_flags(node, sample);
     if (before == after)
         return;
     write_pair(node, sample, after);
     if (node < patches_.nodes().size() ? patches_.nodes()[node].is_leaf() : true) {
-        --count_of(before);
-        ++count_of(after);
+        --counters_.of(before);
+        ++counters_.of(after);
         changes_.push_back({node, sample, before, after});
     }
 }

@@ -62,8 +62,9 @@ struct VisibilityOptions {
     PatchOptions patches;
     float split_share = 0.08f; // patches are split if at least this share of the samples that reach them is partial
     std::uint64_t max_pairs = std::uint64_t(24) << 20; // no further splits beyond
-    // Roots that cannot all be tested with all samples within so many tests are decided in groups, but for the largest.
-    std::uint64_t max_tests = std::uint64_t(2) << 20;
+    // Where testing all roots with all samples takes more tests than that, only the largest are tested, within the
+    // second number; the others are decided in groups.
+    std::uint64_t max_tests = std::uint64_t(2) << 20, max_tests_of_largest = std::uint64_t(1) << 18;
     std::uint64_t max_row_bytes = ~std::uint64_t(0); // of all rows for shaders
     TestGrouping tests = TestGrouping::clusters;     // of movers
 };
@@ -71,6 +72,13 @@ struct VisibilityOptions {
 struct VisibilityCounters {
     std::uint64_t tests = 0;                                  // of blockers against pyramids, and of clusters
     std::uint64_t full = 0, partial = 0, none = 0, unlit = 0; // pairs of leaves and movers
+
+    std::uint64_t& of(PairState state) {
+        return state == PairState::full      ? full
+               : state == PairState::partial ? partial
+               : state == PairState::none    ? none
+                                             : unlit;
+    }
 };
 
 class BuildProgress;
@@ -186,12 +194,12 @@ private:
 
     Status check_size() const;
     bool split_and_decide(const std::function<bool(float)>& progress);
-    PairState decide_static(std::uint32_t node, std::uint32_t sample) const;
+    PairState decide_static(std::uint32_t node, std::uint32_t sample, LikelyBlockers* likely = nullptr) const;
     PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;
     std::vector<PairState> decide_all_static(std::uint32_t sample) const;
     void decide_group(std::uint32_t group, const LightSample& sample, std::vector<PairState>& states) const;
     void decide_roots(std::uint32_t group, PairState state, std::vector<PairState>& states) const;
-    PairState decide_box(const SurfacePatch& patch, const LightSample& sample) const;
+    PairState decide_box(const SurfacePatch& patch, const LightSample& sample, LikelyBlockers* likely) const;
     PairState decide_mover(const MovingBlocker& mover, const LightSample& sample) const;
     void make_clusters();
     void make_groups();
@@ -218,7 +226,6 @@ private:
     void set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed);
     void record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after);
     bool counts(std::uint32_t node) const;
-    std::uint64_t& count_of(PairState state);
     void write_pair(std::uint32_t node, std::uint32_t sample, PairState state);
     void write_flags(std::uint32_t node, std::uint32_t sample);
     std::size_t at(std::uint32_t node, std::uint32_t sample) const {

@@ -35,10 +35,10 @@ std::uint32_t morton(vec3 point, const Bounds& bounds) {
 // else is "partial", which is always right, and costs shadow tests.
 void VisibilityDatabase::choose_exact_roots() {
     is_exact_.clear();
-    const std::size_t roots = patches_.roots(),
-                      most = std::size_t(options_.max_tests / std::max<std::size_t>(samples_.size(), 1));
-    if (roots <= most)
+    const std::size_t roots = patches_.roots(), samples = std::max<std::size_t>(samples_.size(), 1);
+    if (roots <= options_.max_tests / samples)
         return;
+    const std::size_t most = std::size_t(std::min(options_.max_tests, options_.max_tests_of_largest) / samples);
     std::vector<std::uint32_t> order(roots);
     std::iota(order.begin(), order.end(), 0u);
     std::vector<float> sizes(roots);
@@ -68,7 +68,7 @@ Status VisibilityDatabase::check_size() const {
 bool VisibilityDatabase::may_split_more() const {
     const std::uint64_t samples = samples_.size(), nodes = patches_.nodes().size() + 4;
     return nodes * samples <= options_.max_pairs && nodes * words_per_row() * 4 <= options_.max_row_bytes &&
-           (is_exact_.empty() || (nodes - patches_.roots()) * samples <= options_.max_tests);
+           (is_exact_.empty() || (nodes - patches_.roots()) * samples <= options_.max_tests_of_largest);
 }
 
 void VisibilityDatabase::decide_coarse_roots(BuildProgress& progress) {
