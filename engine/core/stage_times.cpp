@@ -5,6 +5,7 @@
 #endif
 
 #include <algorithm>
+#include <new>
 
 namespace sunfleck {
 namespace {
@@ -50,7 +51,11 @@ StageTimer::~StageTimer() {
 #ifdef SUNFLECK_SLOW_WORK
     add_slow_work(stage_);
 #endif
-    times_.scopes_.push_back({stage_, begin_, std::chrono::steady_clock::now()});
+    const auto end = std::chrono::steady_clock::now();
+    try {
+        times_.scopes_.push_back({stage_, begin_, end});
+    } catch (const std::bad_alloc&) { // a time that is not kept is better than a program that ends in a destructor
+    }
 }
 
 } // namespace sunfleck

@@ -92,6 +92,7 @@ Status FrameResources::next_pool() {
     info.pPoolSizes = sizes;
     Pool pool;
     pool.serial = serial_;
+    active_pools_.reserve(active_pools_.size() + 1); // what is made must find its place
     SUNFLECK_VK(device_.vk.vkCreateDescriptorPool(device_.handle(), &info, nullptr, &pool.handle),
                 "creating a descriptor pool");
     active_pools_.push_back(pool);

@@ -114,25 +114,24 @@ VkResult create_pipeline(Device& device, const GraphicsDescription& description,
 Result<VkPipeline> PipelineStore::build_graphics(const Entry& entry, VkPipelineLayout layout) {
     const GraphicsDescription& description = entry.graphics;
     const SpecializationValues specialization(description.specialization);
+    std::vector<ShaderModule> modules;
     std::vector<VkPipelineShaderStageCreateInfo> stages;
     const auto add_stage = [&](const std::string& path, VkShaderStageFlagBits stage) -> Status {
-        SUNFLECK_ASSIGN(const VkShaderModule module, make_module(path));
-        stages.push_back(stage_info(module, stage, specialization));
+        SUNFLECK_ASSIGN(ShaderModule module, make_module(path));
+        modules.push_back(std::move(module));
+        stages.push_back(stage_info(modules.back().handle, stage, specialization));
         return {};
     };
-    Status status = add_stage(description.vertex_shader, VK_SHADER_STAGE_VERTEX_BIT);
-    if (status && !description.fragment_shader.empty())
-        status = add_stage(description.fragment_shader, VK_SHADER_STAGE_FRAGMENT_BIT);
+    SUNFLECK_TRY(add_stage(description.vertex_shader, VK_SHADER_STAGE_VERTEX_BIT));
+    if (!description.fragment_shader.empty())
+        SUNFLECK_TRY(add_stage(description.fragment_shader, VK_SHADER_STAGE_FRAGMENT_BIT));
     VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
     info.stageCount = std::uint32_t(stages.size());
     info.pStages = stages.data();
     info.layout = layout;
     VkPipeline handle = VK_NULL_HANDLE;
-    const VkResult result = status ? create_pipeline(device_, description, info, handle) : VK_SUCCESS;
-    for (const auto& stage : stages)
-        device_.vk.vkDestroyShaderModule(device_.handle(), stage.module, nullptr);
-    SUNFLECK_TRY(status);
-    SUNFLECK_VK(result, "creating graphics pipeline '" + description.vertex_shader + "'");
+    SUNFLECK_VK(create_pipeline(device_, description, info, handle),
+                "creating graphics pipeline '" + description.vertex_shader + "'");
     return handle;
 }
 

@@ -10,6 +10,15 @@ namespace {
 constexpr VkDeviceSize block_size = VkDeviceSize(32) << 20;
 // Larger requests get memory of their own: a block would mostly hold just them.
 constexpr VkDeviceSize dedicated_size = block_size / 4;
+
+struct UsageEntry {
+    std::map<std::string, std::uint64_t>& usage;
+    const std::string& what;
+    ~UsageEntry() {
+        if (const auto entry = usage.find(what); entry != usage.end() && entry->second == 0)
+            usage.erase(entry);
+    }
+};
 } // namespace
 
 Memory::Memory(Device& device) : device_(device) {
@@ -40,7 +49,10 @@ Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, 
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = size;
     info.memoryTypeIndex = type;
+    // Whatever may throw comes first: nothing that the device gave can get lost then.
     Block block;
+    block.free_ranges.reserve(2);
+    blocks_.reserve(blocks_.size() + 1);
     const std::string doing = "allocating " + std::to_string(size >> 20) + " MiB of GPU memory for '" + what + "'";
     SUNFLECK_VK(device_.vk.vkAllocateMemory(device_.handle(), &info, nullptr, &block.memory), doing);
     if (map) {
@@ -56,14 +68,14 @@ Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, 
     block.type = type;
     block.linear = linear;
     block.dedicated = dedicated;
-    block.free_ranges = {{0, size}};
+    block.free_ranges.push_back({0, size});
     const auto unused =
         std::find_if(blocks_.begin(), blocks_.end(), [](const Block& b) { return b.memory == VK_NULL_HANDLE; });
     const std::uint32_t index = std::uint32_t(unused - blocks_.begin());
     if (unused == blocks_.end())
-        blocks_.push_back(block);
+        blocks_.push_back(std::move(block));
     else
-        *unused = block;
+        *unused = std::move(block);
     return index;
 }
 
@@ -74,13 +86,14 @@ bool Memory::take(Block& block, const VkMemoryRequirements& requirements, VkDevi
         const VkDeviceSize end = start + requirements.size;
         if (end > range.offset + range.size)
             continue;
-        std::vector<Range> rest;
-        if (start > range.offset)
-            rest.push_back({range.offset, start - range.offset});
-        if (end < range.offset + range.size)
-            rest.push_back({end, range.offset + range.size - end});
+        if (block.free_ranges.capacity() < block.allocations + 2)
+            block.free_ranges.reserve(2 * (block.allocations + 2));
+        ++block.allocations;
+        const Range before{range.offset, start - range.offset}, after{end, range.offset + range.size - end};
         block.free_ranges.erase(block.free_ranges.begin() + std::ptrdiff_t(i));
-        block.free_ranges.insert(block.free_ranges.begin() + std::ptrdiff_t(i), rest.begin(), rest.end());
+        for (const Range& rest : {after, before})
+            if (rest.size > 0)
+                block.free_ranges.insert(block.free_ranges.begin() + std::ptrdiff_t(i), rest);
         offset = start;
         return true;
     }
@@ -112,6 +125,8 @@ Result<Allocation> Memory::allocate(const VkMemoryRequirements& requirements, Me
     const bool dedicated = requirements.size > dedicated_size;
     Allocation allocation;
     allocation.size = requirements.size;
+    std::uint64_t& used = usage_[what];
+    const UsageEntry entry{usage_, what}; // goes again where nothing is allocated
     bool found = false;
     for (std::uint32_t i = 0; !dedicated && i < blocks_.size() && !found; ++i) {
         Block& block = blocks_[i];
@@ -129,7 +144,7 @@ Result<Allocation> Memory::allocate(const VkMemoryRequirements& requirements, Me
     const Block& block = blocks_[allocation.block];
     allocation.memory = block.memory;
     allocation.mapped = map ? block.mapped + allocation.offset : nullptr;
-    usage_[what] += requirements.size;
+    used += requirements.size;
     return allocation;
 }
 
@@ -137,6 +152,7 @@ void Memory::free(const Allocation& allocation, const std::string& what) {
     const std::lock_guard lock(mutex_);
     Block& block = blocks_[allocation.block];
     give_back(block, {allocation.offset, allocation.size});
+    --block.allocations;
     const auto entry = usage_.find(what);
     assert(entry != usage_.end() && entry->second >= allocation.size);
     if ((entry->second -= allocation.size) == 0)

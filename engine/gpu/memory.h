@@ -57,6 +57,7 @@ private:
         bool dedicated = false;
         std::byte* mapped = nullptr;
         std::vector<Range> free_ranges; // by rising offset, never adjacent
+        std::size_t allocations = 0;    // room for one more range than these is reserved: giving back never allocates
     };
 
     Result<std::uint32_t> choose_type(std::uint32_t allowed, MemoryUse use) const;

@@ -10,13 +10,18 @@ SpecializationValues::SpecializationValues(const std::vector<std::uint32_t>& val
     info = {std::uint32_t(entries.size()), entries.data(), values.size() * 4, values.data()};
 }
 
-Result<VkShaderModule> PipelineStore::make_module(const std::string& path) {
+ShaderModule::~ShaderModule() {
+    if (handle != VK_NULL_HANDLE)
+        device->vk.vkDestroyShaderModule(device->handle(), handle, nullptr);
+}
+
+Result<ShaderModule> PipelineStore::make_module(const std::string& path) {
     SUNFLECK_ASSIGN(const auto words, shaders_.find(path));
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     info.codeSize = words.size_bytes();
     info.pCode = words.data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    SUNFLECK_VK(device_.vk.vkCreateShaderModule(device_.handle(), &info, nullptr, &module),
+    ShaderModule module(device_);
+    SUNFLECK_VK(device_.vk.vkCreateShaderModule(device_.handle(), &info, nullptr, &module.handle),
                 "creating shader '" + path + "'");
     return module;
 }
@@ -67,20 +72,18 @@ Status PipelineStore::make_layout(BuiltPipeline& built) {
 }
 
 Result<VkPipeline> PipelineStore::build_compute(const Entry& entry, VkPipelineLayout layout) {
-    SUNFLECK_ASSIGN(const VkShaderModule module, make_module(entry.compute.shader));
+    SUNFLECK_ASSIGN(const ShaderModule module, make_module(entry.compute.shader));
     const SpecializationValues specialization(entry.compute.specialization);
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
     info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-    info.stage.module = module;
+    info.stage.module = module.handle;
     info.stage.pName = "main";
     info.stage.pSpecializationInfo = &specialization.info;
     info.layout = layout;
     VkPipeline handle = VK_NULL_HANDLE;
-    const VkResult result =
-        device_.vk.vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle);
-    device_.vk.vkDestroyShaderModule(device_.handle(), module, nullptr);
-    SUNFLECK_VK(result, "creating compute pipeline '" + entry.compute.shader + "'");
+    SUNFLECK_VK(device_.vk.vkCreateComputePipelines(device_.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &handle),
+                "creating compute pipeline '" + entry.compute.shader + "'");
     return handle;
 }
 
@@ -133,6 +136,9 @@ Result<const Pipeline*> PipelineStore::compute(const ComputeDescription& descrip
 }
 
 Result<const Pipeline*> PipelineStore::graphics(const GraphicsDescription& description) {
+    for (const auto& entry : entries_)
+        if (entry->pipeline.bind_point_ == VK_PIPELINE_BIND_POINT_GRAPHICS && entry->graphics == description)
+            return &entry->pipeline;
     auto entry = std::make_unique<Entry>();
     entry->graphics = description;
     entry->pipeline.bind_point_ = VK_PIPELINE_BIND_POINT_GRAPHICS;

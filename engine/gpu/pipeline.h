@@ -8,6 +8,7 @@
 #include "engine/gpu/spirv_reflection.h"
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace sunfleck::gpu {
@@ -39,6 +40,18 @@ private:
     std::shared_ptr<const BuiltPipeline> built_;
     VkPipelineBindPoint bind_point_ = VK_PIPELINE_BIND_POINT_COMPUTE;
     std::string name_;
+};
+
+// Destroyed with the object: pipelines do not need it once they are made.
+struct ShaderModule {
+    explicit ShaderModule(Device& owner) : device(&owner) {}
+    ShaderModule(ShaderModule&& other) noexcept
+        : device(other.device), handle(std::exchange(other.handle, VkShaderModule(VK_NULL_HANDLE))) {}
+    ShaderModule& operator=(ShaderModule&&) = delete;
+    ~ShaderModule();
+
+    Device* device;
+    VkShaderModule handle = VK_NULL_HANDLE;
 };
 
 // Pipelines of one user of the device, made if no other user has made the same before (see pipeline_cache.h). The
@@ -73,7 +86,7 @@ private:
     Result<Built> build(const Entry& entry);
     Result<VkPipeline> build_compute(const Entry& entry, VkPipelineLayout layout);
     Result<VkPipeline> build_graphics(const Entry& entry, VkPipelineLayout layout);
-    Result<VkShaderModule> make_module(const std::string& path);
+    Result<ShaderModule> make_module(const std::string& path);
     Result<const Pipeline*> finish(std::unique_ptr<Entry> entry);
 
     Device& device_;

@@ -9,9 +9,7 @@ constexpr std::uint32_t scopes_per_frame = 1024; // later scopes of a frame are 
 }
 
 Timers::~Timers() {
-    for (const Frame& frame : frames_)
-        device_.vk.vkDestroyQueryPool(device_.handle(), frame.pool, nullptr);
-    for (VkQueryPool pool : spare_)
+    for (VkQueryPool pool : pools_)
         device_.vk.vkDestroyQueryPool(device_.handle(), pool, nullptr);
 }
 
@@ -27,8 +25,12 @@ VkQueryPool Timers::take_pool() {
         VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
         info.queryType = VK_QUERY_TYPE_TIMESTAMP;
         info.queryCount = scopes_per_frame * 2;
+        // First, so that memory cannot run out once there is a pool to keep.
+        pools_.reserve(pools_.size() + 1);
+        spare_.reserve(pools_.size() + 1);
         if (device_.vk.vkCreateQueryPool(device_.handle(), &info, nullptr, &pool) != VK_SUCCESS)
             return VK_NULL_HANDLE;
+        pools_.push_back(pool);
     }
     device_.vk.vkResetQueryPool(device_.handle(), pool, 0, scopes_per_frame * 2);
     return pool;
@@ -36,10 +38,9 @@ VkQueryPool Timers::take_pool() {
 
 void Timers::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
     collect(completed_serial);
-    Frame frame;
-    frame.serial = serial;
-    frame.pool = take_pool();
-    frames_.push_back(std::move(frame));
+    frames_.emplace_back();
+    frames_.back().serial = serial;
+    frames_.back().pool = take_pool();
 }
 
 void Timers::begin_scope(VkCommandBuffer commands, const std::string& name) {

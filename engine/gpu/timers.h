@@ -51,8 +51,8 @@ private:
     FrameTimes times_of(const Frame& frame, const std::vector<std::uint64_t>& stamps) const;
 
     Device& device_;
-    std::deque<Frame> frames_; // in flight, oldest first
-    std::vector<VkQueryPool> spare_;
+    std::deque<Frame> frames_;               // in flight, oldest first
+    std::vector<VkQueryPool> pools_, spare_; // all of them, and those that no frame has
     FrameTimes latest_;
 };
 

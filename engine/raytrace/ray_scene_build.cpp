@@ -78,12 +78,14 @@ void RayScene::Implementation::attach_triangles(RTCScene target, const Instance&
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), mesh.positions.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangle_count()));
+    if (vertices == nullptr || indices == nullptr) // out of memory: update() asks Embree for the error
+        return rtcReleaseGeometry(geometry);
     for (const vec3 position : mesh.positions) {
         const vec3 world(matrix * vec4(position, 1.0f));
         *vertices++ = world.x, *vertices++ = world.y, *vertices++ = world.z;
     }
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangle_count()));
     std::copy(mesh.indices.begin(), mesh.indices.end(), indices);
     if (instance.surface.has_holes()) {
         filters.push_back(std::make_unique<HoleFilter>(HoleFilter{instance.surface, meshes, textures, instance.mesh}));

@@ -22,10 +22,11 @@ public:
 
     void call() {
         static constexpr void (Sequence::*calls[])() = {
-            &Sequence::add_mesh,     &Sequence::remove_mesh,   &Sequence::add_material, &Sequence::set_material,
-            &Sequence::add_instance, &Sequence::set_transform, &Sequence::set_surface,  &Sequence::remove_instance,
-            &Sequence::add_light,    &Sequence::set_light,     &Sequence::remove_light, &Sequence::set,
-            &Sequence::look,         &Sequence::frame,         &Sequence::frame,        &Sequence::frame};
+            &Sequence::add_mesh,     &Sequence::remove_mesh,   &Sequence::add_material,  &Sequence::set_material,
+            &Sequence::add_instance, &Sequence::set_transform, &Sequence::set_surface,   &Sequence::remove_instance,
+            &Sequence::add_light,    &Sequence::set_light,     &Sequence::remove_light,  &Sequence::set,
+            &Sequence::add_sensor,   &Sequence::set_sensor,    &Sequence::remove_sensor, &Sequence::step_sensors,
+            &Sequence::look,         &Sequence::frame,         &Sequence::frame,         &Sequence::frame};
         // Half of the calls are of values that make no sense, whichever they are.
         wrong_ = pick(2) == 0;
         (this->*calls[pick(std::size(calls))])();
@@ -153,6 +154,44 @@ private:
             lights_[number] = false;
         expect(status, "remove_light");
     }
+    host::SensorData sensor() {
+        host::SensorData data;
+        data.position = {real(-1.5f, 1.5f), real(0.2f, 2.3f), real(-1.5f, 1.5f)};
+        data.normal = {real(-1, 1), 1, real(-1, 1)};
+        if (wrong_)
+            spoil(chance() ? data.position : chance() ? data.normal : data.threshold);
+        return data;
+    }
+    void add_sensor() {
+        if (sensors_.size() > 4)
+            return;
+        const auto made = context_.add_sensor(sensor());
+        if (made) {
+            sensors_.resize(made.value() + 1, false);
+            sensors_[made.value()] = true;
+        }
+        expect(without_value(made), "add_sensor");
+    }
+    void set_sensor() {
+        const std::uint32_t number = one_of(sensors_);
+        expect(context_.set_sensor(number, sensor()), "set_sensor");
+    }
+    void remove_sensor() {
+        std::uint32_t number = one_of(sensors_);
+        if (wrong_)
+            number = std::uint32_t(sensors_.size()) + pick(50);
+        const Status status = context_.remove_sensor(number);
+        if (status)
+            sensors_[number] = false;
+        expect(status, "remove_sensor");
+    }
+    void step_sensors() {
+        wrong_ = false;
+        expect(context_.step_sensors(), "step_sensors");
+        const host::SensorValue value = context_.read_sensor(pick(9));
+        for (const float colour : value.irradiance)
+            EXPECT_TRUE(colour >= 0.0f && std::isfinite(colour)) << colour;
+    }
     void set() {
         struct Choice {
             const char *name, *value;
@@ -251,7 +290,7 @@ private:
     HostProgram& program_;
     host::Context& context_;
     std::uint32_t meshes_ = 0, materials_ = 0, live_ = 0;
-    std::vector<bool> instances_, lights_;
+    std::vector<bool> instances_, lights_, sensors_;
     std::uint64_t recorded_ = 0;
 };
 

@@ -17,6 +17,15 @@ struct HostPicture {
     bool operator==(const HostPicture&) const = default;
 };
 
+// Calls of sunfleck/host.h that this thread is within.
+inline thread_local int host_calls = 0;
+struct HostCall {
+    HostCall() { ++host_calls; }
+    ~HostCall() { --host_calls; }
+    HostCall(const HostCall&) = delete;
+    HostCall& operator=(const HostCall&) = delete;
+};
+
 class HostProgram {
 public:
     static constexpr std::uint32_t width = 32, height = 32;
@@ -83,10 +92,15 @@ public:
     // A frame; the surface is that of `instance`.
     Status frame(host::Context& context, std::uint32_t instance) {
         const host::Frame frame = next_frame();
-        Status status = context.update(frame);
+        Status status = [&] {
+            const HostCall call;
+            return context.update(frame);
+        }();
         if (status) {
             draw(context.surface_id(instance));
-            status = context.record(commands_, camera_, images());
+            const host::FrameImages all = images();
+            const HostCall call;
+            status = context.record(commands_, camera_, all);
         }
         if (status)
             submit();

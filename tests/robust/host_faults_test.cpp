@@ -1,0 +1,269 @@
+// Whatever call of Vulkan's fails, and wherever memory runs out: the call of the host's returns an error that names the
+// step, nothing leaks, and after errors of memory the next frames lead to the picture that they would have led to.
+#include "tests/robust/faulty_vulkan.h"
+#include "tests/support/host_program.h"
+#include "tests/support/test_size.h"
+
+#include <cstdlib>
+#include <new>
+#include <random>
+#include <set>
+
+// Where the program's own code begins and ends, from the linker.
+extern "C" {
+extern const char __executable_start, etext;
+}
+
+namespace sunfleck::tests {
+namespace {
+
+// Which allocation of this thread fails, from 1; 0: none.
+thread_local std::uint64_t allocations = 0, failing_allocation = 0;
+thread_local bool counting = false;
+
+// `caller`: who allocates. Only code of this program, which the module is linked into, while it is called as a host
+// calls it: how the driver, the validation layer and Embree bear it is their own affair.
+bool allocation_fails(const void* caller) noexcept {
+    if (!counting || host_calls == 0 || faulty::state.within > 0 || caller < &__executable_start || caller >= &etext)
+        return false;
+    return ++allocations == failing_allocation;
+}
+
+} // namespace
+} // namespace sunfleck::tests
+
+// The program's own; libraries that it loads take them, too.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+    if (sunfleck::tests::allocation_fails(__builtin_return_address(0)))
+        throw std::bad_alloc();
+    if (void* memory = std::malloc(size > 0 ? size : 1))
+        return memory;
+    throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+    std::free(memory);
+}
+
+namespace sunfleck::tests {
+namespace {
+
+using host::LightKind;
+using host::Mobility;
+
+class RobustHostFaults : public GpuTest {
+protected:
+    void SetUp() override {
+        GpuTest::SetUp();
+        faulty::state = {};
+    }
+};
+
+const int frames = by_size(12, 60);
+
+// A scene that changes from frame to frame; step `frame` of it. Steps may be repeated.
+struct Story {
+    std::uint32_t extra = ~0u;
+
+    static Status begin(host::Context& context) {
+        const HostCall call;
+        for (const auto& [name, value] : {std::pair("lights", "12"), std::pair("shadow_map_resolution", "32")})
+            SUNFLECK_TRY(context.set(name, value));
+        SUNFLECK_ASSIGN(const std::uint32_t in, context.add_mesh(cube(true)));
+        SUNFLECK_ASSIGN(const std::uint32_t out, context.add_mesh(cube(false)));
+        SUNFLECK_TRY(context.add_instance(
+            {in, box_matrix(vec3(0, 1.25f, 0), vec3(4, 2.5f, 4)), Mobility::fixed, {0.7f, 0.6f, 0.5f}}));
+        SUNFLECK_TRY(context.add_instance({out, host::identity, Mobility::moving}));
+        SUNFLECK_TRY(context.add_light({LightKind::point, {5, 4, 3}, {-0.5f, 2.0f, 0.5f}}));
+        return {};
+    }
+    Status step(host::Context& context, int frame) {
+        const HostCall call;
+        const float t = 0.1f * float(frame);
+        SUNFLECK_TRY(context.set_transform(1, box_matrix(vec3(std::sin(t), 0.6f, std::cos(t)), vec3(0.6f))));
+        if (frame == frames / 4 && extra == ~0u) {
+            SUNFLECK_ASSIGN(extra, context.add_instance({1, box_matrix(vec3(-1, 0.5f, -1), vec3(0.5f))}));
+        }
+        if (frame == frames * 5 / 12)
+            SUNFLECK_TRY(context.set("shadow_map_resolution", "64"));
+        if (frame == frames * 7 / 12)
+            SUNFLECK_TRY(context.set_surface(0, {0.5f, 0.7f, 0.5f}, {0, 0, 0}));
+        if (frame == frames * 3 / 4 && extra != ~0u) {
+            SUNFLECK_TRY(context.remove_instance(extra));
+            extra = ~0u;
+        }
+        return {};
+    }
+};
+
+struct Outcome {
+    std::vector<Error> errors; // of the calls that failed
+    bool lost = false;
+    HostPicture picture;
+};
+
+// All of it, from create to the settled picture. After an error of memory the call is repeated.
+Outcome play(HostProgram& program) {
+    Outcome outcome;
+    const auto failed = [&](const Status& status) {
+        if (status)
+            return false;
+        outcome.errors.push_back(status.error());
+        outcome.lost = status.error().code == ErrorCode::device_lost;
+        return true;
+    };
+    host::VulkanHandles handles = program.handles();
+    handles.get_instance_proc_addr = faulty::get_instance_proc_addr;
+    auto context = [&] {
+        const HostCall call;
+        return host::Context::create(handles);
+    }();
+    if (!context) {
+        failed(context.error());
+        context = host::Context::create(handles);
+    }
+    EXPECT_TRUE(context) << context.error().message;
+    if (failed(Story::begin(**context))) {
+        EXPECT_TRUE((*context)->clear());
+        EXPECT_TRUE(Story::begin(**context));
+    }
+    Story story;
+    for (int frame = 0; frame < frames && !outcome.lost; ++frame) {
+        if (failed(story.step(**context, frame))) {
+            EXPECT_TRUE(story.step(**context, frame));
+        }
+        if (failed(program.frame(**context, 0)) && !outcome.lost) {
+            EXPECT_TRUE(program.frame(**context, 0));
+        }
+    }
+    counting = false;
+    if (!outcome.lost) {
+        const Status settled = program.settle(**context, 0);
+        EXPECT_TRUE(settled) << settled.error().message;
+        outcome.picture = program.picture();
+    }
+    program.wait();
+    context = Error{};
+    return outcome;
+}
+
+// One of the project's names of steps, and the result's: "creating buffer 'x' failed: VK_ERROR_OUT_OF_DEVICE_MEMORY".
+void expect_named(const Error& error) {
+    EXPECT_NE(error.message.find("failed: VK_"), std::string::npos) << error.message;
+    EXPECT_GT(error.message.find("failed"), 8u) << error.message;
+}
+
+// A frame without times is right, too, and another pool does as well as one that is used up.
+bool may_be_ignored(const std::string& function, VkResult code) {
+    return function == "vkCreateQueryPool" || function == "vkGetQueryPoolResults" ||
+           (function == "vkAllocateDescriptorSets" &&
+            (code == VK_ERROR_FRAGMENTED_POOL || code == VK_ERROR_OUT_OF_POOL_MEMORY));
+}
+
+// Call number `call` fails with `code`.
+void try_fault(HostProgram& program, std::uint64_t call, VkResult code, const HostPicture& expected) {
+    faulty::state = {};
+    faulty::state.fail_at = call;
+    faulty::state.code = code;
+    const Outcome outcome = play(program);
+    SCOPED_TRACE("call " + std::to_string(call) + ", " + faulty::state.failed + ", result " + std::to_string(code));
+    EXPECT_EQ(faulty::state.live, 0) << "objects of Vulkan's leak";
+    EXPECT_LE(outcome.errors.size(), 1u);
+    if (outcome.errors.empty()) {
+        EXPECT_TRUE(may_be_ignored(faulty::state.failed, code)) << "nobody noticed";
+    } else {
+        expect_named(outcome.errors.front());
+    }
+    if (!outcome.lost) {
+        EXPECT_EQ(outcome.picture, expected);
+    }
+}
+
+std::uint64_t number_from_environment(const char* name, std::uint64_t otherwise) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+// Cases of the short size: each function once, at a place by the seed.
+std::vector<std::uint64_t> some_calls(const std::vector<std::uint8_t>& sequence, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<std::vector<std::uint64_t>> places(faulty::fallible_names.size());
+    for (std::size_t i = 0; i < sequence.size(); ++i)
+        places[sequence[i]].push_back(i + 1);
+    std::vector<std::uint64_t> calls;
+    for (const auto& list : places)
+        if (!list.empty())
+            calls.push_back(list[random() % list.size()]);
+    return calls;
+}
+
+TEST_F(RobustHostFaults, EveryCallOfVulkanMayFail) {
+    HostProgram program(device());
+    const HostPicture expected = play(program).picture;
+    const std::vector<std::uint8_t> sequence = faulty::state.sequence;
+    EXPECT_EQ(faulty::state.live, 0);
+    EXPECT_EQ(play(program).picture, expected) << "the story is not deterministic";
+    std::vector<std::uint64_t> calls = some_calls(sequence, 1);
+    if (long_size()) {
+        const std::uint64_t first = number_from_environment("SUNFLECK_FIRST_SEED", 1);
+        const std::uint64_t last = number_from_environment("SUNFLECK_LAST_SEED", sequence.size());
+        calls.clear();
+        for (std::uint64_t call = first; call <= std::min<std::uint64_t>(last, sequence.size()); ++call)
+            calls.push_back(call);
+    }
+    std::uint64_t cases = 0;
+    for (const std::uint64_t call : calls) {
+        const auto codes = faulty::codes_of(faulty::fallible_names[sequence[call - 1]]);
+        for (std::size_t i = 0; i < codes.size() && !HasFailure(); ++i)
+            if (long_size() || i == call % codes.size()) {
+                try_fault(program, call, codes[i], expected);
+                ++cases;
+            }
+    }
+    const std::set<std::uint8_t> reached(sequence.begin(), sequence.end());
+    std::printf("%zu calls of %zu functions; %llu cases; not reached:", sequence.size(), reached.size(),
+                static_cast<unsigned long long>(cases));
+    for (std::size_t i = 0; i < faulty::fallible_names.size(); ++i)
+        if (reached.count(std::uint8_t(i)) == 0)
+            std::printf(" %s", faulty::fallible_names[i]);
+    std::puts("");
+}
+
+// Allocation number `allocation` of the calling thread fails.
+void try_allocation(HostProgram& program, std::uint64_t allocation, const HostPicture& expected) {
+    faulty::state = {};
+    allocations = 0;
+    failing_allocation = allocation;
+    counting = true;
+    const Outcome outcome = play(program);
+    counting = false;
+    SCOPED_TRACE("allocation " + std::to_string(allocation));
+    EXPECT_EQ(faulty::state.live, 0) << "objects of Vulkan's leak";
+    for (const Error& error : outcome.errors) {
+        EXPECT_EQ(error.code, ErrorCode::memory) << error.message;
+        EXPECT_FALSE(error.message.empty());
+    }
+    EXPECT_EQ(outcome.picture, expected);
+}
+
+TEST_F(RobustHostFaults, EveryAllocationMayFail) {
+    HostProgram program(device());
+    allocations = failing_allocation = 0;
+    counting = true;
+    const HostPicture expected = play(program).picture;
+    counting = false;
+    const std::uint64_t count = allocations;
+    const std::uint64_t first = number_from_environment("SUNFLECK_FIRST_SEED", 1);
+    const std::uint64_t last = number_from_environment("SUNFLECK_LAST_SEED", first + by_size(3u, 999u));
+    for (std::uint64_t seed = first; seed <= last && !HasFailure(); ++seed) {
+        std::mt19937 random{std::uint32_t(seed)};
+        try_allocation(program, 1 + random() % count, expected);
+    }
+    std::printf("%llu allocations; %llu cases\n", static_cast<unsigned long long>(count),
+                static_cast<unsigned long long>(last - first + 1));
+}
+
+} // namespace
+} // namespace sunfleck::tests
