@@ -11,6 +11,7 @@
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
 #include "game_demo/walk_through.h"
+#include "viewer/lost_devices.h"
 #include "viewer/progress.h"
 
 #include <algorithm>
@@ -197,20 +198,9 @@ void print_result(const Playback& playback, const Options& options) {
                 playback.pictures() == 1 ? "" : "s", options.output.c_str());
 }
 
-} // namespace
-
-Status run_headless(const Options& options) {
-    if (options.output.empty())
-        return Error{"--headless needs a folder for its images: -o DIR"};
-    SUNFLECK_ASSIGN(auto recorded, recorded_input(options));
-    std::error_code code;
-    std::filesystem::create_directories(options.output, code);
-    if (code)
-        return Error{"cannot create folder '" + options.output + "': " + code.message()};
-    const std::filesystem::path statistics_file = std::filesystem::path(options.output) / "stats.json";
-    const NamedFile outputs[] = {{"-o", statistics_file}, {"--record", options.record}};
-    const NamedFile inputs[] = {{"--input", options.input}, {"--scene", options.scene}};
-    SUNFLECK_TRY(try_outputs(outputs, inputs));
+// On a device of its own.
+Status play(const Options& options, const std::vector<simulation::StepInput>& recorded,
+            const std::filesystem::path& statistics_file) {
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, options.validation, {}}));
     DemoSettings settings;
     settings.preset = options.preset.value_or(default_preset(device->traits().software));
@@ -222,7 +212,7 @@ Status run_headless(const Options& options) {
     if (options.frames == 0 && recorded.empty()) {
         SUNFLECK_ASSIGN(steps, walk_length(source_of(options)));
     }
-    Playback playback(options, settings, std::move(recorded), steps);
+    Playback playback(options, settings, recorded, steps);
     const Status played = playback.run(*level);
     SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
@@ -232,6 +222,24 @@ Status run_headless(const Options& options) {
         return Error{"validation printed messages (see above)"};
     print_result(playback, options);
     return {};
+}
+
+} // namespace
+
+Status run_headless(const Options& options) {
+    if (options.output.empty())
+        return Error{"--headless needs a folder for its images: -o DIR"};
+    SUNFLECK_ASSIGN(const auto recorded, recorded_input(options));
+    std::error_code code;
+    std::filesystem::create_directories(options.output, code);
+    if (code)
+        return Error{"cannot create folder '" + options.output + "': " + code.message()};
+    const std::filesystem::path statistics_file = std::filesystem::path(options.output) / "stats.json";
+    const NamedFile outputs[] = {{"-o", statistics_file}, {"--record", options.record}};
+    const NamedFile inputs[] = {{"--input", options.input}, {"--scene", options.scene}};
+    SUNFLECK_TRY(try_outputs(outputs, inputs));
+    // The same input gives the same world: what a lost device ended is played once more, from the first step.
+    return viewer::survive_lost_devices([&] { return play(options, recorded, statistics_file); });
 }
 
 } // namespace sunfleck::demo

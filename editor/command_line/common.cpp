@@ -130,17 +130,6 @@ int exit_status(const Status& status, int on_error) {
     return stop_requested() ? exit_stopped_by(stop_signal()) : on_error;
 }
 
-Status survive_lost_devices(const std::function<Status()>& work) {
-    for (int losses = 1;; ++losses) {
-        const Status status = work();
-        if (status || status.error().code != ErrorCode::device_lost)
-            return status;
-        if (losses == 3)
-            return Error{status.error().message + " (three times: it is given up)", ErrorCode::device_lost};
-        log_warning(status.error().message + "; the work begins again on a new device");
-    }
-}
-
 bool interrupted() {
     return stop_requested();
 }

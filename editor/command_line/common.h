@@ -85,10 +85,6 @@ int exit_status(const Status& status, int on_error = exit_failed);
 
 using viewer::Progress;
 
-// Runs work that makes a device of its own. Where the GPU stops answering, it is run again with a new one, twice at
-// most.
-Status survive_lost_devices(const std::function<Status()>& work);
-
 // Seconds since it was made.
 class Stopwatch {
 public:

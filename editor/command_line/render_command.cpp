@@ -5,6 +5,7 @@
 #include "engine/core/log.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "viewer/lost_devices.h"
 #include "viewer/quality.h"
 #include "viewer/trace.h"
 #include "viewer/views.h"
@@ -193,7 +194,7 @@ Status render(const RenderOptions& options) {
     const NamedFile outputs[] = {{"-o", options.output}, {"--stats", options.statistics}, {"--trace", options.trace}};
     const NamedFile inputs[] = {{"SCENE", path}, {"--environment", options.scene.environment}};
     SUNFLECK_TRY(try_outputs(outputs, inputs));
-    return survive_lost_devices([&] { return render_on_new_device(options, path); });
+    return viewer::survive_lost_devices([&] { return render_on_new_device(options, path); });
 }
 
 } // namespace sunfleck::command_line

@@ -1,10 +1,10 @@
 // Every option that --help shows, with values that make no sense: what the parser takes is in the range that help
 // shows, and what it refuses is named, with the range, in one message and exit status 2.
-#include "editor/command_line/common.h"
 #include "editor/command_line/program.h"
 #include "engine/core/exit_status.h"
 #include "test_places.h"
 #include "tests/support/run_tool.h"
+#include "viewer/lost_devices.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -219,14 +219,14 @@ TEST(RobustOptions, BordersOfRangesAreIn) {
 TEST(RobustDevices, WorkGoesOnOnNewDevicesTwice) {
     for (int losses = 0; losses <= 3; ++losses) {
         int runs = 0;
-        const Status status = command_line::survive_lost_devices([&]() -> Status {
+        const Status status = viewer::survive_lost_devices([&]() -> Status {
             return ++runs <= losses ? Status(Error{"submitting a frame failed", ErrorCode::device_lost}) : Status();
         });
         EXPECT_EQ(bool(status), losses < 3);
         EXPECT_EQ(runs, losses < 3 ? losses + 1 : 3);
     }
     int runs = 0;
-    EXPECT_FALSE(command_line::survive_lost_devices([&]() -> Status {
+    EXPECT_FALSE(viewer::survive_lost_devices([&]() -> Status {
         ++runs;
         return Error{"out of memory", ErrorCode::memory};
     }));
