@@ -31,6 +31,15 @@ void pass_through(const RTCFilterFunctionNArguments* arguments) {
     std::fill_n(arguments->valid, arguments->N, 0);
 }
 
+// Embree takes rays into the space of an instance. A matrix that flattens its mesh, or nearly does, leads nowhere from
+// there, and one that makes it tiny puts places of the world out of a float's range: what such movers draw is given to
+// Embree where it lies, as static geometry is.
+bool has_inverse(const mat4& matrix) {
+    const mat3 m(matrix);
+    const float largest = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
+    return largest > 0x1p-40f && std::abs(glm::determinant(m / largest)) > 0x1p-20f;
+}
+
 bool same_holes(const SurfaceDescription& a, const SurfaceDescription& b) {
     return a.material.alpha_mode == b.material.alpha_mode &&
            (!a.has_holes() ||
@@ -141,14 +150,27 @@ void RayScene::Implementation::attach_instance(RTCScene target, const mat4& matr
     rtcReleaseGeometry(geometry);
 }
 
+// Triangles in the world's space, for the one instance that they are of.
+ScenePointer RayScene::Implementation::placed_scene(const Instance& instance) {
+    ScenePointer scene = new_scene();
+    attach_triangles(scene.get(), instance, instance.matrix, 0, mover_filters);
+    rtcCommitScene(scene.get());
+    return scene;
+}
+
 // The static scene is instance 0 of the top scene; mover k of the list is instance 1 + k.
 void RayScene::Implementation::build_top() {
     top_scene = new_scene();
     const std::vector<std::unique_ptr<HoleFilter>> previous = std::move(mover_filters);
     mover_filters.clear();
     attach_instance(static_scene.get(), mat4(1.0f), 0);
-    for (std::uint32_t i = static_count; i < instances.size(); ++i)
-        attach_instance(mesh_scene(instances[i]), instances[i].matrix, 1 + i - static_count);
+    for (std::uint32_t i = static_count; i < instances.size(); ++i) {
+        const std::uint32_t id = 1 + i - static_count;
+        if (has_inverse(instances[i].matrix))
+            attach_instance(mesh_scene(instances[i]), instances[i].matrix, id);
+        else
+            attach_instance(placed_scene(instances[i]).get(), mat4(1.0f), id);
+    }
     rtcCommitScene(top_scene.get());
 }
 
@@ -173,7 +195,8 @@ void RayScene::Implementation::Differences::compare(const Instance* had, const I
         static_emission = static_emission || had->surface.material.emission != now->surface.material.emission;
     } else {
         movers = movers || had->mesh != now->mesh || had->revision != now->revision ||
-                 had->casts_shadow != now->casts_shadow || !same_holes(had->surface, now->surface);
+                 had->casts_shadow != now->casts_shadow || !same_holes(had->surface, now->surface) ||
+                 (had->matrix != now->matrix && (!has_inverse(had->matrix) || !has_inverse(now->matrix)));
     }
 }
 

@@ -85,6 +85,7 @@ struct RayScene::Implementation {
     void measure_bounds();
     void build_static();
     RTCScene mesh_scene(const Instance& instance);
+    ScenePointer placed_scene(const Instance& instance);
     void attach_instance(RTCScene target, const mat4& matrix, std::uint32_t id) const;
     void build_top();
     void move_in_top(std::span<const std::uint32_t> moved);

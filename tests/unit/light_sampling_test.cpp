@@ -135,6 +135,38 @@ TEST(RayScene, StaticGeometryIsBuiltOnceAndMoversFollow) {
     EXPECT_EQ(world.rays->static_builds(), builds + 1);
 }
 
+// A mover whose transform has no inverse is met where it lies: as a plate, which also moves, or not at all.
+TEST(RayScene, MoversMayBeFlatOrNothing) {
+    SampledScene world(assets::make_four_pillars);
+    const ecs::Entity torus = scene::find_by_name(world.registry, "torus");
+    const scene::Transform whole = *world.registry.try_get<scene::Transform>(torus);
+    RandomSequence random(SequenceKind::pseudo_random, 3, 1);
+    const auto height_met = [&](vec3 scale, float height) -> float {
+        scene::Transform placed = whole;
+        placed.rotation = glm::quat(1.0f, 0.0f, 0.0f, 0.0f);
+        placed.scale = scale;
+        placed.position.y = height;
+        world.registry.emplace_or_replace<scene::Transform>(torus, placed);
+        scene::update_world_transforms(world.registry);
+        EXPECT_TRUE(world.rays->update(world.registry, world.meshes));
+        float met = -1.0f;
+        for (int i = 0; i < 2000; ++i) {
+            const float x = whole.position.x + random.next() - 0.5f, z = whole.position.z + random.next() - 0.5f;
+            const raytrace::Ray down{vec3(x, 3.0f, z), vec3(0.0f, -1.0f, 0.0f), 0.0f, 100.0f};
+            const auto hit = world.rays->closest_hit(down);
+            if (hit && world.rays->surface(down, *hit).entity == torus)
+                met = 3.0f - hit->distance;
+        }
+        return met;
+    };
+    EXPECT_GT(height_met(whole.scale, 1.5f), 1.4f);
+    EXPECT_NEAR(height_met(whole.scale * vec3(1.0f, 0.0f, 1.0f), 1.5f), 1.5f, 1e-5f);
+    EXPECT_NEAR(height_met(whole.scale * vec3(1.0f, 1e-12f, 1.0f), 1.25f), 1.25f, 1e-5f);
+    EXPECT_EQ(height_met(vec3(0.0f), 1.5f), -1.0f);
+    EXPECT_EQ(height_met(vec3(1e-25f), 1.5f), -1.0f);
+    EXPECT_GT(height_met(whole.scale, 1.5f), 1.4f) << "and back";
+}
+
 TEST(RayScene, PacketsGiveTheAnswersOfSingleRays) {
     const SampledScene world(assets::make_table_room);
     RandomSequence random(SequenceKind::pseudo_random, 3, 1);
