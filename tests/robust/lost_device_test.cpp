@@ -1,0 +1,67 @@
+// Devices that stop answering under programs as they are, by a Vulkan layer (lossy_layer.cpp): one message, the work
+// goes on with a new device, and nothing that it makes is another; the third loss ends it.
+#include "engine/core/file.h"
+#include "test_places.h"
+#include "tests/support/gltf_files.h"
+#include "tests/support/run_tool.h"
+
+#include <gtest/gtest.h>
+
+namespace sunfleck {
+namespace {
+
+using tests::Outcome, tests::shell;
+
+class RobustLostDevice : public testing::Test {
+protected:
+    std::string file(const std::string& name) const { return (folder.path / name).string(); }
+    static int count(const std::string& text, const std::string& part) {
+        int found = 0;
+        for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+            ++found;
+        return found;
+    }
+    tests::Folder folder;
+    const std::string layer = "VK_LAYER_PATH=" SUNFLECK_LAYERS ":/usr/share/vulkan/explicit_layer.d "
+                              "VK_INSTANCE_LAYERS=VK_LAYER_SUNFLECK_lossy ";
+};
+
+TEST_F(RobustLostDevice, PicturesAreTheSame) {
+    const auto render = [&](const std::string& losses, const std::string& name) {
+        return shell(layer + "SUNFLECK_LOSE=" + losses +
+                     " " SUNFLECK_TOOL " render cornell --size 48x32 --lights 12 -o " + file(name));
+    };
+    ASSERT_EQ(render("0", "whole.png").status, 0);
+    const std::string whole = read_file(folder.path / "whole.png").value();
+    for (const char* losses : {"1", "2,1"}) {
+        const Outcome outcome = render(losses, "lost.png");
+        ASSERT_EQ(outcome.status, 0) << outcome.output;
+        EXPECT_EQ(count(outcome.output, "begins again on a new device"), losses[1] == ',' ? 2 : 1) << outcome.output;
+        EXPECT_EQ(read_file(folder.path / "lost.png").value(), whole) << losses;
+    }
+    const Outcome third = render("2,1,2", "third.png");
+    EXPECT_EQ(third.status, 1) << third.output;
+    EXPECT_EQ(count(third.output, "3 times"), 1) << third.output;
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "third.png"));
+}
+
+TEST_F(RobustLostDevice, AWalkIsTheSame) {
+    const auto walk = [&](const std::string& losses, const std::string& name) {
+        return shell(layer + "SUNFLECK_LOSE=" + losses +
+                     " " SUNFLECK_DEMO " --headless --scene four_pillars --size 64x36 --frames 3 --pictures 1 -o " +
+                     file(name));
+    };
+    ASSERT_EQ(walk("0", "whole").status, 0);
+    const Outcome outcome = walk("9,14", "lost");
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    int pictures = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path / "whole"))
+        if (entry.path().extension() == ".png") {
+            ++pictures;
+            EXPECT_EQ(read_file(folder.path / "lost" / entry.path().filename()).value(), read_file(entry).value());
+        }
+    EXPECT_GT(pictures, 0);
+}
+
+} // namespace
+} // namespace sunfleck
