@@ -55,8 +55,8 @@ void text_window(const char* name, const std::string& text, float y, float alpha
 
 } // namespace
 
-GameSession::GameSession(std::string level, std::filesystem::path folder)
-    : files_(folder, std::move(level)), has_folder_(!folder.empty()) {}
+GameSession::GameSession(std::string level, const std::filesystem::path& folder)
+    : level_(std::move(level)), files_(folder, level_), has_folder_(!folder.empty()) {}
 
 bool GameSession::begin(GameWorld& world, bool resume) {
     world_ = &world;

@@ -19,7 +19,7 @@ struct GameProgress {
 class GameSession {
 public:
     // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
-    GameSession(std::string level, std::filesystem::path folder);
+    GameSession(std::string level, const std::filesystem::path& folder);
 
     // Of a level that was just loaded. `resume`: goes on at the last checkpoint. False: none is good, and the level
     // must be loaded once more.
@@ -29,6 +29,8 @@ public:
     void update(double seconds);
     void show_hint();
     GameProgress progress() const;
+    // The game as a checkpoint would keep it; empty before it began.
+    std::string saved() const { return world_ != nullptr ? save_game(*world_, level_) : std::string(); }
     bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
     bool finished() const { return world_ != nullptr && world_->finished(); }
     double seconds() const { return seconds_; }
@@ -42,6 +44,7 @@ private:
     void draw_title() const;
     void draw_sensor() const;
 
+    std::string level_;
     CheckpointFiles files_;
     bool has_folder_ = false;
     GameWorld* world_ = nullptr;

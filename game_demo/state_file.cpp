@@ -22,7 +22,8 @@ Status StateFile::write(const GameState& state) {
                                          {"can_resume", state.progress.can_resume},
                                          {"sound_device", state.device},
                                          {"subtitles", state.subtitles},
-                                         {"message", state.message}};
+                                         {"message", state.message},
+                                         {"saved", state.saved}};
     const std::string text = json.dump() + "\n";
     if (text == written_)
         return {};

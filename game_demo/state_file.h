@@ -13,6 +13,7 @@ struct GameState {
     std::string device; // of sound; empty: none
     std::vector<std::string> subtitles;
     std::string message;
+    std::string saved; // the game as a checkpoint would keep it (game/saved_game.h)
 };
 
 class StateFile {

@@ -281,8 +281,10 @@ private:
     }
 
     GameState state() const {
-        return {screen_name(menu_.screen()), menu_.selected(),    session_.progress(), sounds_.device(),
-                sounds_.subtitles(),         menu_.message_text()};
+        if (options_.state.empty())
+            return {};
+        return {screen_name(menu_.screen()), menu_.selected(),     session_.progress(), sounds_.device(),
+                sounds_.subtitles(),         menu_.message_text(), session_.saved()};
     }
 
     OverlayData overlay_data(const viewer::FrameRequest& request, double seconds) {

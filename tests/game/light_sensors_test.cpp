@@ -209,6 +209,7 @@ TEST(LightSensors, FollowAChangeWhileTheLampKeepsMoving) {
         room.step();
     }
     std::vector<float> shares;
+    shares.reserve(room.entities.size());
     for (std::size_t i = 0; i < room.entities.size(); ++i)
         shares.push_back(room.reading(i).share);
     room.sensors = LightSensors::create().value();

@@ -1,8 +1,11 @@
 // The game in a real window with real keys, from outside: each step waits for what it should bring about, never for a
 // time.
 #include "engine/core/file.h"
+#include "game_demo/game/saved_game.h"
+#include "tests/game/played_game.h"
 #include "tests/support/command_line.h"
 #include "tests/support/driven_display.h"
+#include "tests/support/test_size.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -137,19 +140,18 @@ protected:
 
 // From the title through the first door, whose room is a checkpoint.
 void walk_to_the_corner(const DrivenGame& game) {
-    const auto heard = [&] {
+    bool heard = false; // of the door, whose subtitle is there for seconds
+    const auto listen = [&] {
         for (const auto& line : game.state().value("subtitles", nlohmann::json::array()))
-            if (line.get<std::string>().find("porch door slides") != std::string::npos)
-                return true;
-        return false;
+            heard = heard || line.get<std::string>().find("porch door slides") != std::string::npos;
+        return heard;
     };
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
     EXPECT_EQ(game.value("area"), "The porch");
     EXPECT_TRUE(game.state().value("hint", false)) << "the first hint says what the game is about";
     ASSERT_TRUE(game.strafe_between(0.75f, 2.5f)) << game.state();
-    ASSERT_TRUE(game.hold_until("w", [&] { return game.place(2) < 7.3f; })) << game.state();
+    ASSERT_TRUE(game.hold_until("w", [&] { return listen() && game.place(2) < 7.3f; })) << game.state();
     ASSERT_TRUE(game.strafe_between(-0.2f, 0.2f)) << game.state();
-    EXPECT_TRUE(DrivenDisplay::wait_until(heard)) << game.state();
     ASSERT_TRUE(game.hold_until("w", [&] { return game.value("area") == "The corner"; })) << game.state();
 }
 
@@ -187,6 +189,74 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     EXPECT_EQ(game.value("area"), "The corner") << "Enter goes on at the checkpoint";
     EXPECT_LT(game.place(2), 6.24f);
     EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
+}
+
+// Presses what the solution would do next, by the state of the game in the window.
+class KeySolver {
+public:
+    explicit KeySolver(const DrivenGame& game) : game_(game), solution_(*copy_.world) {}
+    ~KeySolver() { game_.run("xdotool keyup w keyup c"); }
+    KeySolver(const KeySolver&) = delete;
+    KeySolver& operator=(const KeySolver&) = delete;
+
+    // After each frame. False: the solution does not work.
+    bool act() {
+        const nlohmann::json now = game_.state();
+        const auto steps = now.value("steps", std::uint64_t(0));
+        if (steps == steps_ || !demo::load_game(*copy_.world, "lantern_game", now.value("saved", std::string())))
+            return true;
+        simulation::StepInput input;
+        std::uint32_t buttons = 0;
+        for (; steps_ < steps; ++steps_) {
+            input = solution_.next();
+            buttons |= input.buttons;
+        }
+        press(input, buttons);
+        return solution_.problem().empty();
+    }
+    const std::string& problem() const { return solution_.problem(); }
+
+private:
+    void press(const simulation::StepInput& input, std::uint32_t buttons) {
+        // The share of the angle that a frame of five steps would turn, in pixels of 22e-4 rad.
+        const auto pixels = [](std::int32_t turn) { return std::to_string(std::lround(-5.0 * turn / 22.0)); };
+        std::string keys = "xdotool mousemove_relative -- " + pixels(input.turn) + " " + pixels(input.look_up);
+        const bool walks = input.forward > 0, slowly = walks && input.forward < 50;
+        if (std::exchange(walks_, walks) != walks)
+            keys += walks ? " keydown w" : " keyup w";
+        if (std::exchange(slowly_, slowly) != slowly)
+            keys += slowly ? " keydown c" : " keyup c";
+        if ((buttons & simulation::button_use) != 0)
+            keys += " key e";
+        game_.run(keys);
+    }
+
+    const DrivenGame& game_;
+    tests::Played copy_;
+    demo::Solution solution_;
+    std::uint64_t steps_ = 0;
+    bool walks_ = false, slowly_ = false;
+};
+
+// Six minutes: the long size only, whose short relative is above.
+TEST_F(GameWindow, IsPlayedToItsEnd) {
+    if (!tests::long_size())
+        GTEST_SKIP() << "takes as long as a person does";
+    DrivenGame game(folder);
+    ASSERT_TRUE(game.start("null")) << game.log();
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    KeySolver solver(game);
+    bool works = true;
+    const auto ended = [&] {
+        works = works && solver.act();
+        return !works || game.value("screen") == "finished";
+    };
+    EXPECT_TRUE(DrivenDisplay::wait_until(ended, 900.0)) << game.state();
+    EXPECT_EQ(solver.problem(), "") << game.state();
+    EXPECT_EQ(game.value("screen"), "finished");
+    EXPECT_EQ(game.value("selected"), "Play once more");
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    EXPECT_EQ(game.value("area"), "The porch");
 }
 
 TEST_F(GameWindow, AMissingLevelIsOneMessage) {
