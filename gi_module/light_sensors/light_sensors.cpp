@@ -13,9 +13,9 @@ namespace {
 constexpr float noticed_share = 1e-3f;
 constexpr std::size_t paths_per_chunk = 16;
 constexpr std::uint32_t usual_rays = 8; // of a path that was never followed
-// While lamps move, a sensor's paths are followed once in so many steps, which is less than half a second; and where
-// none of the last paths changed, since the lamps do not reach it, in eight times as many. As soon as a path changes,
-// or the lamps rest, the sensor is as fast as the others.
+// While something moves, a sensor's paths are followed once in so many steps, which is less than half a second; and
+// where none of the last paths changed, in eight times as many. As soon as one does, the sensor is as fast as the
+// others.
 constexpr std::uint32_t steps_a_round = 24, quiet_factor = 8, quiet_paths = 128;
 
 bool touch(const Bounds& a, const Bounds& b) {
@@ -129,18 +129,21 @@ void LightSensors::find_sensors(ecs::Registry& registry) {
 
 void LightSensors::mark_changes(ecs::Registry& registry, const scene::MeshStore& meshes,
                                 const scene::SceneChanges& changes) {
+    changing_ = changes.emitters_changed();
     if (changes.everything || changes.static_geometry || !changes.meshes.empty()) {
         mark_all();
     } else {
         for (const scene::DrawableChange& change : changes.drawables) {
             if (!change.moved() && !change.surface_changed())
                 continue;
+            Bounds box; // where it was and where it is: for a step's way, hardly more than either
             for (const scene::Drawable* drawable : {change.before, change.now})
                 if (drawable != nullptr && drawable->casts_shadow)
-                    mark_touched(drawable->bounds);
+                    box.add(drawable->bounds);
+            changing_ = changing_ || !box.empty();
+            mark_touched(box);
         }
     }
-    changing_ = changes.emitters_changed();
     if (changes.everything || changes.emitters_changed() || changes.static_geometry)
         take_emitters(registry, meshes, changes);
 }
@@ -182,7 +185,7 @@ void LightSensors::mark_touched(const Bounds& box) {
         if (!touch(sensor.extent, box))
             continue;
         for (std::size_t i = 0; i < sensor.paths.size(); ++i)
-            if (touch(sensor.paths[i].extent, box))
+            if (sensor.pending[i] == 0 && touch(sensor.paths[i].extent, box))
                 mark(sensor, i);
     }
 }

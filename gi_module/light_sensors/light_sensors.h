@@ -21,7 +21,7 @@ namespace sunfleck::gi {
 enum class SensedLight : std::uint32_t { all, direct };
 
 struct SensorSettings {
-    std::uint32_t sensor_rays = 2048; // a step, about; fewer while lamps move: no more than half a second asks for
+    std::uint32_t sensor_rays = 2048; // a step, about; fewer while something moves: no more than half a second asks for
     SensedLight sensors = SensedLight::all;
     bool operator==(const SensorSettings&) const = default;
     static const TypeDescription& description();
@@ -90,7 +90,7 @@ private:
     std::vector<Sensor> sensors_;   // by entity
     std::vector<Job> jobs_;
     bool forget_ = false;
-    bool changing_ = false; // lamps, in the last step
+    bool changing_ = false; // something moved, or a lamp changed, in the last step
     std::uint32_t rays_ = 0;
     double milliseconds_ = 0.0;
 };
