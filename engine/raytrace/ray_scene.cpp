@@ -1,10 +1,20 @@
 // Queries; ray_scene_build.cpp builds what they meet.
 #include "engine/raytrace/ray_scene_data.h"
 
+#include <cmath>
 #include <limits>
 
 namespace sunfleck::raytrace {
 namespace {
+
+// Embree ends the program where coordinates are not finite or beyond what it computes with. Scenes of such a size exist
+// in damaged files; their rays meet nothing.
+bool is_traceable(const Ray& ray) {
+    const vec3 origin = glm::abs(ray.origin), direction = glm::abs(ray.direction);
+    const float sum = origin.x + origin.y + origin.z + direction.x + direction.y + direction.z;
+    return sum <= greatest_coordinate && !std::isnan(ray.minimum) &&
+           !std::isnan(ray.maximum); // false if anything is no number
+}
 
 void set_ray(RTCRay& target, const Ray& ray) {
     target.org_x = ray.origin.x, target.org_y = ray.origin.y, target.org_z = ray.origin.z;
@@ -19,8 +29,8 @@ void set_ray(RTCRay& target, const Ray& ray) {
 
 void set_rays(RTCRay16& query, int (&valid)[packet_size], const ShadowPacket& packet) {
     for (std::size_t i = 0; i < packet_size; ++i) {
-        valid[i] = (packet.active >> i) & 1u ? -1 : 0;
         const Ray& ray = packet.rays[i];
+        valid[i] = ((packet.active >> i) & 1u) != 0 && is_traceable(ray) ? -1 : 0;
         query.org_x[i] = ray.origin.x, query.org_y[i] = ray.origin.y, query.org_z[i] = ray.origin.z;
         query.dir_x[i] = ray.direction.x, query.dir_y[i] = ray.direction.y, query.dir_z[i] = ray.direction.z;
         query.tnear[i] = ray.minimum, query.tfar[i] = ray.maximum;
@@ -49,6 +59,8 @@ Result<std::unique_ptr<RayScene>> RayScene::create() {
 }
 
 std::optional<Hit> RayScene::closest_hit(const Ray& ray, Scope scope) const {
+    if (!is_traceable(ray))
+        return std::nullopt;
     const Implementation& self = *implementation_;
     RTCRayHit query;
     set_ray(query.ray, ray);
@@ -70,6 +82,8 @@ std::optional<Hit> RayScene::closest_hit(const Ray& ray, Scope scope) const {
 }
 
 bool RayScene::occluded(const Ray& ray, Scope scope) const {
+    if (!is_traceable(ray))
+        return false;
     RTCRay query;
     set_ray(query, ray);
     RTCIntersectContext context;

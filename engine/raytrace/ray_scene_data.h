@@ -10,6 +10,10 @@
 
 namespace sunfleck::raytrace {
 
+// Embree ends the program where a ray's coordinates are beyond 1.8e18, also in the space of a mover's mesh: none goes
+// that far in the world.
+inline constexpr float greatest_coordinate = 1e11f;
+
 struct DeviceRelease {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
