@@ -30,27 +30,23 @@ set(SUNFLECK_BRIEF_TARGETS sunfleck_core sunfleck_gpu sunfleck_io sunfleck_stati
 function(sunfleck_use_precompiled target owner)
   if(SUNFLECK_SANITIZE MATCHES "address" AND target IN_LIST SUNFLECK_BRIEF_TARGETS)
     target_compile_options(${target} PRIVATE -O0)
-  elseif(SUNFLECK_PRECOMPILE AND NOT SUNFLECK_BUILD_SHARED)
+  elseif(SUNFLECK_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endif()
 endfunction()
 
 # sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries] [INSTALL])
-# A static library (shared with SUNFLECK_BUILD_SHARED) with the project's flags; headers are included by their path from
-# the project's root. INSTALL: it is part of the installed package.
+# A static library with the project's flags; headers are included by their path from the project's root. INSTALL: it is
+# part of the installed package.
 function(sunfleck_library name)
   cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
-  set(kind STATIC)
-  if(SUNFLECK_BUILD_SHARED AND ARG_INSTALL)
-    set(kind SHARED)
-  endif()
-  add_library(${name} ${kind})
+  add_library(${name} STATIC)
   sunfleck_sources(${name} ${ARG_SOURCES})
   target_include_directories(${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
                              "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>")
   target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:sunfleck_flags> ${ARG_PRIVATE_LINK})
   target_compile_features(${name} PUBLIC cxx_std_20)
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON INSTALL_RPATH "$ORIGIN")
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   sunfleck_use_precompiled(${name} "${SUNFLECK_PRECOMPILED}")
   if(ARG_INSTALL)
     target_include_directories(${name} PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sunfleck>")
@@ -58,8 +54,7 @@ function(sunfleck_library name)
     set_target_properties(${name} PROPERTIES EXPORT_NAME ${short})
     add_library(sunfleck::${short} ALIAS ${name})
     install(TARGETS ${name} EXPORT sunfleckTargets
-            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   endif()
 endfunction()
 

@@ -60,6 +60,7 @@ sunfleck::Status record(Lighting& lighting, VkCommandBuffer commands, VulkanProg
 }
 // [sunfleck: end]
 
+#include "own_loader.h"
 #include "own_projection.h"
 
 #include <chrono>
@@ -191,6 +192,8 @@ int run_gate() {
 int main(int argc, char** argv) {
     if (argc > 1 && std::strcmp(argv[1], "--gate") == 0)
         return run_gate();
+    if (argc > 1 && std::strcmp(argv[1], "--own-loader") == 0)
+        return run_own_loader();
     int failures = 0;
     for (std::uint32_t in_flight = 1; in_flight <= 4; ++in_flight) {
         VulkanProgram program(in_flight, host::enable_features);
@@ -216,6 +219,6 @@ int main(int argc, char** argv) {
     failures += finish(first, "first of two devices") + finish(second, "second of two devices");
     one->context.reset();
     two->context.reset();
-    failures += run_own_projection();
+    failures += run_own_projection() + run_own_loader();
     return failures == 0 ? 0 : 1;
 }

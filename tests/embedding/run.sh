@@ -23,6 +23,17 @@ done
 strays=$(find "$work/prefix" -name 'libsunfleck_*.a' -exec nm -g --defined-only {} + 2>/dev/null |
     awk 'NF == 3 && $2 !~ /^[VWu]$/ && $3 !~ /8sunfleck|^sunfleck_/ {print $3}' | sort -u)
 [[ -z $strays ]] || { echo "symbols that could clash with a host's:"; echo "$strays"; exit 1; }
+# Of the shared library, nothing can be seen but what sunfleck/host.h declares.
+if library=$(find "$work/prefix" -name 'libsunfleck.so' | grep .); then
+    strays=$(nm -DC --defined-only "$library" | cut -d' ' -f3- |
+        grep -vE '^sunfleck::host::(Context::(~Context|[a-z_]+)\(|(missing_features|enable_features|view_projection)(\[abi:[a-z0-9]+\])?\()' || true)
+    [[ -z $strays ]] || { echo "the shared library shows more than it should:"; head -20 <<<"$strays"; exit 1; }
+    echo "shared library: $(nm -D --defined-only "$library" | wc -l) symbols"
+    if readelf -d "$work/build/embedding_shared" | grep -E 'NEEDED.*(embree|tbb|meshopt)'; then
+        echo "the host links what only the library should"
+        exit 1
+    fi
+fi
 
 glue=$(sed -n '/\[sunfleck: begin\]/,/\[sunfleck: end\]/p' "$source/main.cpp" | sed '1d;$d')
 lines=$(grep -c . <<<"$glue")
@@ -45,6 +56,7 @@ if ldd "$work/build/embedding" | grep -iE 'OpenImageIO|glfw|imgui|tinygltf|draco
 fi
 echo "links: $(readelf -d "$work/build/embedding" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | tr '\n' ' ')"
 "$work/build/embedding"
+[[ ! -e $work/build/embedding_shared ]] || "$work/build/embedding_shared" --own-loader
 # Two pairs tell nothing yet, but every row is there, the program's own one too, and no counter differs.
 status=0
 "$work/prefix/bin/sunfleck" bench compare "$work/build/embedding --gate" "$work/build/embedding --gate" --looks 2 --turns 4 \

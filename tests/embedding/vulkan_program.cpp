@@ -66,8 +66,8 @@ std::vector<std::uint32_t> cube_indices(bool inwards) {
 }
 
 VulkanProgram::VulkanProgram(std::uint32_t frames_in_flight, const Features& features,
-                             const GeometryFormats& geometry_formats)
-    : formats(geometry_formats) {
+                             const GeometryFormats& geometry_formats, const VkAllocationCallbacks* callbacks)
+    : formats(geometry_formats), callbacks_(callbacks) {
     make_device(features);
     make_images();
     const std::vector<float> positions = cube_positions();
@@ -117,11 +117,11 @@ VulkanProgram::~VulkanProgram() {
     }
     vkFreeMemory(device, vertex_memory_, nullptr);
     vkFreeMemory(device, index_memory_, nullptr);
-    vkDestroyDevice(device, nullptr);
+    vkDestroyDevice(device, callbacks_);
     const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
     destroy(instance, messenger_, nullptr);
-    vkDestroyInstance(instance, nullptr);
+    vkDestroyInstance(instance, callbacks_);
 }
 
 void VulkanProgram::make_device(const Features& features) {
@@ -136,7 +136,7 @@ void VulkanProgram::make_device(const Features& features) {
     info.enabledLayerCount = info.enabledExtensionCount = 1;
     info.ppEnabledLayerNames = &layer;
     info.ppEnabledExtensionNames = &extension;
-    require(vkCreateInstance(&info, nullptr, &instance), "vkCreateInstance");
+    require(vkCreateInstance(&info, callbacks_, &instance), "vkCreateInstance");
     VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     messenger.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
@@ -158,7 +158,7 @@ void VulkanProgram::make_device(const Features& features) {
     VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &all};
     device_info.queueCreateInfoCount = 1;
     device_info.pQueueCreateInfos = &queues;
-    require(vkCreateDevice(physical_device, &device_info, nullptr, &device), "vkCreateDevice");
+    require(vkCreateDevice(physical_device, &device_info, callbacks_, &device), "vkCreateDevice");
     vkGetDeviceQueue(device, 0, 0, &queue);
 }
 

@@ -44,7 +44,9 @@ public:
     // `features`: fills in what the module needs.
     using Features = std::function<void(VkPhysicalDeviceFeatures*, VkPhysicalDeviceVulkan12Features*,
                                         VkPhysicalDeviceVulkan13Features*)>;
-    VulkanProgram(std::uint32_t frames_in_flight, const Features& features, const GeometryFormats& formats = {});
+    // `callbacks`: of instance and device.
+    VulkanProgram(std::uint32_t frames_in_flight, const Features& features, const GeometryFormats& formats = {},
+                  const VkAllocationCallbacks* callbacks = nullptr);
     ~VulkanProgram();
     VulkanProgram(const VulkanProgram&) = delete;
 
@@ -88,6 +90,7 @@ private:
     void draw(VkCommandBuffer commands, const std::vector<Box>& boxes, const std::array<float, 16>& view_projection);
     std::uint32_t memory_type(std::uint32_t bits, VkMemoryPropertyFlags wanted) const;
 
+    const VkAllocationCallbacks* const callbacks_;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;

@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # The whole of what tests/robust has a share of in every run: by parts and seeds, in pieces, going on where it was stopped.
-# Usage: bench.sh BUILD_FOLDER --part N [--seeds A-B]
+# Usage: bench.sh BUILD_FOLDER --part N [--seeds A-B] [--frames N]
 #   1 host      random sequences of calls of sunfleck/host.h, by seed                                    (1-20000)
 #   2 faults    every call of Vulkan's that can fail, by its number, with each code that Vulkan allows   (all)
 #   3 memory    failing allocations of the calling thread, by seed                                       (1-1000)
+# --frames: of the story that parts 2 and 3 play (60).
 # Prints what each piece counted. What is done is noted in BUILD_FOLDER/robust, by part and seeds.
 set -euo pipefail
 build=$(cd "$1" && pwd); shift
 part='' seeds='' first=1 last=''
-usage() { sed -n '4,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+usage() { sed -n '3,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 while (($#)); do
     case $1 in
     --part) part=${2:-}; shift ;;
     --seeds) seeds=${2:-}; shift ;;
+    --frames) [[ ${2:-} =~ ^[1-9][0-9]*$ ]] || usage; export SUNFLECK_FRAMES=$2; shift ;;
     *) usage ;;
     esac
     shift || true
@@ -28,7 +30,7 @@ if [[ -n $seeds ]]; then
     first=${BASH_REMATCH[1]} last=${BASH_REMATCH[2]}
 fi
 mkdir -p "$build/robust"
-noted=$build/robust/part-$part-$first-$last
+noted=$build/robust/part-$part-$first-$last-${SUNFLECK_FRAMES:-60}
 [[ -s $noted ]] && at=$(<"$noted") || at=$first
 ((at == first)) || echo "going on from $at"
 for (( ; at <= last; at += piece)); do

@@ -61,7 +61,12 @@ protected:
     }
 };
 
-const int frames = by_size(12, 60);
+std::uint64_t number_from_environment(const char* name, std::uint64_t otherwise) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+const int frames = int(number_from_environment("SUNFLECK_FRAMES", by_size(12u, 60u)));
 
 // A scene that changes from frame to frame; step `frame` of it. Steps may be repeated.
 struct Story {
@@ -162,8 +167,13 @@ bool may_be_ignored(const std::string& function, VkResult code) {
             (code == VK_ERROR_FRAGMENTED_POOL || code == VK_ERROR_OUT_OF_POOL_MEMORY));
 }
 
+struct FaultTally {
+    std::uint64_t tried = 0, refused = 0, lost = 0, without_effect = 0;
+};
+
 // Call number `call` fails with `code`.
-void try_fault(HostProgram& program, std::uint64_t call, VkResult code, const HostPicture& expected) {
+void try_fault(HostProgram& program, std::uint64_t call, VkResult code, const HostPicture& expected,
+               FaultTally& tally) {
     faulty::state = {};
     faulty::state.fail_at = call;
     faulty::state.code = code;
@@ -171,6 +181,8 @@ void try_fault(HostProgram& program, std::uint64_t call, VkResult code, const Ho
     SCOPED_TRACE("call " + std::to_string(call) + ", " + faulty::state.failed + ", result " + std::to_string(code));
     EXPECT_EQ(faulty::state.live, 0) << "objects of Vulkan's leak";
     EXPECT_LE(outcome.errors.size(), 1u);
+    ++tally.tried;
+    ++(outcome.lost ? tally.lost : outcome.errors.empty() ? tally.without_effect : tally.refused);
     if (outcome.errors.empty()) {
         EXPECT_TRUE(may_be_ignored(faulty::state.failed, code)) << "nobody noticed";
     } else {
@@ -179,11 +191,6 @@ void try_fault(HostProgram& program, std::uint64_t call, VkResult code, const Ho
     if (!outcome.lost) {
         EXPECT_EQ(outcome.picture, expected);
     }
-}
-
-std::uint64_t number_from_environment(const char* name, std::uint64_t otherwise) {
-    const char* text = std::getenv(name);
-    return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
 // Cases of the short size: each function once, at a place by the seed.
@@ -213,18 +220,19 @@ TEST_F(RobustHostFaults, EveryCallOfVulkanMayFail) {
         for (std::uint64_t call = first; call <= std::min<std::uint64_t>(last, sequence.size()); ++call)
             calls.push_back(call);
     }
-    std::uint64_t cases = 0;
+    FaultTally tally;
     for (const std::uint64_t call : calls) {
         const auto codes = faulty::codes_of(faulty::fallible_names[sequence[call - 1]]);
         for (std::size_t i = 0; i < codes.size() && !HasFailure(); ++i)
-            if (long_size() || i == call % codes.size()) {
-                try_fault(program, call, codes[i], expected);
-                ++cases;
-            }
+            if (long_size() || i == call % codes.size())
+                try_fault(program, call, codes[i], expected, tally);
     }
     const std::set<std::uint8_t> reached(sequence.begin(), sequence.end());
-    std::printf("%zu calls of %zu functions; %llu cases; not reached:", sequence.size(), reached.size(),
-                static_cast<unsigned long long>(cases));
+    using Number = unsigned long long;
+    std::printf("%zu calls of %zu functions in %d frames; %llu cases: %llu refused, %llu lost, %llu without effect; "
+                "functions not called:",
+                sequence.size(), reached.size(), frames, Number(tally.tried), Number(tally.refused), Number(tally.lost),
+                Number(tally.without_effect));
     for (std::size_t i = 0; i < faulty::fallible_names.size(); ++i)
         if (reached.count(std::uint8_t(i)) == 0)
             std::printf(" %s", faulty::fallible_names[i]);
