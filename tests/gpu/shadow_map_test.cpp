@@ -65,12 +65,13 @@ ecs::Entity first_lamp(GpuWorld& world) {
 
 // A tenth of the pairs in the short size: any that is not explained is an error at either, and the share that agrees is
 // known to 0.1 per cent from 50,000 pairs of a kind.
-void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs) {
+void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs, std::uint32_t texels = 512,
+                         double least_agreement = 0.99) {
     GpuWorld world(make);
     gi::Settings settings = plain_light();
     settings.lights = 96;
     settings.mover_share = 0.0f; // maps of samples on movers do not show those
-    settings.shadow_map_resolution = 512;
+    settings.shadow_map_resolution = texels;
     settings.shadow_map_bits = bits;
     world.set(settings);
     world.request.width = world.request.height = 8;
@@ -112,8 +113,8 @@ void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits
         const double filtered = double(agreed_filtered[which]) / counted[which];
         std::printf("%s pairs: %.2f %% agree, filtered look-up %.2f %%\n", which ? "occluded" : "free", 100.0 * nearest,
                     100.0 * filtered);
-        EXPECT_GE(filtered, 0.99) << (which ? "occluded" : "free") << " pairs";
-        EXPECT_GE(nearest, 0.99) << (which ? "occluded" : "free") << " pairs";
+        EXPECT_GE(filtered, least_agreement) << (which ? "occluded" : "free") << " pairs";
+        EXPECT_GE(nearest, least_agreement) << (which ? "occluded" : "free") << " pairs";
     }
     EXPECT_EQ(unexplained, 0) << "of " << pairs;
 }
@@ -129,6 +130,13 @@ TEST_F(ShadowMapTest, AgreesWithEmbreeInFourPillars) {
 }
 TEST_F(ShadowMapTest, AgreesWithEmbreeWith32Bits) {
     compare_with_embree(assets::make_area_room, 32, by_size(50000, 200000));
+}
+
+// The default, and what is left of it where many samples share the memory: edges of shadows are off by up to a texel,
+// so that the share that differs grows with the texels' side. Nothing else may differ.
+TEST_F(ShadowMapTest, AgreesWithEmbreeAtTheSizesThatAreUsed) {
+    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 256, 0.975);
+    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 68, 0.92);
 }
 
 // A hollow box with walls of 20 cm stands on a floor; nothing inside it may be lit, and nothing of the open floor may
