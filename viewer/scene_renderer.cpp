@@ -373,6 +373,13 @@ Result<io::Picture> SceneRenderer::read_back() {
     return picture;
 }
 
+std::vector<std::string> SceneRenderer::shader_paths() {
+    gpu::ShaderLibrary all;
+    all.add(gpu::sunfleck_render_shaders());
+    all.add(gi::shaders());
+    return all.paths();
+}
+
 Status SceneRenderer::replace_shader(const std::string& path, std::vector<std::uint32_t> words) {
     SUNFLECK_TRY(device_.wait_idle());
     SUNFLECK_TRY(replace_in(*shaders_, *pipelines_, path, words));

@@ -112,6 +112,8 @@ public:
     // Without waiting: the statistics of the newest completed frame.
     void collect_statistics();
 
+    // Of all shaders, from the project's root.
+    static std::vector<std::string> shader_paths();
     // Replaces one shader's SPIR-V. On failure nothing changes.
     Status replace_shader(const std::string& path, std::vector<std::uint32_t> words);
 

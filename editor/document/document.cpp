@@ -76,6 +76,7 @@ Document::Document() {
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
                                                  const std::function<bool(float)>& progress) {
     auto document = std::make_unique<Document>();
+    document->stamp_ = stamp_of(path);
     io::ImportOptions options;
     options.progress = progress;
     SUNFLECK_ASSIGN(const io::ImportReport report,

@@ -39,7 +39,7 @@ public:
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const std::function<bool(float)>& progress = {});
     // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace geometry
-    // that belongs to another scene.
+    // that belongs to another scene, and, once, a file that file_changed(): the next save replaces it.
     Status save(const std::filesystem::path& path);
 
     // To read; writing goes through set().
@@ -51,6 +51,8 @@ public:
     std::uint32_t add_mesh(scene::Mesh mesh) { return meshes_.add(std::move(mesh)); }
     scene::TextureStore& texture_store() { return textures_; }
     const std::filesystem::path& path() const { return path_; }
+    // Another program has written the file since it was opened or saved here.
+    bool file_changed() const;
     // What the import left out or changed.
     const std::vector<std::string>& notes() const { return notes_; }
     // True if there are edits that the file lacks.
@@ -135,6 +137,14 @@ private:
     gi::Settings settings_ = viewer::usual_lighting();
     ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr;
     std::filesystem::path path_;
+    // Of the file when it was opened or saved; none: it was not there.
+    struct Stamp {
+        std::filesystem::file_time_type written;
+        std::uintmax_t bytes = 0;
+        bool operator==(const Stamp&) const = default;
+    };
+    static std::optional<Stamp> stamp_of(const std::filesystem::path& path);
+    std::optional<Stamp> stamp_;
     std::vector<std::string> notes_;
 
     History history_;

@@ -68,13 +68,16 @@ void remove(Document& document, const Entities& entities) {
         return;
     document.begin("Delete " + what(document, entities));
     ecs::Registry& registry = document.registry();
+    // First who, then away with them: the tree is found again after each change.
+    Entities all;
     for (const Entity top : topmost(document, entities)) {
-        const Entities all = document.family(top);
-        for (auto entity = all.rbegin(); entity != all.rend(); ++entity)
-            for (ecs::PoolBase* pool : registry.all_pools())
-                if (pool->contains(*entity) && pool->is_copyable() && !pool->is_derived())
-                    document.set(*entity, *pool, nullptr);
+        const Entities family = document.family(top);
+        all.insert(all.end(), family.begin(), family.end());
     }
+    for (auto entity = all.rbegin(); entity != all.rend(); ++entity)
+        for (ecs::PoolBase* pool : registry.all_pools())
+            if (pool->contains(*entity) && pool->is_copyable() && !pool->is_derived())
+                document.set(*entity, *pool, nullptr);
     document.select({});
     document.commit();
 }

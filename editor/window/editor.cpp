@@ -130,7 +130,11 @@ Status Program::start_scene() {
     const auto wakes = [this] { wake(); };
     scene_ = std::make_unique<SceneThread>(*device_, wakes);
     session_ = std::make_unique<Session>(*window_, *scene_);
+    session_->wake = wakes;
     session_->recent_files = state_.recent_files;
+    if (!options_.shaders.empty())
+        session_->shaders =
+            std::make_unique<ShaderWatch>(options_.shaders, viewer::SceneRenderer::shader_paths(), wakes);
     session_->comparison = std::make_unique<Comparison>(*device_, *scene_, wakes);
     session_->preset_folder = state_path_.parent_path() / "presets";
     session_->make_cost_thread = [this, wakes] {
@@ -313,6 +317,7 @@ Status Program::draw(const app::InputState& input) {
     session_->input = &input;
     const std::shared_ptr<ScenePicture> picture = scene_->picture();
     session_->note_frame(picture.get());
+    session_->take_news();
     ui::begin_notes(!options_.widgets.empty());
     ui::begin_number_boxes();
     const VkExtent2D extent = swapchain_->extent();

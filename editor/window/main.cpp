@@ -21,6 +21,9 @@ void add_options(CLI::App& program, editor::Options& options, viewer::PictureSiz
     viewer::add_real(program, "--scale", options.scale, 0.0, 4.0, "Size of text; 0: as the screen asks for");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
     program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
+    viewer::add_name(program, "--shaders", options.shaders,
+                     "The project's folder: shaders whose sources change are compiled and used at once", "FOLDER")
+        ->check(CLI::ExistingDirectory);
     viewer::add_name(program, "--settings", options.state_file,
                      "Layout, recent files and keys (default: sunfleck/editor.json in the configuration folder)",
                      "FILE");

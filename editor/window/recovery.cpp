@@ -55,27 +55,7 @@ std::optional<Recovered> read_about(const fs::path& folder) {
 } // namespace
 
 // The thread's own copy of the document.
-struct Recovery::Copy {
-    ecs::Registry registry;
-    scene::MeshStore meshes;
-    scene::TextureStore textures;
-    gi::Settings settings;
-    std::uint32_t reserved = 0;
-
-    void apply(const SceneChange& change) {
-        if (change.handles > reserved) {
-            reserved = 2 * change.handles + 4096;
-            registry.reserve_handles(reserved);
-        }
-        for (const scene::Mesh& mesh : change.meshes)
-            meshes.add(mesh);
-        for (const scene::Texture& texture : change.textures)
-            textures.add(texture);
-        apply_updates(change.updates, registry);
-        if (change.settings)
-            settings = *change.settings;
-    }
-};
+struct Recovery::Copy : PlainCopy {};
 
 Recovery::Recovery(const fs::path& folder) {
     std::error_code code;

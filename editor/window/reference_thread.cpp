@@ -20,12 +20,7 @@ constexpr double picture_interval = 1.0;                  // s
 
 } // namespace
 
-struct ReferenceThread::Copy {
-    ecs::Registry registry;
-    scene::MeshStore meshes;
-    scene::TextureStore textures;
-    gi::Settings settings;
-    std::uint32_t reserved = 0;
+struct ReferenceThread::Copy : PlainCopy {
     std::unique_ptr<raytrace::RayScene> rays;
     std::unique_ptr<PathTracer> tracer;
     Accumulation sums;
@@ -34,17 +29,7 @@ struct ReferenceThread::Copy {
     TraceClock::time_point shown{};
 
     Status apply(const SceneChange& change) {
-        if (change.handles > reserved) {
-            reserved = 2 * change.handles + 4096;
-            registry.reserve_handles(reserved);
-        }
-        for (const scene::Mesh& mesh : change.meshes)
-            meshes.add(mesh);
-        for (const scene::Texture& texture : change.textures)
-            textures.add(texture);
-        apply_updates(change.updates, registry);
-        if (change.settings)
-            settings = *change.settings;
+        PlainCopy::apply(change);
         simulation::set_movers_to_step(registry, 0);
         scene::deform_meshes(registry, meshes);
         tracer.reset();

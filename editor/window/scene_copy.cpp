@@ -23,6 +23,11 @@ void SceneChange::add(SceneChange later) {
 
 namespace {
 
+// Handles reserved for a document that has `handles`: it may grow for a while.
+std::uint32_t room_for(std::uint32_t handles) {
+    return 2 * handles + 4096;
+}
+
 // What is told of a hidden entity: what is below it needs its place.
 bool is_told_of_hidden(const ecs::PoolBase& pool) {
     const TypeDescription* type = pool.description();
@@ -132,6 +137,20 @@ std::optional<SceneChange> ChangeCollector::collect(const std::shared_ptr<Docume
     return change;
 }
 
+void PlainCopy::apply(const SceneChange& change) {
+    if (change.handles > reserved_) {
+        reserved_ = room_for(change.handles);
+        registry.reserve_handles(reserved_);
+    }
+    for (const scene::Mesh& mesh : change.meshes)
+        meshes.add(mesh);
+    for (const scene::Texture& texture : change.textures)
+        textures.add(texture);
+    apply_updates(change.updates, registry);
+    if (change.settings)
+        settings = *change.settings;
+}
+
 Result<std::unique_ptr<SceneCopy>> SceneCopy::create(gpu::Device& device) {
     std::unique_ptr<SceneCopy> copy(new SceneCopy());
     SUNFLECK_ASSIGN(copy->renderer_, viewer::SceneRenderer::create(device));
@@ -145,7 +164,7 @@ bool SceneCopy::takes(const SceneChange& change) const {
 
 Status SceneCopy::apply(const SceneChange& change) {
     if (change.everything) {
-        reserved_ = 2 * change.handles + 4096;
+        reserved_ = room_for(change.handles);
         renderer_->registry().reserve_handles(reserved_);
     }
     for (const scene::Mesh& mesh : change.meshes)

@@ -53,6 +53,19 @@ private:
 // along their paths stand where they start again.
 void apply_updates(const std::vector<Update>& updates, ecs::Registry& registry);
 
+// The document's content alone, for threads that save it or trace rays in it.
+struct PlainCopy {
+    ecs::Registry registry;
+    scene::MeshStore meshes;
+    scene::TextureStore textures;
+    gi::Settings settings;
+
+    void apply(const SceneChange& change);
+
+private:
+    std::uint32_t reserved_ = 0;
+};
+
 class SceneCopy {
 public:
     // The device must outlive it.

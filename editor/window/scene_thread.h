@@ -9,6 +9,7 @@
 #pragma once
 
 #include "editor/window/scene_copy.h"
+#include "editor/window/shader_watch.h"
 #include "viewer/lighting_change.h"
 #include "viewer/picture_settings.h"
 
@@ -48,10 +49,11 @@ struct ScenePicture {
 
 // What the thread does, for the status bar and --report.
 struct SceneStatus {
-    bool busy = false;     // it draws, or has something to draw
-    bool building = false; // lighting that takes long, in a frame or behind the frames
-    float share = 0.0f;    // of that, done
-    std::string error;     // why there is no picture; empty: there is
+    bool busy = false;      // it draws, or has something to draw
+    bool building = false;  // lighting that takes long, in a frame or behind the frames
+    float share = 0.0f;     // of that, done
+    std::string error;      // why there is no picture; empty: there is
+    std::string bad_shader; // why the shader that came last is not in use; empty: it is
     std::uint64_t frames = 0, builds = 0, cancelled = 0;
     double longest_frame_ms = 0.0;
 };
@@ -71,6 +73,8 @@ public:
     void step(std::uint32_t steps);
     // Movers stand where they start.
     void rewind();
+    // From the next frame on. Where its pipeline cannot be made, status() says so and the old shader stays.
+    void replace_shader(CompiledShader shader);
     // The newest picture; null before the first one.
     std::shared_ptr<ScenePicture> picture() const;
     SceneStatus status() const;
@@ -78,6 +82,11 @@ public:
     bool busy() const { return busy_; }
 
 private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr double patience = 0.3; // s: lighting that takes longer is cancelled by the next edit
+    static double seconds_since(Clock::time_point start) {
+        return std::chrono::duration<double>(Clock::now() - start).count();
+    }
     void run();
     bool has_work() const;
     bool take_work();
@@ -92,6 +101,7 @@ private:
     void publish(std::shared_ptr<ScenePicture> picture);
     void fail(const Error& error);
     void follow_light();
+    void use_shaders(const std::vector<CompiledShader>& shaders);
     void note_light();
 
     gpu::Device& device_;
@@ -102,6 +112,7 @@ private:
     SceneChange next_change_;
     ViewRequest next_view_;
     bool view_changed_ = false, rewind_ = false;
+    std::vector<CompiledShader> next_shaders_;
     std::uint32_t steps_ = 0;
     std::shared_ptr<ScenePicture> newest_;
     SceneStatus status_;
@@ -111,17 +122,19 @@ private:
     std::unique_ptr<SceneCopy> copy_;
     std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
     bool light_pending_ = false;                     // the picture has not got all of its light yet
+    std::vector<CompiledShader> shaders_;            // in place of those of the program
+    std::vector<CompiledShader> new_shaders_;        // not in use yet
     SceneChange change_;                             // not applied yet
     ViewRequest view_;
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
-    std::chrono::steady_clock::time_point build_began_, last_frame_;
+    Clock::time_point build_began_, last_frame_;
     std::uint64_t step_ = 0, revision_ = 0, number_ = 0;
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
     bool failed_ = false, exposure_is_old_ = true;
     // Light of its scene takes so long to make that it is made behind the frames; else the frame makes it.
     bool light_is_slow_ = false;
-    std::chrono::steady_clock::time_point edited_;
+    Clock::time_point edited_;
     std::atomic<bool> cancelled_{false};
     double told_ = 0.0; // s after the build began
     float automatic_ev100_ = 0.0f;

@@ -69,7 +69,7 @@ void Session::open(const std::filesystem::path& path) {
 
 void Session::open_now(const std::filesystem::path& path) {
     recovering.reset();
-    opening = std::make_unique<Opening>(path, app::Window::wake);
+    opening = std::make_unique<Opening>(path, wake);
 }
 
 void Session::measure_cost(const std::string& setting) {
@@ -85,7 +85,7 @@ void Session::measure_cost(const std::string& setting) {
 
 void Session::recover(const Recovered& one) {
     recovering = one;
-    opening = std::make_unique<Opening>(one.scene, app::Window::wake);
+    opening = std::make_unique<Opening>(one.scene, wake);
 }
 
 bool Session::save(const std::filesystem::path& path) {
@@ -99,6 +99,34 @@ bool Session::save(const std::filesystem::path& path) {
         recent_files.resize(std::min(recent_files.size(), most_recent));
     }
     return true;
+}
+
+void Session::take_news() {
+    watch_file();
+    if (shaders == nullptr)
+        return;
+    ShaderWatch::News news = shaders->take();
+    for (const std::string& error : news.errors)
+        messages.say(error, Message::Kind::error);
+    for (CompiledShader& shader : news.compiled) {
+        messages.say("Compiled " + shader.path);
+        scene.replace_shader(std::move(shader));
+    }
+    const std::string bad = scene.status().bad_shader;
+    if (!bad.empty() && bad != bad_shader_)
+        messages.say(bad, Message::Kind::error);
+    bad_shader_ = bad;
+}
+
+// Says so, once, when another program has written the document's file.
+void Session::watch_file() {
+    const bool changed = document->file_changed();
+    if (changed && !file_was_changed_)
+        messages.say(
+            "'" + document->path().string() +
+                "' was changed by another program; opening it again reads that, and forgets the edits made here",
+            Message::Kind::warning);
+    file_was_changed_ = changed;
 }
 
 void Session::unless_unsaved(std::function<void()> action) {

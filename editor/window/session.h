@@ -94,8 +94,9 @@ public:
     std::unique_ptr<Commands> commands;
     std::unique_ptr<Comparison> comparison; // from the program
     std::filesystem::path preset_folder;
-    std::unique_ptr<CostThread> cost; // null before something was measured
-    std::unique_ptr<Opening> opening; // a file that loads; null: none does
+    std::unique_ptr<CostThread> cost;     // null before something was measured
+    std::unique_ptr<ShaderWatch> shaders; // null: none are watched
+    std::unique_ptr<Opening> opening;     // a file that loads; null: none does
     std::vector<std::string> recent_files;
     std::deque<ProfiledFrame> frames;  // newest last
     bool profiling = true;             // further frames are kept
@@ -120,10 +121,13 @@ public:
     // Begins to measure what the setting's value costs over its default.
     void measure_cost(const std::string& setting);
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
+    std::function<void()> wake; // from the program; from any thread: there is something new to draw
     // The unsaved edits of a run that is gone.
     void recover(const Recovered& recovered);
     // False: it was not saved, which has been said.
     bool save(const std::filesystem::path& path);
+    // Of files that other programs write: the document's, and shaders that are watched.
+    void take_news();
     // Runs `action` now, or when the user has dealt with unsaved edits.
     void unless_unsaved(std::function<void()> action);
     // Side of a cube that the scene would fit in, m; for things whose size nothing else says.
@@ -136,6 +140,10 @@ public:
     Entities selected_tops() { return topmost(*document, document->selection()); }
 
 private:
+    void watch_file();
+
+    bool file_was_changed_ = false;
+    std::string bad_shader_;
     std::uint64_t size_revision_ = 0;
     float size_ = 1.0f;
 };

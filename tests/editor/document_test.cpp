@@ -193,6 +193,35 @@ void send(std::vector<Update> updates, ecs::Registry& copy) {
     }
 }
 
+TEST_F(EditorDocument, WhatAnotherProgramWroteIsNotReplacedUnasked) {
+    Document first;
+    add(first, "Box");
+    const fs::path file = folder_ / "shared.scene.json";
+    ASSERT_TRUE(first.save(file));
+    auto opened = Document::open(file);
+    ASSERT_TRUE(opened);
+    Document& document = **opened;
+    EXPECT_FALSE(document.file_changed());
+    add(first, "Ball");
+    ASSERT_TRUE(first.save(file));
+    EXPECT_FALSE(first.file_changed());
+    EXPECT_TRUE(document.file_changed());
+    add(document, "Point light");
+    const std::string theirs = read_file(file).value();
+    const Status refused = document.save(file);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("changed by another program"), std::string::npos) << refused.error().message;
+    EXPECT_EQ(read_file(file).value(), theirs);
+    EXPECT_TRUE(document.unsaved());
+    EXPECT_TRUE(document.save(file)) << "asked for twice";
+    EXPECT_NE(read_file(file).value(), theirs);
+    fs::remove(file);
+    fs::remove(folder_ / "shared.glb");
+    EXPECT_FALSE(document.file_changed()) << "what is gone can't be lost";
+    add(document, "Box");
+    EXPECT_TRUE(document.save(file));
+}
+
 TEST_F(EditorDocument, ACopyFollowsByUpdatesUnderTheSameHandles) {
     Document document;
     fill(document);

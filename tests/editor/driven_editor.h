@@ -104,6 +104,9 @@ public:
     void point_at(int x, int y) {
         run("xdotool mousemove --window " + window_ + " " + std::to_string(x) + " " + std::to_string(y));
     }
+    void resize(int width, int height) {
+        run("xdotool windowsize " + window_ + " " + std::to_string(width) + " " + std::to_string(height));
+    }
     void key(const std::string& keys) { run("xdotool key " + keys); }
     void type(const std::string& text) { run("xdotool type --delay 15 '" + text + "'"); }
     // A number into a box, by clicking and typing.
@@ -130,6 +133,12 @@ public:
     std::string log() const { return read_file(folder_ / "log").value(); }
     std::string file(const std::string& name) const { return (folder_ / name).string(); }
     pid_t process() const { return editor_; }
+    // It has not ended by itself.
+    bool runs() const {
+        siginfo_t info{};
+        return editor_ > 0 && ::waitid(P_PID, id_t(editor_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+               info.si_pid == 0;
+    }
 
 private:
     std::filesystem::path folder_;

@@ -2,6 +2,7 @@
 // follows behind the frames, that of a start with the edited scene.
 #include "editor/window/scene_thread.h"
 
+#include "engine/core/file.h"
 #include "engine/io/image.h"
 #include "test_places.h"
 #include "tests/editor/random_edits.h"
@@ -20,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 using Picture = std::shared_ptr<const ScenePicture>;
 
 constexpr std::uint32_t width = 96, height = 64;
-constexpr const char* camera_text = "0,1,4,0,1,0,40"; // of the scene below
+constexpr const char* camera_text = "2.75,2.75,13.25,2.75,2.75,2.75,39"; // of the scene below
 
 class EditorScene : public tests::GpuTest {
 protected:
@@ -121,7 +122,7 @@ TEST_F(EditorScene, LightFollowsBehindTheFrames) {
     ecs::PoolBase& transforms = pool_of<scene::Transform>(*document);
     const Entity block = document->find("short block");
     ASSERT_TRUE(document->exists(block));
-    for (const char* place : {"0.4,0.3,0.6", "0.1,0.3,0.6", "-0.2,0.3,0.5"}) {
+    for (const char* place : {"3.4,0.825,3.9", "3,0.825,4", "2.5,0.825,4.5"}) {
         ASSERT_TRUE(edit_field(*document, {block}, transforms, transforms.description()->fields[0], place));
         scene.change(*collector.collect(document));
         const Picture first =
@@ -137,6 +138,52 @@ TEST_F(EditorScene, LightFollowsBehindTheFrames) {
     ASSERT_NE(fresh, nullptr);
     EXPECT_EQ(differing(*after->pixels, *fresh->pixels), 0u);
     EXPECT_GT(differing(*after->pixels, *before->pixels), width * height / 100u);
+}
+
+// A copy of the sources is edited: a good change shows, a bad one is said and shows nothing.
+TEST_F(EditorScene, EditedShadersShow) {
+    const fs::path shader = "engine/render/composition.comp";
+    for (const char* part : {"engine", "gi_module"})
+        fs::copy(fs::path(SUNFLECK_SOURCE_DIR) / part, folder_ / part, fs::copy_options::recursive);
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    SceneThread scene(tests::device(), [] {});
+    ShaderWatch watch(folder_, viewer::SceneRenderer::shader_paths(), [] {});
+    scene.change(ChangeCollector::everything(document));
+    ViewRequest colours = view(*document);
+    colours.view = shared::view_albedo; // which this shader draws
+    scene.show(colours);
+    const Picture before = settled(scene, *document);
+    ASSERT_NE(before, nullptr);
+
+    const std::string source = read_file(folder_ / shader).value(), line = "imageStore(output_image, pixel, value);";
+    const auto with = [&](const std::string& replacement) {
+        std::string text = source;
+        text.replace(text.find(line), line.size(), replacement);
+        EXPECT_TRUE(write_file(folder_ / shader, text));
+        ShaderWatch::News all;
+        for (const auto end = Clock::now() + std::chrono::seconds(20); Clock::now() < end;) {
+            all = watch.take();
+            if (!all.compiled.empty() || !all.errors.empty())
+                break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        return all;
+    };
+    ShaderWatch::News news = with("imageStore(output_image, pixel, value * 0.5);");
+    ASSERT_EQ(news.compiled.size(), 1u);
+    EXPECT_EQ(news.compiled[0].path, shader);
+    scene.replace_shader(news.compiled[0]);
+    const Picture after = wait_for(
+        scene, [&](const ScenePicture& picture) { return picture.number > before->number && picture.settled; });
+    ASSERT_NE(after, nullptr);
+    EXPECT_EQ(scene.status().bad_shader, "");
+    EXPECT_GT(differing(*after->pixels, *before->pixels), width * height / 4u);
+    news = with("nonsense;");
+    EXPECT_TRUE(news.compiled.empty());
+    ASSERT_EQ(news.errors.size(), 1u);
+    EXPECT_NE(news.errors[0].find("composition.comp"), std::string::npos) << news.errors[0];
+    EXPECT_NE(news.errors[0].find("nonsense"), std::string::npos) << news.errors[0];
 }
 
 } // namespace

@@ -48,6 +48,8 @@ public:
         ::dup2(output, 2);
         if (keep >= 0)
             ::dup2(keep, 9);
+        if (::chdir(folder_.c_str()) != 0) // what is saved without a folder lands here
+            ::_exit(127);
         if (number_ >= 0)
             ::setenv("DISPLAY", (":" + std::to_string(number_)).c_str(), 1);
         ::execvp(pointers[0], pointers.data());

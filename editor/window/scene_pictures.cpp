@@ -1,0 +1,130 @@
+// How the scene thread draws: exposure, the frame, and the picture that is handed to the GUI.
+#include "editor/window/scene_thread.h"
+
+#include "viewer/exposure.h"
+
+namespace sunfleck::editor {
+namespace {
+
+constexpr std::size_t most_pictures = 8;
+
+} // namespace
+
+viewer::FrameRequest SceneThread::frame_request() {
+    viewer::FrameRequest request;
+    request.camera = view_.camera;
+    request.width = view_.width;
+    request.height = view_.height;
+    request.view = view_.view;
+    request.lighting_view = view_.lighting_view;
+    request.show_samples = view_.show_samples;
+    request.antialiasing = view_.look.antialiasing;
+    request.glare = view_.look.glare;
+    request.keep_samples = light_is_slow_;
+    request.step = step_;
+    request.progress = [this](float share) { return go_on(share); };
+    return request;
+}
+
+// A picture of the right size that nobody holds.
+Result<std::shared_ptr<ScenePicture>> SceneThread::free_picture() {
+    std::erase_if(pictures_, [&](const auto& picture) {
+        const gpu::ImageDescription& has = picture->image.description();
+        return picture.use_count() == 1 && (has.width != view_.width || has.height != view_.height);
+    });
+    for (const auto& picture : pictures_)
+        if (picture.use_count() == 1)
+            return picture;
+    auto picture = std::make_shared<ScenePicture>();
+    gpu::ImageDescription description;
+    description.name = "viewport";
+    description.format = VK_FORMAT_R8G8B8A8_UNORM;
+    description.width = view_.width;
+    description.height = view_.height;
+    // Images have views, which some use other than copies has to allow.
+    description.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+    SUNFLECK_ASSIGN(picture->image, gpu::Image::create(device_, description));
+    if (pictures_.size() < most_pictures)
+        pictures_.push_back(picture);
+    return picture;
+}
+
+// Draws a frame and copies it, once it is finished, into the picture; null: draws only.
+Status SceneThread::draw(const viewer::FrameRequest& request, ScenePicture* picture) {
+    viewer::SceneRenderer& renderer = copy_->renderer();
+    const auto copy = [&](gpu::FrameGraph& graph, gpu::ResourceId source, gpu::FrameResources&) -> Status {
+        if (picture == nullptr)
+            return {};
+        const gpu::ResourceId target = graph.import_image(picture->image);
+        graph.add_pass("viewport")
+            .read(source, gpu::Usage::blit_source)
+            .write(target, gpu::Usage::blit_destination)
+            .execute([&renderer, picture](gpu::PassContext& context) -> Status {
+                const gpu::ImageDescription& size = picture->image.description();
+                VkImageBlit region{};
+                region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+                region.srcOffsets[1] = region.dstOffsets[1] = {int(size.width), int(size.height), 1};
+                context.device.vk.vkCmdBlitImage(context.commands, renderer.output().handle(),
+                                                 VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, picture->image.handle(),
+                                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+                return {};
+            });
+        graph.add_pass("viewport hand over").read(target, gpu::Usage::blit_source).keep();
+        return {};
+    };
+    build_began_ = Clock::now();
+    told_ = 0.0;
+    SUNFLECK_TRY(renderer.update(request));
+    light_is_slow_ = light_is_slow_ || seconds_since(build_began_) > patience;
+    SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
+    const std::uint64_t serial = renderer.submission().serial();
+    SUNFLECK_TRY(renderer.record(commands, request, copy));
+    SUNFLECK_TRY(renderer.submission().submit());
+    SUNFLECK_TRY(renderer.submission().wait(serial));
+    renderer.collect_statistics();
+    return {};
+}
+
+// A scene that says no exposure is exposed by its first picture, and then left alone: an artist who turns a lamp up
+// wants to see it.
+Status SceneThread::expose(viewer::FrameRequest& request) {
+    const std::optional<float> given = view_.ev100 ? view_.ev100 : viewer::scene_exposure(copy_->renderer().registry());
+    if (!given && exposure_is_old_) {
+        viewer::FrameRequest linear = request;
+        linear.tone_map = false;
+        linear.view = shared::view_final;
+        linear.lighting_view.clear();
+        SUNFLECK_TRY(draw(linear, nullptr));
+        SUNFLECK_ASSIGN(const io::Picture radiance, copy_->renderer().read_back());
+        automatic_ev100_ = viewer::automatic_exposure(radiance);
+        exposure_is_old_ = frames_left_ > 1; // of the light as it is when it has settled
+    }
+    request.ev100 = given.value_or(automatic_ev100_);
+    return {};
+}
+
+Status SceneThread::draw_picture() {
+    viewer::FrameRequest request = frame_request();
+    const auto began = Clock::now();
+    SUNFLECK_TRY(expose(request));
+    SUNFLECK_ASSIGN(std::shared_ptr<ScenePicture> picture, free_picture());
+    SUNFLECK_TRY(draw(request, picture.get()));
+    picture->camera = view_.camera;
+    picture->revision = revision_;
+    picture->number = ++number_;
+    picture->step = step_;
+    note_light();
+    picture->settled = frames_left_ <= 1 && !view_.playing && !light_pending_;
+    picture->ev100 = request.ev100;
+    picture->frame_ms = 1e3 * seconds_since(began);
+    picture->statistics = copy_->renderer().statistics();
+    picture->pixels.reset();
+    if (view_.read_back && picture->settled) {
+        SUNFLECK_ASSIGN(io::Picture pixels, copy_->renderer().read_back());
+        picture->pixels = std::make_shared<io::Picture>(std::move(pixels));
+    }
+    publish(std::move(picture));
+    return {};
+}
+
+} // namespace sunfleck::editor
