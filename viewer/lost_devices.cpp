@@ -7,7 +7,7 @@ namespace sunfleck::viewer {
 Status survive_lost_devices(const std::function<Status()>& work) {
     constexpr int most = 3;
     for (int losses = 1;; ++losses) {
-        const Status status = work();
+        Status status = work();
         if (status || status.error().code != ErrorCode::device_lost)
             return status;
         if (losses == most)

@@ -269,8 +269,9 @@ TEST_F(RobustHostFaults, EveryAllocationMayFail) {
         std::mt19937 random{std::uint32_t(seed)};
         try_allocation(program, 1 + random() % count, expected);
     }
+    const std::uint64_t cases = last - first + 1;
     std::printf("%llu allocations; %llu cases\n", static_cast<unsigned long long>(count),
-                static_cast<unsigned long long>(last - first + 1));
+                static_cast<unsigned long long>(cases));
 }
 
 } // namespace

@@ -68,7 +68,7 @@ protected:
             data.emission = {real(0, 5), real(0, 5), 0};
         data.roughness = real(0, 1);
         if (chance()) {
-            pixels_.assign(std::size_t(4 * 4 * 4), std::uint8_t(pick(256)));
+            pixels_.assign(64, std::uint8_t(pick(256)));
             data.albedo_texture = {pixels_, 4, 4};
         }
         if (!wrong_)
@@ -97,7 +97,7 @@ protected:
         host::Matrix4 result = box_matrix(vec3(real(-1.5f, 1.5f), real(0.3f, 2), real(-1.5f, 1.5f)),
                                           vec3(real(0.1f, 0.8f), real(0.1f, 0.8f), pick(8) == 0 ? 0.0f : 0.4f));
         if (wrong_ && chance())
-            result[std::size_t(4 * pick(4) + 3)] += 0.5f;
+            result[4 * std::size_t(pick(4)) + 3] += 0.5f;
         else if (wrong_)
             spoil(result);
         return result;

@@ -206,8 +206,9 @@ private:
         const vec3 low(-2.0f, 0.0f, -2.0f), high(2.0f, 2.5f, 2.0f);
         const float scale = std::tan(0.5f * camera_.vertical_field_of_view);
         for (std::uint32_t i = 0; i < pixels; ++i) {
-            const float x = (2.0f * (float(i % width) + 0.5f) / float(width) - 1.0f) * scale;
-            const float y = (1.0f - 2.0f * (float(i / width) + 0.5f) / float(height)) * scale;
+            const std::uint32_t column = i % width, row = i / width;
+            const float x = (2.0f * (float(column) + 0.5f) / float(width) - 1.0f) * scale;
+            const float y = (1.0f - 2.0f * (float(row) + 0.5f) / float(height)) * scale;
             const vec3 direction(x, y, -1.0f); // its length along the axis is 1
             float distance = 1e9f;
             vec3 normal(0.0f);
