@@ -205,9 +205,18 @@ Status check_camera(const Camera& camera) {
                  "; it must lie between 0 and pi");
 }
 
+// A camera that is as far away as coordinates may be has twice that in its matrix at most; its product with a
+// projection, somewhat more.
 Status check_view(const View& view) {
-    SUNFLECK_TRY(check_finite("View::world_to_view", view.world_to_view));
-    return check_finite("View::view_to_clip", view.view_to_clip);
+    for (const auto& [name, matrix] :
+         {std::pair("View::world_to_view", &view.world_to_view), std::pair("View::view_to_clip", &view.view_to_clip)}) {
+        SUNFLECK_TRY(check_finite(name, *matrix));
+        for (const float number : *matrix)
+            if (std::abs(number) > 16.0f * largest_number)
+                return wrong(std::string(name) + " has the number " + text_of(number) +
+                             "; they must lie between -2^64 and 2^64");
+    }
+    return {};
 }
 
 Status Serials::check(const Frame& frame) const {
