@@ -5,6 +5,8 @@
 #include "engine/render/edge_code.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+// Pixels of an invocation, one below the other, which share what they read.
+const int antialiasing_rows = 4;
 layout(constant_id = 0) const uint writes_codes = 0; // 1: the picture as it is, with edge codes as its alpha
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
 layout(set = 0, binding = 1) uniform writeonly image2D target;
@@ -78,40 +80,60 @@ float code_of(ivec2 along, ivec2 over, Cover cover) {
     return edge_code(over.x + over.y > 0, along.x == 0, quarters);
 }
 
-void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, constants.size)))
-        return;
+// A pixel at which there is an edge.
+void smooth_edge(ivec2 pixel) {
     const vec4 centre = load(pixel);
-    vec3 colour = centre.rgb;
     Neighbourhood n;
     n.centre = centre.a;
     n.up = at(pixel + ivec2(0, -1));
     n.down = at(pixel + ivec2(0, 1));
     n.left = at(pixel + ivec2(-1, 0));
     n.right = at(pixel + ivec2(1, 0));
+    n.up_left = at(pixel + ivec2(-1, -1));
+    n.up_right = at(pixel + ivec2(1, -1));
+    n.down_left = at(pixel + ivec2(-1, 1));
+    n.down_right = at(pixel + ivec2(1, 1));
+    const bool across = lies_across(n);
+    const float one = across ? n.up : n.left, other = across ? n.down : n.right;
+    const bool first = abs(one - n.centre) >= abs(other - n.centre);
+    const ivec2 along = across ? ivec2(1, 0) : ivec2(0, 1);
+    const ivec2 over = (across ? ivec2(0, 1) : ivec2(1, 0)) * (first ? -1 : 1);
+    const Cover cover = cover_of(pixel, along, over, n.centre, first ? one : other);
     const float high = max(n.centre, max(max(n.up, n.down), max(n.left, n.right)));
     const float low = min(n.centre, min(min(n.up, n.down), min(n.left, n.right)));
-    const float contrast = high - low;
-    float code = 0.0;
-    // A loop of at most one iteration: unlike a branch, a CPU device skips it where no pixel of a group needs it.
-    for (bool edge = contrast > max(least_contrast, relative_contrast * high); edge; edge = false) {
-        n.up_left = at(pixel + ivec2(-1, -1));
-        n.up_right = at(pixel + ivec2(1, -1));
-        n.down_left = at(pixel + ivec2(-1, 1));
-        n.down_right = at(pixel + ivec2(1, 1));
-        const bool across = lies_across(n);
-        const float one = across ? n.up : n.left, other = across ? n.down : n.right;
-        const bool first = abs(one - n.centre) >= abs(other - n.centre);
-        const ivec2 along = across ? ivec2(1, 0) : ivec2(0, 1);
-        const ivec2 over = (across ? ivec2(0, 1) : ivec2(1, 0)) * (first ? -1 : 1);
-        const Cover cover = cover_of(pixel, along, over, n.centre, first ? one : other);
-        const float mean = (2.0 * (n.up + n.down + n.left + n.right) + n.up_left + n.up_right + n.down_left + n.down_right) / 12.0;
-        const float alone = smoothstep(0.0, 1.0, min(abs(mean - n.centre) / contrast, 1.0));
-        const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run;
-        code = coded ? code_of(along, over, cover) : 0.0;
-        const float share = coded ? 0.0 : max(cover.share, most_blur * alone * alone);
-        colour = mix(colour, load(pixel + over).rgb, share);
+    const float mean = (2.0 * (n.up + n.down + n.left + n.right) + n.up_left + n.up_right + n.down_left + n.down_right) / 12.0;
+    const float alone = smoothstep(0.0, 1.0, min(abs(mean - n.centre) / (high - low), 1.0));
+    const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run;
+    const float share = coded ? 0.0 : max(cover.share, most_blur * alone * alone);
+    const float alpha = writes_codes == 0 ? 1.0 : coded ? code_of(along, over, cover) : 0.0;
+    imageStore(target, pixel, vec4(mix(centre.rgb, load(pixel + over).rgb, share), alpha));
+}
+
+void main() {
+    const ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(1, antialiasing_rows);
+    if (first.x >= constants.size.x)
+        return;
+    vec4 above = load(first + ivec2(0, -1)), centre = load(first);
+    uint edges = 0u;
+    [[unroll]] for (int i = 0; i < antialiasing_rows; ++i) {
+        const ivec2 pixel = first + ivec2(0, i);
+        const vec4 below = load(pixel + ivec2(0, 1));
+        const float left = at(pixel + ivec2(-1, 0)), right = at(pixel + ivec2(1, 0));
+        const float high = max(centre.a, max(max(above.a, below.a), max(left, right)));
+        const float low = min(centre.a, min(min(above.a, below.a), min(left, right)));
+        if (pixel.y < constants.size.y) {
+            imageStore(target, pixel, vec4(centre.rgb, writes_codes != 0 ? 0.0 : 1.0));
+            if (high - low > max(least_contrast, relative_contrast * high))
+                edges |= 1u << i;
+        }
+        above = centre;
+        centre = below;
     }
-    imageStore(target, pixel, vec4(colour, writes_codes != 0 ? code : 1.0));
+    // A loop, not a branch for each pixel: a CPU device runs it as often as the pixel column with the most edges of a
+    // group asks for.
+    while (edges != 0u) {
+        const int i = findLSB(edges);
+        edges &= edges - 1u;
+        smooth_edge(first + ivec2(0, i));
+    }
 }

@@ -4,6 +4,11 @@
 #include "engine/gpu/compute_pass.h"
 
 namespace sunfleck::render {
+namespace {
+
+constexpr std::uint32_t antialiasing_rows = 4; // of an invocation: antialiasing_rows in the shader
+
+} // namespace
 
 Result<AntialiasingPass> AntialiasingPass::create(gpu::PipelineStore& pipelines) {
     AntialiasingPass pass;
@@ -31,7 +36,7 @@ void AntialiasingPass::add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline
         .storage_read(source)
         .storage_write(target)
         .push(glm::ivec2(int(size.width), int(size.height)))
-        .dispatch((size.width + 7) / 8, (size.height + 7) / 8);
+        .dispatch((size.width + 7) / 8, (size.height + 8 * antialiasing_rows - 1) / (8 * antialiasing_rows));
 }
 
 } // namespace sunfleck::render
