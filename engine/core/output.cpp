@@ -132,7 +132,7 @@ Result<Descriptor> create_temporary(const fs::path& target, unsigned permissions
         temporary = target.parent_path() /
                     (temporary_prefix(target) + std::to_string(::getpid()) + "-" + std::to_string(++count) + ".tmp");
         Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions));
-        if (file < 0 && errno != EEXIST)
+        if (file < 0 && errno != EEXIST && errno != EINTR)
             return system_error(path);
         if (file >= 0 && hold(file))
             return file;
@@ -151,7 +151,11 @@ void take_owner_and_permissions(const fs::path& target, int file) {
 
 // Some file systems can't flush; data may reach the disk only here, so a full disk may be reported here first.
 Status flush(int file, const fs::path& path) {
-    return ::fsync(file) == 0 || errno == EINVAL ? Status() : Status(system_error(path));
+    int flushed = 0;
+    do
+        flushed = ::fsync(file);
+    while (flushed != 0 && errno == EINTR);
+    return flushed == 0 || errno == EINVAL ? Status() : Status(system_error(path));
 }
 
 void flush_folder(const fs::path& folder) {

@@ -176,6 +176,10 @@ private:
         emitter.scene_centre = centre_;
         emitter.is_lamp = registry_.has<scene::AreaLight>(entity);
         const bool area_kind = emitter.kind <= EmitterKind::mesh;
+        // Of points of a smaller emitter, coordinates are the same in single precision, and densities overflow.
+        const float spacing = 0x1p-24f * radius_;
+        if (!(emitter.area > spacing * spacing))
+            emitter.area = 0.0f;
         if (area_kind)
             emitter.flux = pi * emitter.area * emitter.radiance;
         if (!usable(emitter.radiance) || !usable(emitter.intensity) || !is_finite(emitter.flux)) {

@@ -1,0 +1,199 @@
+// The writer of files, with each of its system calls failing in turn: old or new content, one error, nothing left over.
+// The calls are this program's own, which hand on to the C library's.
+#include "engine/core/file.h"
+#include "engine/core/output.h"
+#include "tests/support/gltf_files.h"
+
+#include <cerrno>
+#include <cstdarg>
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+// Which call fails, and how.
+struct Fault {
+    int at = 0;                 // of the calls
+    int error = 0;              // 0: a write is cut short
+    int count = 0;              // calls so far
+    const char* name = nullptr; // of the call that failed; null: it has not come yet
+};
+thread_local Fault* injected = nullptr; // of this thread
+
+bool strikes(const char* name) {
+    if (injected == nullptr || injected->count++ != injected->at)
+        return false;
+    injected->name = name;
+    errno = injected->error;
+    return injected->error != 0 || std::string_view(name) == "write"; // nothing else can be cut short
+}
+
+template <typename Function>
+Function* next(const char* name) {
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+} // namespace
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+    va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
+    va_end(arguments);
+    static auto* const real = next<int(const char*, int, ...)>("open");
+    return strikes("open") ? -1 : real(path, flags, mode);
+}
+
+ssize_t write(int file, const void* data, size_t bytes) {
+    static auto* const real = next<ssize_t(int, const void*, size_t)>("write");
+    if (!strikes("write"))
+        return real(file, data, bytes);
+    return injected->error != 0 ? -1 : real(file, data, (bytes + 1) / 2);
+}
+
+int fsync(int file) {
+    static auto* const real = next<int(int)>("fsync");
+    return strikes("fsync") ? -1 : real(file);
+}
+
+int rename(const char* from, const char* to) noexcept {
+    static auto* const real = next<int(const char*, const char*)>("rename");
+    return strikes("rename") ? -1 : real(from, to);
+}
+
+int flock(int file, int operation) noexcept {
+    static auto* const real = next<int(int, int)>("flock");
+    return strikes("flock") ? -1 : real(file, operation);
+}
+
+int fchown(int file, uid_t user, gid_t group) noexcept {
+    static auto* const real = next<int(int, uid_t, gid_t)>("fchown");
+    return strikes("fchown") ? -1 : real(file, user, group);
+}
+
+int fchmod(int file, mode_t mode) noexcept {
+    static auto* const real = next<int(int, mode_t)>("fchmod");
+    return strikes("fchmod") ? -1 : real(file, mode);
+}
+}
+
+namespace sunfleck {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RobustWriteFaults : public testing::Test {
+protected:
+    std::set<std::string> names() const {
+        std::set<std::string> result;
+        for (const auto& entry : fs::directory_iterator(folder.path))
+            result.insert(entry.path().filename().string());
+        return result;
+    }
+    // `act` with the call of that number failing.
+    Status with_fault(int at, int error, const std::function<Status()>& act) {
+        fault = {at, error};
+        injected = &fault;
+        Status status = act();
+        injected = nullptr;
+        return status;
+    }
+    tests::Folder folder;
+    Fault fault;
+};
+
+// What a call that fails means for the write: others are done without.
+bool matters(const std::string& call, int error) {
+    if (call == "fchown" || call == "fchmod" || call == "flock")
+        return false;
+    return error != 0 && (error != EINTR || call == "rename"); // what is interrupted is called again
+}
+
+// Every call of a write over an old file and of one to a new name, with each error: full, denied, broken, interrupted
+// (once), and cut short.
+TEST_F(RobustWriteFaults, EachCallMayFail) {
+    const std::string old(50'000, 'o'), content(70'000, 'n');
+    const fs::path file = folder.path / "file";
+    int tried = 0, refused = 0, written = 0;
+    std::map<std::string, int> reached;
+    for (const bool replaces : {true, false})
+        for (const int error : {ENOSPC, EACCES, EIO, EROFS, EDQUOT, EINTR, 0}) {
+            for (int at = 0;; ++at) {
+                fs::remove(file);
+                if (replaces) {
+                    ASSERT_TRUE(write_file(file, old));
+                }
+                const Status status = with_fault(at, error, [&] { return write_file(file, content); });
+                if (fault.name == nullptr)
+                    break;
+                ++tried;
+                ++reached[fault.name];
+                const std::string what =
+                    std::string(fault.name) + ", call " + std::to_string(at) + ", " + std::strerror(error);
+                const auto now = read_file(file);
+                if (status) {
+                    ++written;
+                    ASSERT_TRUE(now) << what;
+                    EXPECT_EQ(*now, content) << what;
+                } else {
+                    ++refused;
+                    EXPECT_NE(status.error().message.find(file.string()), std::string::npos) << status.error().message;
+                    EXPECT_NE(status.error().message.find(std::strerror(error)), std::string::npos) << what;
+                    EXPECT_EQ(bool(now), replaces) << what;
+                    EXPECT_TRUE(!now || *now == old) << what;
+                }
+                EXPECT_TRUE(status || matters(fault.name, error)) << what << ": " << status.error().message;
+                EXPECT_LE(names().size(), now ? 1u : 0u) << what << ": a temporary file is left";
+            }
+        }
+    for (const char* call : {"open", "write", "fsync", "rename", "flock", "fchown", "fchmod"})
+        EXPECT_GT(reached[call], 0) << call;
+    std::printf("%d tried, %d refused, %d written\n", tried, refused, written);
+}
+
+// The same for a scene of two files: whatever fails, an old or a new scene is there.
+TEST_F(RobustWriteFaults, ASceneIsOldOrNew) {
+    const fs::path path = folder.path / "room.scene.json";
+    tests::GltfBuilder square;
+    square.add_square();
+    const auto save = [&](const std::string& name) {
+        tests::World world;
+        EXPECT_TRUE(world.import(square.glb()));
+        const ecs::Entity entity = world.registry.create();
+        world.registry.emplace<scene::Name>(entity, {name});
+        world.registry.emplace<scene::Transform>(entity, {});
+        return io::save_scene(path, world.registry, world.meshes, world.textures);
+    };
+    int tried = 0, kept = 0;
+    for (const int error : {ENOSPC, EACCES, EINTR, 0})
+        for (int at = 0;; ++at) {
+            for (const auto& entry : fs::directory_iterator(folder.path))
+                fs::remove(entry.path());
+            ASSERT_TRUE(save("old"));
+            const Status status = with_fault(at, error, [&] { return save("new"); });
+            if (fault.name == nullptr)
+                break;
+            ++tried;
+            kept += !status;
+            tests::World world;
+            const auto report = io::load_scene(path, world.registry, world.meshes, world.textures);
+            ASSERT_TRUE(report) << fault.name << ", call " << at << ": " << report.error().message;
+            const bool is_new = !scene::find_by_name(world.registry, "new").is_null();
+            EXPECT_NE(is_new, !scene::find_by_name(world.registry, "old").is_null());
+            EXPECT_EQ(is_new, bool(status)) << fault.name << ", call " << at;
+        }
+    EXPECT_GT(kept, 0);
+    std::printf("%d tried, %d kept the old scene\n", tried, kept);
+}
+
+} // namespace
+} // namespace sunfleck
