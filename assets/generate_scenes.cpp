@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
     using namespace sunfleck;
-    if (argc != 2) {
+    if (argc != 2 || argv[1][0] == '-') {
         log_error("usage: generate_scenes FOLDER");
         return 2;
     }

@@ -217,7 +217,8 @@ Status play(const Options& options, const std::vector<simulation::StepInput>& re
     SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
     const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);
-    SUNFLECK_TRY(write_file(statistics_file, statistics.dump(2) + "\n"));
+    SUNFLECK_TRY(
+        write_file(statistics_file, statistics.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
     if (device->validation_messages() > 0)
         return Error{"validation printed messages (see above)"};
     print_result(playback, options);

@@ -54,6 +54,10 @@ Status apply_setting(gi::Settings& settings, const std::string& assignment) {
     return {};
 }
 
+std::string json_text(const Json& json) {
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 Json settings_json(const gi::Settings& settings) {
     Json json = Json::object();
     for (const gi::Settings::ConstPart& part : settings.parts())

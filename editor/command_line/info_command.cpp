@@ -75,7 +75,7 @@ Status describe_scene(const std::string& scene, bool allow_outside, bool as_json
                        {"bounds", {{"minimum", list(bounds.minimum)}, {"maximum", list(bounds.maximum)}}},
                        {"notes", report.notes}};
     if (as_json) {
-        std::printf("%s\n", json.dump(2).c_str());
+        std::printf("%s\n", json_text(json).c_str());
         return {};
     }
     std::printf("file        %s\n", path.c_str());

@@ -246,7 +246,7 @@ Status write_statistics(const ReferenceOptions& options, const Tracing& tracing,
                        {"seconds", tracing.seconds()},
                        {"rays", tracing.accumulation().rays},
                        {"rays_per_second", tracing.rays_per_second()}};
-    return write_file(options.statistics, json.dump(2) + "\n");
+    return write_file(options.statistics, json_text(json) + "\n");
 }
 
 Status write_results(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,

@@ -140,7 +140,7 @@ Status write_statistics(const RenderOptions& options, viewer::SceneRenderer& ren
     measurement.size = {request.width, request.height};
     measurement.ev100 = request.ev100;
     measurement.memory = device.memory().usage();
-    return write_file(options.statistics, measurement_json(device, measurement).dump(2) + "\n");
+    return write_file(options.statistics, json_text(measurement_json(device, measurement)) + "\n");
 }
 
 Status render_on_new_device(const RenderOptions& options, const std::filesystem::path& path) {

@@ -22,6 +22,10 @@ std::string checksum_of(std::string_view bytes) {
     return fmt::format("{:016x}", hash_bytes(hash_start, bytes.data(), bytes.size()));
 }
 
+bool is_utf8(const std::string& text) {
+    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::ignore)) == json(text);
+}
+
 std::string settings_text(const json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
 }
@@ -123,10 +127,16 @@ Status check_names(ecs::Registry& registry) {
     return {};
 }
 
-// Without its extensions.
+// Without its extensions; a name that JSON cannot hold as percent signs and numbers.
 std::string stem_of(const std::filesystem::path& path) {
     const std::string name = path.filename().string();
-    return name.substr(0, name.find('.'));
+    const std::string stem = name.substr(0, name.find('.'));
+    if (is_utf8(stem))
+        return stem;
+    std::string encoded;
+    for (const char byte : stem)
+        encoded += std::uint8_t(byte) < 0x80 ? std::string(1, byte) : fmt::format("%{:02x}", std::uint8_t(byte));
+    return encoded.substr(0, 240); // names of files have 255 bytes at most
 }
 
 // Writes the .glb file beside the scene file at `path` and names it in `file`. Never overwrites the file `previous`
@@ -178,6 +188,8 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
         const std::filesystem::path folder = real_folder(path);
         if (const Status status = FileAccess{folder}.check(folder / options.gltf_reference); !status)
             return failure(status.error().message);
+        if (!is_utf8(options.gltf_reference))
+            return failure("the name of '" + options.gltf_reference + "' is not UTF-8, and JSON holds nothing else");
         file["gltf"] = options.gltf_reference;
     } else {
         SUNFLECK_TRY(save_geometry(path, previous, registry, meshes, textures, file));

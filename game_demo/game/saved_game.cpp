@@ -21,6 +21,11 @@ vec3 vector_in(const Json& json) {
     return {json.at(0).get<float>(), json.at(1).get<float>(), json.at(2).get<float>()};
 }
 
+// Names of files may have bytes that JSON cannot hold.
+std::string text_of(const Json& json, int indent = -1) {
+    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string checksum(const std::string& text) {
     char digits[24];
     std::snprintf(digits, sizeof digits, "%016llx",
@@ -113,7 +118,7 @@ Result<Json> checked(const std::string& level, const std::string& text) {
         return Error{"it was saved by a later version of the game"};
     if (!json.contains("world") || json.value("checksum", Json()) != Json(checksum(json["world"].dump())))
         return Error{"it is damaged: its checksum is wrong"};
-    if (json.value("level", Json()) != Json(level))
+    if (text_of(json.value("level", Json())) != text_of(level))
         return Error{"it is of another level than '" + level + "'"};
     return json["world"];
 }
@@ -158,7 +163,7 @@ std::string save_game(const GameWorld& world, const std::string& level) {
             json["entities"][name] = std::move(content);
     const Json file = {
         {"sunfleck_game", version}, {"level", level}, {"checksum", checksum(json.dump())}, {"world", json}};
-    return file.dump(1) + "\n";
+    return text_of(file, 1) + "\n";
 }
 
 Status load_game(GameWorld& world, const std::string& level, const std::string& text) {
