@@ -1,8 +1,8 @@
 // Every option that --help shows, with values that make no sense: what the parser takes is in the range that help
 // shows, and what it refuses is named, with the range, in one message and exit status 2.
-#include "editor/command_line/program.h"
 #include "engine/core/exit_status.h"
 #include "test_places.h"
+#include "tests/support/option_list.h"
 #include "tests/support/run_tool.h"
 #include "viewer/lost_devices.h"
 
@@ -15,31 +15,6 @@
 
 namespace sunfleck::tests {
 namespace {
-
-struct Option {
-    std::string name; // "--size"
-    std::string type; // "INT 1 to 60"; empty: a flag
-};
-
-// Flags have their text after two spaces or more; values' types begin after one.
-std::vector<Option> options_of(const std::string& help) {
-    std::vector<Option> options;
-    std::istringstream lines(help);
-    for (std::string line; std::getline(lines, line);) {
-        const std::size_t dashes = line.find("--");
-        if (line.compare(0, 3, "  -") != 0 || dashes == std::string::npos)
-            continue;
-        const std::size_t end = line.find_first_of(" =", dashes);
-        Option option{line.substr(dashes, end - dashes), {}};
-        if (end != std::string::npos && line.compare(end, 2, "  ") != 0) {
-            const std::size_t text = line.find("  ", end);
-            option.type = line.substr(end + 1, text == std::string::npos ? text : text - end - 1);
-        }
-        if (option.name != "--help")
-            options.push_back(std::move(option));
-    }
-    return options;
-}
 
 const std::vector<std::string>& hostile_values() {
     static const std::vector<std::string> values = {"",
@@ -120,24 +95,6 @@ bool lies_in(const Range& range, const std::string& text) {
     return !range.whole || text.find_first_of(".eE") == std::string::npos;
 }
 
-struct Verdict {
-    int status = 0;
-    std::string message;
-};
-
-Verdict parse(const std::vector<std::string>& words) {
-    std::vector<const char*> arguments = {"sunfleck"};
-    for (const std::string& word : words)
-        arguments.push_back(word.c_str());
-    Verdict verdict;
-    verdict.status = command_line::check_command_line(int(arguments.size()), arguments.data(), verdict.message);
-    return verdict;
-}
-
-struct Command {
-    std::vector<std::string> words, rest; // before and after the option
-};
-
 const std::vector<Command>& commands() {
     static const std::vector<Command> list = {{{"render"}, {"cornell", "-o", "x.png"}},
                                               {{"reference"}, {"cornell", "-o", "x.png"}},
@@ -148,12 +105,6 @@ const std::vector<Command>& commands() {
                                               {{"bench", "pictures"}, {"a", "--stored", "x"}},
                                               {{"info"}, {}}};
     return list;
-}
-
-std::vector<Option> options_of(const Command& command) {
-    std::vector<std::string> words = command.words;
-    words.emplace_back("--help");
-    return options_of(parse(words).message);
 }
 
 void expect_refused(const Verdict& verdict, const Option& option, const std::string& what) {

@@ -1,0 +1,61 @@
+// The options that the tool's --help shows.
+#pragma once
+
+#include "editor/command_line/program.h"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace sunfleck::tests {
+
+struct Option {
+    std::string name; // "--size"
+    std::string type; // "INT 1 to 60"; empty: a flag
+};
+
+// Flags have their text after two spaces or more; values' types begin after one.
+inline std::vector<Option> options_of(const std::string& help) {
+    std::vector<Option> options;
+    std::istringstream lines(help);
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t dashes = line.find("--");
+        if (line.compare(0, 3, "  -") != 0 || dashes == std::string::npos)
+            continue;
+        const std::size_t end = line.find_first_of(" =", dashes);
+        Option option{line.substr(dashes, end - dashes), {}};
+        if (end != std::string::npos && line.compare(end, 2, "  ") != 0) {
+            const std::size_t text = line.find("  ", end);
+            option.type = line.substr(end + 1, text == std::string::npos ? text : text - end - 1);
+        }
+        if (option.name != "--help")
+            options.push_back(std::move(option));
+    }
+    return options;
+}
+
+struct Verdict {
+    int status = 0;
+    std::string message;
+};
+
+inline Verdict parse(const std::vector<std::string>& words) {
+    std::vector<const char*> arguments = {"sunfleck"};
+    for (const std::string& word : words)
+        arguments.push_back(word.c_str());
+    Verdict verdict;
+    verdict.status = command_line::check_command_line(int(arguments.size()), arguments.data(), verdict.message);
+    return verdict;
+}
+
+struct Command {
+    std::vector<std::string> words, rest; // before and after the option
+};
+
+inline std::vector<Option> options_of(const Command& command) {
+    std::vector<std::string> words = command.words;
+    words.emplace_back("--help");
+    return options_of(parse(words).message);
+}
+
+} // namespace sunfleck::tests
