@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -26,6 +28,16 @@ ALuint make_source() {
 void place_source(ALuint source, vec3 place, float gain) {
     alSource3f(source, AL_POSITION, place.x, place.y, place.z);
     alSourcef(source, AL_GAIN, gain);
+}
+
+// OpenAL, ALSA and sndio say on standard error what they do not find. That there is no sound is no error of the
+// program's: the first is asked for silence, the others are left out where there is no card, since nothing keeps them
+// quiet. What the user has set goes first.
+void expect_no_device() {
+    std::error_code code;
+    ::setenv("ALSOFT_LOGLEVEL", "0", 0);
+    if (!std::filesystem::exists("/dev/snd", code))
+        ::setenv("ALSOFT_DRIVERS", "-alsa,-sndio,", 0); // the last comma: all others are tried
 }
 
 } // namespace
@@ -53,6 +65,7 @@ struct Sound::Device {
 };
 
 Sound::Sound() : open_(std::make_unique<Device>()) {
+    expect_no_device();
     open_->device = alcOpenDevice(nullptr);
     open_->context = open_->device != nullptr ? alcCreateContext(open_->device, nullptr) : nullptr;
     if (open_->context == nullptr || alcMakeContextCurrent(open_->context) != ALC_TRUE) {
