@@ -24,7 +24,7 @@ std::string content_of(const fs::path& path) {
 class RobustNeighbours : public testing::Test {
 protected:
     Outcome in_folder(const std::string& command) const {
-        return shell("cd '" + folder.path.string() + "' && " + command);
+        return shell("cd '" + folder.path.string() + "' || exit; " + command);
     }
     std::string bytes(const std::string& name) const { return content_of(folder.path / name); }
     // A picture that takes precomputed transfer, which is kept in a cache.
