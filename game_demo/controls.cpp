@@ -8,6 +8,7 @@ namespace {
 
 constexpr float pointer_speed = 22.0f;  // 1e-4 rad per pixel
 constexpr float stick_speed = 26000.0f; // 1e-4 rad/s at full deflection
+constexpr vec2 largest_turn(30000.0f);  // 1e-4 rad in a step
 constexpr int pad_a = 0, pad_b = 1, pad_x = 2, pad_y = 3, pad_left_bumper = 4;
 
 std::int32_t percent(float value) {
@@ -52,10 +53,15 @@ simulation::StepInput Controls::next_step() {
     simulation::StepInput step = held_;
     step.buttons |= taps_;
     taps_ = 0;
-    step.turn = std::int32_t(std::clamp(look_.x, -30000.0f, 30000.0f));
-    step.look_up = std::int32_t(std::clamp(look_.y, -30000.0f, 30000.0f));
+    const vec2 look = glm::clamp(look_, -largest_turn, largest_turn);
+    step.turn = std::int32_t(look.x);
+    step.look_up = std::int32_t(look.y);
     look_ -= vec2(float(step.turn), float(step.look_up));
     return step;
+}
+
+vec2 Controls::pending_look() const {
+    return simulation::look_unit * glm::clamp(look_, -largest_turn, largest_turn);
 }
 
 bool Controls::pad_pressed_indirect_light() const {

@@ -12,6 +12,8 @@ public:
     void take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing);
     // Input of the next step: all accumulated look motion, and the held keys.
     simulation::StepInput next_step();
+    // Look motion that no step has taken yet, rad to the left and up.
+    vec2 pending_look() const;
     // True once per press of the gamepad's button for indirect light.
     bool pad_pressed_indirect_light() const;
 

@@ -61,20 +61,32 @@ Status Level::prepare(const DemoSettings& settings, const std::function<bool(flo
 void Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
     game_->restart();
+    interpolation_.forget();
+}
+
+Status Level::update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment) {
+    interpolation_.apply(renderer_->registry(), game_->simulation(), moment);
+    const Status updated = renderer_->update(request);
+    simulation::StepInterpolation::undo(renderer_->registry());
+    return updated;
 }
 
 void Level::step(const simulation::StepInput& input) {
     const Status stepped = game_->step(input);
+    interpolation_.took_step(game_->registry(), game_->simulation());
+    if ((input.buttons & simulation::button_reset) != 0)
+        interpolation_.forget();
     if (game_->has_sensors())
         sensor_milliseconds_ += game_->sensors().milliseconds();
     if (!stepped && !std::exchange(sensors_failed_, true))
         log_warning("light sensors stay as they are: " + stepped.error().message);
 }
 
-scene::CameraView Level::view(const DemoSettings& settings) const {
+scene::CameraView Level::view(const DemoSettings& settings, const simulation::DrawnMoment& moment) const {
+    const simulation::DrawnEye eye = interpolation_.eye(game_->simulation(), moment);
     scene::CameraView view;
-    view.position = game_->simulation().player().eye();
-    view.target = view.position + game_->simulation().player().forward();
+    view.position = eye.position;
+    view.target = view.position + eye.forward();
     view.vertical_field_of_view = glm::radians(settings.field_of_view);
     return view;
 }
@@ -120,11 +132,12 @@ std::optional<float> Level::light_share() const {
     return changes_->pending() ? std::optional(changes_->share()) : std::nullopt;
 }
 
-viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height) {
+viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
+                                    const simulation::DrawnMoment& moment) {
     viewer::FrameRequest request;
     request.simulate = false;
     request.step = game_->simulation().steps();
-    request.camera = view(settings);
+    request.camera = view(settings, moment);
     request.screen_width = width;
     request.screen_height = height;
     const auto scaled = [&](std::uint32_t size) {

@@ -1,6 +1,7 @@
 // A loaded level: the renderer and the game of one scene.
 #pragma once
 
+#include "engine/simulation/step_interpolation.h"
 #include "game_demo/demo_settings.h"
 #include "game_demo/game/game_world.h"
 #include "viewer/lighting_change.h"
@@ -38,12 +39,17 @@ public:
     void step(const simulation::StepInput& input);
     // What light sensors took since the last call, ms.
     double take_sensor_milliseconds() { return std::exchange(sensor_milliseconds_, 0.0); }
-    // The person's view.
-    scene::CameraView view(const DemoSettings& settings) const;
+    // The person's view; without a moment, that of the last step.
+    scene::CameraView view(const DemoSettings& settings, const simulation::DrawnMoment& moment = {}) const;
     // The view behind the title: the scene's cameras in turn, slowly panning.
     scene::CameraView title_camera(double seconds) const;
     // The world as it was loaded, at step 0; the light stays.
     void restart();
+    // The world was put elsewhere, by a checkpoint: there is no way from where it was.
+    void jumped() { interpolation_.forget(); }
+    // viewer::SceneRenderer::update with what moves between the last two steps at that moment; the simulation is what
+    // it was afterwards.
+    Status update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment);
     // Applies the player's settings at once; makes the next frame wait for their light.
     Status apply(const DemoSettings& settings);
     // The same beside the frames (viewer/lighting_change.h), which go on with the present light. Once each frame, so
@@ -53,7 +59,8 @@ public:
     // How far a change of light is, 0 to 1; none: everything that was applied is shown.
     std::optional<float> light_share() const;
     // The frame request for a window or image of this size.
-    viewer::FrameRequest request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height);
+    viewer::FrameRequest request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
+                                 const simulation::DrawnMoment& moment = {});
 
 private:
     Level() = default;
@@ -62,6 +69,7 @@ private:
     std::unique_ptr<viewer::LightingChanges> changes_;
     gi::Settings wanted_; // applied last
     std::unique_ptr<GameWorld> game_;
+    simulation::StepInterpolation interpolation_;
     double sensor_milliseconds_ = 0.0;
     bool sensors_failed_ = false;
     std::vector<scene::CameraView> cameras_;

@@ -1,10 +1,9 @@
 // The demo in a window: real time, the simulation on its fixed step.
-#include "engine/app/gui_screen.h"
 #include "engine/core/log.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
-#include "engine/simulation/path_movers.h"
 #include "game_demo/controls.h"
+#include "game_demo/game_display.h"
 #include "game_demo/game_session.h"
 #include "game_demo/game_sounds.h"
 #include "game_demo/hitch_log.h"
@@ -25,7 +24,6 @@ namespace sunfleck::demo {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double max_catch_up = 0.2; // s: after a longer stall, the simulation does not catch up
 constexpr int pad_start = 7;
 
 double seconds_since(Clock::time_point start) {
@@ -88,19 +86,16 @@ private:
     Status start() {
         LoadedSettings loaded = kept_.load(options_.settings_file);
         settings_ = loaded.settings;
-        SUNFLECK_ASSIGN(window_, app::Window::create("Lantern House", options_.width, options_.height));
-        SUNFLECK_ASSIGN(device_,
-                        gpu::Device::create({options_.device, options_.validation, window_->instance_extensions()}));
-        SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
+        SUNFLECK_ASSIGN(display_, GameDisplay::create("Lantern House", options_));
+        window_ = &display_->window();
         if (options_.preset || !loaded.found)
-            settings_.preset = options_.preset.value_or(default_preset(device_->traits().software));
+            settings_.preset = options_.preset.value_or(default_preset(display_->device().traits().software));
         apply_preset(settings_);
         if (options_.transfer && *options_.transfer != settings_.transfer) {
             settings_.transfer = *options_.transfer;
             settings_.preset = Preset::custom;
         }
         kept_.begin(settings_, loaded.found);
-        SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
         start_loading();
         window_->set_full_screen(settings_.full_screen);
         if (!loaded.problem.empty()) {
@@ -113,17 +108,17 @@ private:
 
     void start_loading() {
         window_->set_title("Lantern House - loading");
-        loading_ = std::make_unique<LoadingScreen>(*device_, source_of(options_), first_light(settings_));
+        loading_ = std::make_unique<LoadingScreen>(display_->device(), source_of(options_), first_light(settings_));
     }
 
     // The device is idle when the level takes over, because submission serials restart.
     Status loading_frame() {
-        SUNFLECK_ASSIGN(level_, loading_->frame(*window_, *swapchain_, *screen_, ui_scale(swapchain_->extent())));
+        app::Swapchain& swapchain = display_->swapchain();
+        SUNFLECK_ASSIGN(level_, loading_->frame(*window_, swapchain, display_->screen(), ui_scale(swapchain.extent())));
         if (!level_)
             return {};
         loading_.reset();
-        SUNFLECK_TRY(device_->wait_idle());
-        blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
+        SUNFLECK_TRY(display_->begin_renderer());
         window_->set_title("Lantern House");
         level_->apply_later(settings_); // all of the light comes in view
         hitches_.log("first picture", seconds_since(began_));
@@ -131,25 +126,12 @@ private:
         return {};
     }
 
-    viewer::SceneRenderer::Overlay overlay() {
-        return [this](gpu::FrameGraph& graph, gpu::ResourceId target, gpu::FrameResources& resources) {
-            return screen_->gui().add_pass(graph, target, resources);
-        };
-    }
-
-    Status present(VkCommandBuffer commands) {
-        viewer::SceneRenderer& renderer = level_->renderer();
-        SUNFLECK_TRY(swapchain_->record_blit(commands, *blit_resources_, renderer.output()));
-        SUNFLECK_TRY(renderer.submission().submit(&swapchain_->semaphores()));
-        return swapchain_->present();
-    }
-
     // False: the window cannot be presented to at the moment.
     Result<bool> frame_once() {
         const app::InputState& input = window_->poll();
         const double seconds = std::min(seconds_since(last_), 1.0);
         last_ = Clock::now();
-        swapchain_->set_vertical_sync(settings_.vertical_sync);
+        display_->swapchain().set_vertical_sync(settings_.vertical_sync);
         handle_keys(input);
         const bool playing = menu_.screen() == Screen::playing && input.focused;
         window_->capture_pointer(playing);
@@ -157,7 +139,7 @@ private:
         simulate(seconds);
         sounds_.update(level_->game(), settings_, seconds, started_ && playing);
         follow_light();
-        SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(level_->renderer().submission().serial()));
+        SUNFLECK_ASSIGN(const bool visible, display_->swapchain().acquire(level_->renderer().submission().serial()));
         if (!visible) {
             window_->wait(0.05);
             SUNFLECK_TRY(state_.write(state()));
@@ -220,9 +202,7 @@ private:
         title_seconds_ += seconds;
         if (screen == Screen::paused || (started_ && screen != Screen::playing))
             return;
-        accumulator_ += std::min(seconds, max_catch_up);
-        while (accumulator_ >= simulation::step_seconds) {
-            accumulator_ -= simulation::step_seconds;
+        for (std::uint32_t due = clock_.advance(seconds); due > 0; --due) {
             simulation::StepInput step = controls_.next_step();
             if (std::exchange(wants_reset_, false))
                 step.buttons |= simulation::button_reset;
@@ -241,9 +221,10 @@ private:
     }
 
     Status show(const app::InputState& input, double seconds) {
-        const VkExtent2D extent = swapchain_->extent();
+        const VkExtent2D extent = display_->swapchain().extent();
         viewer::SceneRenderer& renderer = level_->renderer();
-        viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height);
+        const simulation::DrawnMoment moment{clock_.fraction(), controls_.pending_look()};
+        viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height, moment);
         if (!started_)
             request.camera = level_->title_camera(title_seconds_);
         request.indirect_scale = float(indirect_); // fades, since only some samples follow in each frame
@@ -251,18 +232,17 @@ private:
         request.milliseconds = 1e3 * seconds_since(began_);
         renderer.collect_statistics();
         hitches_.log(seconds, renderer.statistics());
-        screen_->gui().begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
+        app::Gui& gui = display_->screen().gui();
+        gui.begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
         if (menu_.screen() == Screen::playing)
             draw_game();
         bool changed = false;
         const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
-        screen_->gui().end_frame();
-        SUNFLECK_TRY(renderer.update(request));
-        SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
-        SUNFLECK_ASSIGN(const std::uint64_t completed, renderer.submission().completed());
-        blit_resources_->begin_frame(renderer.submission().serial(), completed);
-        SUNFLECK_TRY(renderer.record(commands, request, overlay()));
-        SUNFLECK_TRY(present(commands));
+        gui.end_frame();
+        SUNFLECK_TRY(level_->update(request, moment));
+        SUNFLECK_ASSIGN(const VkCommandBuffer commands, display_->begin_frame(renderer));
+        SUNFLECK_TRY(renderer.record(commands, request, display_->overlay()));
+        SUNFLECK_TRY(display_->present(commands, renderer));
         if (std::exchange(wants_screenshot_, false))
             menu_.say(save_screenshot(renderer, options_.screenshots));
         if (changed) {
@@ -306,7 +286,7 @@ private:
         result.rendered_width = request.width;
         result.rendered_height = request.height;
         result.light_share = level_->light_share();
-        result.device = device_->traits().name;
+        result.device = display_->device().traits().name;
         return result;
     }
 
@@ -346,7 +326,8 @@ private:
         sounds_.forget();
         if (!session_.begin(level_->game(), resume))
             return restart(false);
-        accumulator_ = 0.0;
+        level_->jumped();
+        clock_.reset();
         recording_.clear();
     }
 
@@ -354,11 +335,11 @@ private:
         loading_.reset();
         hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
-        SUNFLECK_TRY(device_->wait_idle());
+        SUNFLECK_TRY(display_->device().wait_idle());
         if (kept_.differ_from_start(settings_)) // else nothing is lost
             SUNFLECK_TRY(stored);
         SUNFLECK_TRY(recorded);
-        if (device_->validation_messages() > 0)
+        if (display_->device().validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};
     }
@@ -366,13 +347,10 @@ private:
     const Options& options_;
     DemoSettings settings_;
     KeptSettings kept_;
-    std::unique_ptr<app::Window> window_;
-    std::unique_ptr<gpu::Device> device_;
-    std::unique_ptr<app::Swapchain> swapchain_;
-    std::unique_ptr<gpu::FrameResources> blit_resources_;
+    std::unique_ptr<GameDisplay> display_;
+    app::Window* window_ = nullptr; // the display's
     std::unique_ptr<Level> level_;
     std::unique_ptr<LoadingScreen> loading_;
-    std::unique_ptr<app::GuiScreen> screen_;
     Menu menu_;
     GameSounds sounds_;
     StateFile state_;
@@ -380,7 +358,8 @@ private:
     Controls controls_;
     WindowHitches hitches_;
     Clock::time_point last_;
-    double accumulator_ = 0.0, title_seconds_ = 0.0, smooth_ms_ = 0.0;
+    simulation::StepClock clock_;
+    double title_seconds_ = 0.0, smooth_ms_ = 0.0;
     bool started_ = false, indirect_ = true, wants_screenshot_ = false, wants_reset_ = false, start_before_ = false;
     const Clock::time_point began_ = Clock::now();
     simulation::RecordingWriter recording_;

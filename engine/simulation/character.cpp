@@ -15,7 +15,6 @@ constexpr float min_ground_cosine = 0.65f;          // of the angle of the steep
 constexpr float gravity = 9.81f, fastest_fall = 20.0f;
 constexpr float crouching_height = 1.05f, height_speed = 3.0f; // m, m/s
 constexpr float strength = 40.0f;                              // N, greatest pushing force
-constexpr float largest_pitch = 1.5f;                          // rad
 
 } // namespace
 
@@ -46,8 +45,12 @@ vec3 Character::eye() const {
     return capsule_.foot + vec3(0.0f, capsule_.height - 0.12f - eye_lag_, 0.0f);
 }
 
+vec3 view_direction(float yaw, float pitch) {
+    return {-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)};
+}
+
 vec3 Character::forward() const {
-    return {-std::sin(yaw_) * std::cos(pitch_), std::sin(pitch_), -std::cos(yaw_) * std::cos(pitch_)};
+    return view_direction(yaw_, pitch_);
 }
 
 void Character::step(PhysicsWorld& world, const CharacterInput& input, ecs::Entity ignored) {

@@ -5,6 +5,11 @@
 
 namespace sunfleck::simulation {
 
+inline constexpr float largest_pitch = 1.5f; // rad, up and down
+
+// `yaw` 0 looks along -Z and increases to the left.
+vec3 view_direction(float yaw, float pitch);
+
 struct CharacterInput {
     float forward = 0.0f, right = 0.0f; // -1 to 1
     float turn = 0.0f, look_up = 0.0f;  // rad in this step
@@ -21,7 +26,6 @@ struct CharacterState {
 class Character {
 public:
     Character() = default;
-    // `yaw` 0 looks along -Z and increases to the left.
     Character(vec3 foot, float yaw, float standing_height);
 
     // One fixed step, after that of the physics world.
