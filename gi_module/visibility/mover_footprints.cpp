@@ -21,53 +21,57 @@ bool overlap(const Bounds& a, const Bounds& b) {
     return glm::all(glm::lessThanEqual(a.minimum, b.maximum)) && glm::all(glm::lessThanEqual(b.minimum, a.maximum));
 }
 
-double radius_of(const Bounds& bounds) {
-    return 0.5 * double(glm::length(bounds.extent()));
-}
+} // namespace
 
-// Whether a sphere may meet the hull of two boxes: the hull lies in a capsule around both. Its slack is wider than
-// may_shadow's, so that groups never leave out a pair that would be accepted by itself.
-bool may_meet_hull(const Bounds& a, const Bounds& b, const Bounds& sphere_of) {
-    if (!overlap(joined(a, b), sphere_of))
+// Whether a mover may meet the hull of a cluster and a box, given with the radius of the ball around it: the hull lies
+// in a capsule around both. Its slack is wider than may_shadow's, so that groups never leave out a pair that would be
+// accepted by itself.
+bool VisibilityDatabase::may_meet_hull(const Cluster& cluster, const Bounds& bounds, float radius,
+                                       const MovingBlocker& mover) {
+    if (!overlap(joined(cluster.bounds, bounds), mover.bounds()))
         return false;
-    const dvec3 start(a.centre()), along = dvec3(b.centre()) - start, point(sphere_of.centre());
+    const dvec3 start(cluster.bounds.centre()), along = dvec3(bounds.centre()) - start, point(mover.bounds().centre());
     const double square = glm::dot(along, along);
     const double t = square > 0.0 ? std::clamp(glm::dot(point - start, along) / square, 0.0, 1.0) : 0.0;
-    const double reach = radius_of(sphere_of) + std::max(radius_of(a), radius_of(b));
-    return glm::length(start + t * along - point) <= reach * 1.002 + 1e-3;
+    const double reach = double(mover.radius()) + double(std::max(cluster.radius, radius));
+    const double limit = reach * 1.002 + 1e-3;
+    const dvec3 apart = start + t * along - point;
+    return glm::dot(apart, apart) <= limit * limit;
 }
 
 // Whether a mover is all behind the patch, where it shadows it from no sample.
-bool behind(const SurfacePatch& patch, const Bounds& mover) {
-    const float radius = 0.5f * glm::length(mover.extent()) * 1.0001f + 1e-5f;
-    return patch.planar && glm::dot(vec3(patch.normal), mover.centre() - vec3(patch.corners[0])) < -radius;
+bool VisibilityDatabase::behind(const Outline& patch, const MovingBlocker& mover) {
+    const float radius = mover.radius() * 1.0001f + 1e-5f;
+    return patch.planar && glm::dot(patch.normal, mover.bounds().centre() - patch.corner) < -radius;
 }
 
-// Whether anything in the sphere around `mover` may stand between the light and the patch: cheap, and errs on the side
+// Whether anything in the ball around `mover` may stand between the light and the patch: cheap, and errs on the side
 // of yes.
-bool may_shadow(const LightSample& light, const SurfacePatch& patch, const Bounds& mover) {
+bool VisibilityDatabase::may_shadow(const LightSample& light, const Outline& patch, const MovingBlocker& mover) {
     if (behind(patch, mover))
         return false;
     if (light.kind == SampleKind::directional)
         return true;
     Bounds hull = patch.bounds;
     hull.add(light.position);
-    if (!overlap(hull, mover))
+    if (!overlap(hull, mover.bounds()))
         return false;
-    const vec3 middle = mover.centre();
-    const float radius = 0.5f * glm::length(mover.extent()) * 1.0001f + 1e-5f;
+    const vec3 middle = mover.bounds().centre();
+    const float radius = mover.radius() * 1.0001f + 1e-5f;
     const vec3 to_middle = middle - light.position;
     if (light.kind == SampleKind::surface && glm::dot(light.normal, to_middle) < -radius)
         return false;
-    const float patch_radius = 0.5f * glm::length(patch.bounds.extent()) * 1.0001f + 1e-5f;
+    const float patch_radius = patch.radius * 1.0001f + 1e-5f;
     const float gap = shared::shadow_cone_distance(light.position, patch.bounds.centre(), patch_radius, middle);
     return gap <= radius + 1e-4f;
 }
 
 // What the mover takes of the sample's light to a patch.
-Blocking shadow_on(const SurfacePatch& patch, const LightSample& light, const MovingBlocker& blocker) {
-    if (!may_shadow(light, patch, blocker.bounds()))
+Blocking VisibilityDatabase::shadow_on(std::uint32_t node, const LightSample& light,
+                                       const MovingBlocker& blocker) const {
+    if (!may_shadow(light, outlines_[node], blocker))
         return Blocking::none;
+    const SurfacePatch& patch = patches_.nodes()[node];
     if (!patch.planar) {
         const auto pyramid = pyramid_of_box(light, patch.box);
         return pyramid ? blocker.test(*pyramid) : Blocking::none;
@@ -80,13 +84,11 @@ Blocking shadow_on(const SurfacePatch& patch, const LightSample& light, const Mo
     return pyramid ? blocker.test(*pyramid) : Blocking::none;
 }
 
-} // namespace
-
-void VisibilityDatabase::candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group,
+void VisibilityDatabase::candidate_roots(const Cluster& cluster, const MovingBlocker& mover, std::uint32_t group,
                                          Footprint& roots, std::uint64_t& tests) const {
     const Group& node = groups_[group];
     ++tests;
-    if (!cluster.unbounded && !may_meet_hull(cluster.bounds, node.bounds, mover))
+    if (!cluster.unbounded && !may_meet_hull(cluster, node.bounds, node.radius, mover))
         return;
     if (node.roots.empty()) {
         candidate_roots(cluster, mover, node.left, roots, tests);
@@ -99,7 +101,7 @@ VisibilityDatabase::Footprint VisibilityDatabase::roots_for(const Cluster& clust
                                                             std::uint64_t& tests) const {
     Footprint roots;
     if (options_.tests == TestGrouping::clusters && !groups_.empty())
-        candidate_roots(cluster, mover.blocker.bounds(), 0, roots, tests);
+        candidate_roots(cluster, mover.blocker, 0, roots, tests);
     else
         for (std::uint32_t root = 0; root < patches_.roots(); ++root)
             roots.push_back(root);
@@ -110,26 +112,26 @@ VisibilityDatabase::Footprint VisibilityDatabase::roots_for(const Cluster& clust
 // tested are the active ones, and what is found holds for those that count, whose parents are shadowed in part.
 void VisibilityDatabase::descend(FootprintWalk& walk, std::uint32_t node, std::uint32_t active,
                                  std::uint32_t counting) const {
-    const SurfacePatch& patch = patches_.nodes()[node];
+    const Outline& patch = outlines_[node];
     const MovingBlocker& blocker = *walk.blocker;
-    const Cluster& cluster = *walk.cluster;
+    const Cluster& cluster = *walk.part.cluster;
     const bool clusters = options_.tests == TestGrouping::clusters;
     if (clusters) {
         ++walk.tests;
         const bool several = (active & (active - 1)) != 0;
-        if (behind(patch, blocker.bounds()) ||
-            (several && !cluster.unbounded && !may_meet_hull(cluster.bounds, patch.bounds, blocker.bounds())))
+        if (behind(patch, blocker) ||
+            (several && !cluster.unbounded && !may_meet_hull(cluster, patch.bounds, patch.radius, blocker)))
             return;
     }
     std::uint32_t below = 0;
     for (std::uint32_t rest = active; rest != 0; rest &= rest - 1) {
         const std::uint32_t i = std::uint32_t(std::countr_zero(rest));
-        const std::uint32_t sample = walk.samples[i];
+        const std::uint32_t sample = walk.part.samples[i];
         const PairState fixed = static_state(node, sample);
         if (fixed == PairState::unlit || fixed == PairState::full)
             continue;
         ++walk.tests;
-        const Blocking blocking = shadow_on(patch, samples_[sample], blocker);
+        const Blocking blocking = shadow_on(node, samples_[sample], blocker);
         if ((counting & (1u << i)) == 0)
             continue;
         if (blocking == Blocking::full)
@@ -140,7 +142,7 @@ void VisibilityDatabase::descend(FootprintWalk& walk, std::uint32_t node, std::u
         below |= 1u << i;
     }
     const std::uint32_t next = options_.tests == TestGrouping::pairs ? active : below;
-    if (next == 0 || patch.is_leaf())
+    if (next == 0 || patch.first_child == shared::no_node)
         return;
     for (std::uint32_t child = 0; child < 4; ++child)
         descend(walk, patch.first_child + child, next, below);
@@ -159,18 +161,19 @@ void VisibilityDatabase::add_all(std::uint32_t node, std::uint32_t sample, Footp
 
 // Of samples of one cluster, at most as many as it may have; those that do not reach the mover have none.
 void VisibilityDatabase::find_footprints(FootprintWalk& walk, const Mover& mover) const {
+    const std::span<const std::uint32_t> samples = walk.part.samples;
     std::uint32_t active = 0;
-    for (std::size_t i = 0; i < walk.samples.size(); ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
         walk.footprints[i].clear();
-        if (mover.blocks && reaches(mover, walk.samples[i]))
+        if (mover.blocks && reaches(mover, samples[i]))
             active |= 1u << i;
     }
     if (active == 0)
         return;
     walk.blocker = &mover.blocker;
-    for (const std::uint32_t root : roots_for(*walk.cluster, mover, walk.tests))
+    for (const std::uint32_t root : roots_for(*walk.part.cluster, mover, walk.tests))
         descend(walk, root, active, active);
-    for (std::size_t i = 0; i < walk.samples.size(); ++i)
+    for (std::size_t i = 0; i < samples.size(); ++i)
         std::sort(walk.footprints[i].begin(), walk.footprints[i].end());
 }
 
@@ -181,23 +184,32 @@ bool VisibilityDatabase::reaches(const Mover& mover, std::uint32_t sample) const
     return fixed != PairState::full && fixed != PairState::unlit;
 }
 
-void VisibilityDatabase::replace_footprints(Mover& mover) {
-    std::vector<std::vector<PairChange>> changes(clusters_.size());
+std::vector<VisibilityDatabase::ClusterPart> VisibilityDatabase::all_clusters() const {
+    std::vector<ClusterPart> parts;
+    parts.reserve(clusters_.size());
+    for (const Cluster& cluster : clusters_)
+        parts.push_back({&cluster, cluster.samples});
+    return parts;
+}
+
+// No sample is in two of the parts, so each thread has pairs of its own.
+void VisibilityDatabase::replace_footprints(std::span<Mover* const> movers, std::span<const ClusterPart> parts) {
+    std::vector<std::vector<PairChange>> changes(parts.size());
     std::atomic<std::uint64_t> all_tests{0};
-    parallel_for_chunks(clusters_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for_chunks(movers.empty() ? 0 : parts.size(), 1, [&](std::size_t begin, std::size_t end) {
         FootprintWalk walk;
-        for (std::size_t c = begin; c < end; ++c) {
-            walk.cluster = &clusters_[c];
-            walk.samples = clusters_[c].samples;
-            find_footprints(walk, mover);
-            for (std::size_t i = 0; i < walk.samples.size(); ++i) {
-                Footprint& known = mover.footprint[walk.samples[i]];
-                if (walk.footprints[i] == known)
-                    continue;
-                apply(walk.samples[i], known, walk.footprints[i], changes[c]);
-                known = walk.footprints[i];
+        for (std::size_t p = begin; p < end; ++p)
+            for (Mover* const mover : movers) {
+                walk.part = parts[p];
+                find_footprints(walk, *mover);
+                for (std::size_t i = 0; i < walk.part.samples.size(); ++i) {
+                    Footprint& known = mover->footprint[walk.part.samples[i]];
+                    if (walk.footprints[i] == known)
+                        continue;
+                    apply(walk.part.samples[i], known, walk.footprints[i], changes[p]);
+                    known = walk.footprints[i];
+                }
             }
-        }
         all_tests += walk.tests;
     });
     counters_.tests += all_tests;

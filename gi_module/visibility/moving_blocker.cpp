@@ -32,6 +32,7 @@ void MovingBlocker::place(const mat4& matrix) {
     bounds_ = {};
     for (int i = 0; i < 8; ++i)
         bounds_.add(vec3(box_.corner(i)));
+    radius_ = 0.5f * glm::length(bounds_.extent());
     for (std::size_t i = 0; i < polygons_.size(); ++i)
         for (std::size_t k = 0; k < polygons_[i].size(); ++k)
             polygons_[i][k] = dvec3(vec3(matrix * vec4(vec3(local_polygons_[i][k]), 1.0f)));

@@ -28,11 +28,14 @@ public:
     bool may_cover(const LightSample& sample, std::span<const dvec3, 4> corners) const;
     const OrientedBox& box() const { return box_; }
     const Bounds& bounds() const { return bounds_; }
+    // Of the ball around the bounds.
+    float radius() const { return radius_; }
     // A convex closed body does not shadow itself: what it hides faces away from the light.
     bool convex() const { return convex_; }
 
 private:
     Bounds local_bounds_, bounds_;
+    float radius_ = 0.0f;
     OrientedBox box_;
     std::vector<Polygon> local_polygons_, polygons_; // empty: complex
     std::vector<Plane> planes_;                      // of a box, inside is positive

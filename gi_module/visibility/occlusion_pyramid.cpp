@@ -136,60 +136,99 @@ std::optional<OcclusionPyramid> pyramid_of_patch(const LightSample& sample, std:
     return pyramid;
 }
 
-std::optional<OcclusionPyramid> pyramid_of_box(const LightSample& sample, const OrientedBox& box) {
-    if (has_front(sample) && box.reach(front_of(sample)) <= 1e-9)
-        return std::nullopt;
-    const double radius = glm::length(box.corner(7) - box.centre);
-    if (outside_cone(sample, box.centre, radius))
-        return std::nullopt;
-    OcclusionPyramid pyramid;
-    set_apex(pyramid, sample);
-    const dvec3 origin = pyramid.parallel ? box.centre : pyramid.apex;
-    dvec3 axis = pyramid.parallel ? pyramid.apex : box.centre - pyramid.apex;
-    const double distance = glm::length(axis);
-    if (distance < 1e-9)
-        return pyramid_around(sample, box);
-    axis /= distance;
-    vec3 tangent, bitangent;
-    orthonormal_basis(vec3(axis), tangent, bitangent);
-    const dvec3 x = glm::normalize(dvec3(tangent) - axis * glm::dot(axis, dvec3(tangent))), y = glm::cross(axis, x);
-    // Rectangle around the box as seen from the light, at the depth where the box begins.
+namespace {
+
+// How a box lies before the light: a rectangle around it, at the depth where it begins.
+struct BoxView {
+    dvec3 origin{0.0}, axis{0.0}, x{0.0}, y{0.0};
     double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, nearest = 1e300, farthest = -1e300;
+    bool parallel = false;
+
+    dvec3 at(double u, double v, double depth) const {
+        const double scale = parallel ? 1.0 : depth;
+        return origin + axis * depth + (x * u + y * v) * scale;
+    }
+};
+
+bool may_reach(const LightSample& sample, const OrientedBox& box) {
+    return !(has_front(sample) && box.reach(front_of(sample)) <= 1e-9) &&
+           !outside_cone(sample, box.centre, glm::length(box.corner(7) - box.centre));
+}
+
+// Nothing where no direction separates the light from the box.
+std::optional<BoxView> view_of_box(const LightSample& sample, const OrientedBox& box) {
+    BoxView view;
+    view.parallel = sample.kind == SampleKind::directional;
+    view.origin = view.parallel ? box.centre : dvec3(sample.position);
+    view.axis = view.parallel ? dvec3(sample.normal) : box.centre - dvec3(sample.position);
+    const double distance = glm::length(view.axis);
+    if (distance < 1e-9)
+        return std::nullopt;
+    view.axis /= distance;
+    vec3 tangent, bitangent;
+    orthonormal_basis(vec3(view.axis), tangent, bitangent);
+    view.x = glm::normalize(dvec3(tangent) - view.axis * glm::dot(view.axis, dvec3(tangent)));
+    view.y = glm::cross(view.axis, view.x);
     for (int i = 0; i < 8; ++i) {
-        const dvec3 v = box.corner(i) - origin;
-        const double depth = glm::dot(v, axis);
-        nearest = std::min(nearest, depth);
-        farthest = std::max(farthest, depth);
-        if (!pyramid.parallel && depth <= 1e-3 * distance)
-            return pyramid_around(sample, box);
-        const double scale = pyramid.parallel ? 1.0 : 1.0 / depth;
-        const double place[2] = {glm::dot(v, x) * scale, glm::dot(v, y) * scale};
+        const dvec3 v = box.corner(i) - view.origin;
+        const double depth = glm::dot(v, view.axis);
+        view.nearest = std::min(view.nearest, depth);
+        view.farthest = std::max(view.farthest, depth);
+        if (!view.parallel && depth <= 1e-3 * distance)
+            return std::nullopt;
+        const double scale = view.parallel ? 1.0 : 1.0 / depth;
+        const double place[2] = {glm::dot(v, view.x) * scale, glm::dot(v, view.y) * scale};
         for (int k = 0; k < 2; ++k) {
-            low[k] = std::min(low[k], place[k]);
-            high[k] = std::max(high[k], place[k]);
+            view.low[k] = std::min(view.low[k], place[k]);
+            view.high[k] = std::max(view.high[k], place[k]);
         }
     }
     for (int k = 0; k < 2; ++k) { // a flat box still has a gate with an area
-        const double slack = 1e-9 + 1e-6 * (high[k] - low[k]);
-        low[k] -= slack;
-        high[k] += slack;
+        const double slack = 1e-9 + 1e-6 * (view.high[k] - view.low[k]);
+        view.low[k] -= slack;
+        view.high[k] += slack;
     }
-    const auto at = [&](double u, double v, double depth) {
-        const double scale = pyramid.parallel ? 1.0 : depth;
-        return origin + axis * depth + (x * u + y * v) * scale;
-    };
-    pyramid.gate = {at(low[0], low[1], nearest), at(high[0], low[1], nearest), at(high[0], high[1], nearest),
-                    at(low[0], high[1], nearest)};
+    return view;
+}
+
+void set_gate(OcclusionPyramid& pyramid, const BoxView& view) {
+    pyramid.gate = {view.at(view.low[0], view.low[1], view.nearest), view.at(view.high[0], view.low[1], view.nearest),
+                    view.at(view.high[0], view.high[1], view.nearest),
+                    view.at(view.low[0], view.high[1], view.nearest)};
     pyramid.gate_count = 4;
+}
+
+} // namespace
+
+std::optional<OcclusionPyramid> pyramid_of_box(const LightSample& sample, const OrientedBox& box) {
+    if (!may_reach(sample, box))
+        return std::nullopt;
+    const std::optional<BoxView> view = view_of_box(sample, box);
+    if (!view)
+        return pyramid_around(sample, box);
+    std::optional<OcclusionPyramid> result(std::in_place);
+    OcclusionPyramid& pyramid = *result;
+    set_apex(pyramid, sample);
+    set_gate(pyramid, *view);
     add_sides(pyramid);
-    pyramid.add({-axis, glm::dot(axis, origin) + farthest + 2.0 * touching});
+    pyramid.add({-view->axis, glm::dot(view->axis, view->origin) + view->farthest + 2.0 * touching});
     if (has_front(sample))
         pyramid.add(front_of(sample));
     finish_bounds(pyramid);
-    for (const double u : {low[0], high[0]})
-        for (const double v : {low[1], high[1]})
-            pyramid.bounds.add(vec3(at(u, v, farthest)));
-    return pyramid;
+    for (const double u : {view->low[0], view->high[0]})
+        for (const double v : {view->low[1], view->high[1]})
+            pyramid.bounds.add(vec3(view->at(u, v, view->farthest)));
+    return result;
+}
+
+std::optional<OcclusionPyramid> gate_of_box(const LightSample& sample, const OrientedBox& box) {
+    if (!may_reach(sample, box))
+        return std::nullopt;
+    std::optional<OcclusionPyramid> result(std::in_place);
+    set_apex(*result, sample);
+    if (const std::optional<BoxView> view = view_of_box(sample, box))
+        set_gate(*result, *view);
+    return result;
 }
 
 bool enters(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon) {

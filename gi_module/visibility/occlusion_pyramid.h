@@ -47,6 +47,8 @@ std::optional<OcclusionPyramid> pyramid_of_patch(const LightSample& sample, std:
 
 // Of whatever lies in a box. Nothing if the box lies behind the sample's surface.
 std::optional<OcclusionPyramid> pyramid_of_box(const LightSample& sample, const OrientedBox& box);
+// The same without planes and bounds: apex and gate are all that full occlusion (StaticBlockers::covers) looks at.
+std::optional<OcclusionPyramid> gate_of_box(const LightSample& sample, const OrientedBox& box);
 
 // Whether a polygon enters the region, and whether a box may (errs on the side of yes).
 bool enters(const OcclusionPyramid& pyramid, std::span<const dvec3> polygon);

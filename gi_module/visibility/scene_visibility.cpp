@@ -53,42 +53,45 @@ Status SceneVisibility::update(const VisibilitySettings& settings, const Visibil
         moved = {};
     }
     database_.begin_frame();
+    const bool all = find_movers(input, build);
     {
         const StageTimer timer(input.cpu_times, "visibility of samples");
-        database_.change_samples(input.samples, moved);
+        database_.change_samples(input.samples, moved, movers_);
     }
-    follow_movers(input, build);
+    if (all)
+        database_.update_movers(movers_, input.meshes);
+    else
+        database_.change_movers(movers_, gone_, input.meshes);
     return {};
 }
 
-// `all`: the database knows none of them.
-void SceneVisibility::follow_movers(const VisibilityInput& input, bool all) {
+// Those that may have changed, and whether they are all that there are. `all`: the database knows none of them.
+bool SceneVisibility::find_movers(const VisibilityInput& input, bool all) {
     all = all || !mover_cursor_.follows(input.changes) || lighting_generation_ != input.lighting_generation;
     mover_cursor_.saw(input.changes);
     lighting_generation_ = input.lighting_generation;
-    std::vector<MoverPlace> movers;
-    std::vector<ecs::Entity> gone;
+    movers_.clear();
+    gone_.clear();
     const auto add = [&](const scene::Drawable& drawable) {
         const scene::DrawItem* item = input.gpu_scene.find(drawable.entity);
         if (item == nullptr) // its mesh is not on the GPU yet: looked for again in the next frame
             mover_cursor_ = {};
         if (item == nullptr || drawable.is_static)
-            return gone.push_back(drawable.entity);
-        movers.push_back(MoverPlace::of(drawable));
-        movers.back().lit = !input.lit_elsewhere || !input.lit_elsewhere(*item);
+            return gone_.push_back(drawable.entity);
+        movers_.push_back(MoverPlace::of(drawable));
+        movers_.back().lit = !input.lit_elsewhere || !input.lit_elsewhere(*item);
     };
     if (all) {
         for (const scene::Drawable* drawable : input.changes.all)
             add(*drawable);
-        database_.update_movers(movers, input.meshes);
-        return;
+        return true;
     }
     for (const scene::DrawableChange& change : input.changes.drawables)
         if (change.removed())
-            gone.push_back(change.entity);
+            gone_.push_back(change.entity);
         else if (change.is_mover())
             add(*change.now);
-    database_.change_movers(movers, gone, input.meshes);
+    return false;
 }
 
 } // namespace sunfleck::gi

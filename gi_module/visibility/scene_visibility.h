@@ -44,12 +44,14 @@ public:
     void report(Report& report) const;
 
 private:
-    void follow_movers(const VisibilityInput& input, bool all);
+    bool find_movers(const VisibilityInput& input, bool all);
 
     VisibilityDatabase database_;
     std::optional<VisibilityOptions> options_; // that it was built with
     std::uint64_t sample_generation_ = 0;      // of the samples that it knows; 0: none
     scene::ChangeCursor mover_cursor_;
+    std::vector<MoverPlace> movers_; // of this frame's changes
+    std::vector<ecs::Entity> gone_;
     std::uint64_t lighting_generation_ = 0;
 };
 

@@ -157,20 +157,21 @@ namespace {
 // How large something must be to hide the gate from the sample: as wide as the gate if the light is parallel, else a
 // multiple of its distance (the chord between the directions to the gate's points that are furthest apart).
 double least_cover(const OcclusionPyramid& pyramid) {
-    double largest = 0.0;
-    for (const dvec3& a : pyramid.gate_points())
-        for (const dvec3& b : pyramid.gate_points()) {
-            if (pyramid.parallel) {
-                const dvec3 apart = b - a;
-                largest = std::max(largest, glm::length(apart - glm::dot(apart, pyramid.apex) * pyramid.apex));
-                continue;
-            }
-            const dvec3 to_a = a - pyramid.apex, to_b = b - pyramid.apex;
-            const double lengths = glm::length(to_a) * glm::length(to_b);
-            if (lengths > 0.0) // half the angle's sine, from its cosine
-                largest = std::max(largest, std::sqrt(std::max(0.0, 2.0 - 2.0 * glm::dot(to_a, to_b) / lengths)));
-        }
-    return 0.999 * largest;
+    const std::span<const dvec3> gate = pyramid.gate_points();
+    std::array<dvec3, 12> seen; // places across parallel light, else directions
+    std::size_t count = 0;
+    double largest = 0.0; // square
+    for (const dvec3& point : gate) {
+        const dvec3 v = pyramid.parallel ? point - glm::dot(point, pyramid.apex) * pyramid.apex : point - pyramid.apex;
+        const double length = pyramid.parallel ? 1.0 : glm::length(v);
+        if (!(length > 0.0))
+            continue;
+        seen[count] = v / length;
+        for (std::size_t i = 0; i < count; ++i)
+            largest = std::max(largest, glm::dot(seen[count] - seen[i], seen[count] - seen[i]));
+        ++count;
+    }
+    return 0.999 * std::sqrt(largest);
 }
 
 // The whole box is deeper in the region than what merely touches it.

@@ -49,6 +49,7 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
         return false;
     }
     patches_.finish();
+    make_outlines();
     full_counts_.assign(static_states_.size(), 0);
     partial_counts_.assign(static_states_.size(), 0);
     make_clusters();
@@ -171,34 +172,27 @@ PairState VisibilityDatabase::decide_box(const SurfacePatch& patch, const LightS
 // Movers shadow themselves, so all that static geometry can add is to hide them: if their middle is in sight, it does
 // not.
 PairState VisibilityDatabase::decide_mover(const MovingBlocker& mover, const LightSample& sample) const {
-    const auto pyramid = pyramid_of_box(sample, mover.box());
-    if (!pyramid)
+    const auto gate = gate_of_box(sample, mover.box());
+    if (!gate)
         return PairState::unlit;
     const dvec3 middle = mover.box().centre;
     const bool parallel = sample.kind == SampleKind::directional;
     const dvec3 to_light = parallel ? -1e4 * dvec3(sample.normal) : dvec3(sample.position) - middle;
     if (!static_blockers_.crosses_segment(middle, to_light))
         return PairState::partial;
-    return static_blockers_.covers(*pyramid) ? PairState::full : PairState::partial;
+    return static_blockers_.covers(*gate) ? PairState::full : PairState::partial;
 }
 
-void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed) {
+void VisibilityDatabase::change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed,
+                                        std::span<const MoverPlace> placed_next) {
     samples_ = samples;
     if (changed.empty())
         return;
-    // What movers did to these pairs is taken back before the pairs change.
-    std::vector<PairChange> changes;
     bool all_dynamic = true;
     for (const std::uint32_t sample : changed) {
         affected_[sample] = 1;
         all_dynamic = all_dynamic && samples[sample].dynamic;
-        for (auto& [bits, mover] : movers_) {
-            apply(sample, mover.footprint[sample], {}, changes);
-            mover.footprint[sample].clear();
-        }
     }
-    for (const PairChange& change : changes)
-        record(change.node, change.sample, change.before, change.after);
     if (all_dynamic) {
         for (const std::uint32_t sample : changed) {
             clusters_[cluster_of_[sample]].bounds = {};
@@ -207,31 +201,44 @@ void VisibilityDatabase::change_samples(std::span<const LightSample> samples, st
     } else {
         make_clusters();
     }
-    std::vector<std::vector<PairState>> states(changed.size());
+    change_static_states(changed);
+    for (const MoverPlace& place : placed_next)
+        if (const auto found = movers_.find(place.entity.bits()); found != movers_.end())
+            found->second.outdated = true;
+    std::vector<Mover*> movers;
+    movers.reserve(movers_.size());
+    for (auto& [bits, mover] : movers_)
+        if (!mover.outdated)
+            movers.push_back(&mover);
+    std::vector<ClusterPart> parts;
+    parts.reserve(changed.size());
+    for (const std::uint32_t& sample : changed)
+        parts.push_back({&clusters_[cluster_of_[sample]], {&sample, 1}});
+    set_mover_pairs(movers, changed);
+    replace_footprints(movers, parts);
+}
+
+// What static geometry does to samples that changed: mostly what it did before.
+void VisibilityDatabase::change_static_states(std::span<const std::uint32_t> changed) {
+    struct NodeState {
+        std::uint32_t node;
+        PairState state;
+    };
+    std::vector<std::vector<NodeState>> changes(changed.size());
     parallel_for_chunks(changed.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            states[i] = decide_all_static(changed[i]);
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::vector<PairState> states = decide_all_static(changed[i]);
+            for (std::uint32_t node = 0; node < states.size(); ++node)
+                if (states[node] != static_state(node, changed[i]))
+                    changes[i].push_back({node, states[node]});
+        }
     });
     for (std::size_t i = 0; i < changed.size(); ++i)
-        for (std::uint32_t node = 0; node < states[i].size(); ++node) {
-            const PairState before = state(node, changed[i]);
-            static_states_[at(node, changed[i])] = std::uint8_t(states[i][node]);
-            record(node, changed[i], before, state(node, changed[i]));
+        for (const NodeState& change : changes[i]) {
+            const PairState before = state(change.node, changed[i]);
+            static_states_[at(change.node, changed[i])] = std::uint8_t(change.state);
+            record(change.node, changed[i], before, state(change.node, changed[i]));
         }
-    FootprintWalk walk;
-    for (auto& [bits, mover] : movers_)
-        for (const std::uint32_t& sample : changed) {
-            set_mover_pair(mover.slot, sample, decide_mover(mover.blocker, samples_[sample]));
-            walk.cluster = &clusters_[cluster_of_[sample]];
-            walk.samples = {&sample, 1};
-            find_footprints(walk, mover);
-            changes.clear();
-            apply(sample, {}, walk.footprints[0], changes);
-            mover.footprint[sample] = walk.footprints[0];
-            for (const PairChange& change : changes)
-                record(change.node, change.sample, change.before, change.after);
-        }
-    counters_.tests += walk.tests;
 }
 
 // Each node has words of its own in the rows.
@@ -260,7 +267,8 @@ void VisibilityDatabase::recount() {
 
 std::uint64_t VisibilityDatabase::memory_bytes() const {
     std::uint64_t bytes = static_states_.size() * 5 + rows_.size() * 4 +
-                          patches_.nodes().size() * sizeof(SurfacePatch) + changes_.capacity() * sizeof(PairChange);
+                          patches_.nodes().size() * (sizeof(SurfacePatch) + sizeof(Outline)) +
+                          changes_.capacity() * sizeof(PairChange);
     for (const auto& [bits, mover] : movers_)
         for (const Footprint& list : mover.footprint)
             bytes += sizeof list + list.capacity() * 4;

@@ -4,6 +4,7 @@
 #include "engine/core/jobs.h"
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 namespace sunfleck::gi {
@@ -97,8 +98,17 @@ void VisibilityDatabase::change_movers(std::span<const MoverPlace> changed, std:
     }
     for (const EntityBits bits : leaving)
         remove_mover(bits);
+    std::vector<Mover*> movers;
+    movers.reserve(places.size());
     for (const auto& [bits, place] : places)
-        place_mover(*place, meshes);
+        if (Mover* const mover = place_mover(*place, meshes); mover != nullptr)
+            movers.push_back(mover);
+    std::vector<std::uint32_t> samples(movers.empty() ? 0 : samples_.size());
+    std::iota(samples.begin(), samples.end(), 0u);
+    set_mover_pairs(movers, samples);
+    for (const Mover* const mover : movers)
+        mark_affected(*mover);
+    replace_footprints(movers, all_clusters());
 }
 
 // Samples that see the mover where it is now: their maps show it.
@@ -118,9 +128,11 @@ void VisibilityDatabase::remove_mover(EntityBits bits) {
     const std::uint32_t slot = mover.slot;
     mark_affected(mover);
     mover.blocks = false;
-    replace_footprints(mover);
+    Mover* const movers[] = {&mover};
+    replace_footprints(movers, all_clusters());
     mover_slots_[slot] = ecs::null_entity;
-    set_mover_row(slot);
+    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
+        set_mover_pair(slot, sample, PairState::unlit);
     movers_.erase(found);
 }
 
@@ -141,14 +153,14 @@ VisibilityDatabase::Mover& VisibilityDatabase::add_mover(const MoverPlace& place
     return mover;
 }
 
-// Does nothing where the mover is known and nothing about it changed.
-void VisibilityDatabase::place_mover(const MoverPlace& place, const scene::MeshStore& meshes) {
+// Null where the mover is known and nothing about it changed; else its pairs and footprints are still to be found.
+VisibilityDatabase::Mover* VisibilityDatabase::place_mover(const MoverPlace& place, const scene::MeshStore& meshes) {
     const auto found = movers_.find(place.entity.bits());
     const bool added = found == movers_.end();
     Mover& mover = added ? add_mover(place) : found->second;
     if (!added && mover.matrix == place.matrix && mover.blocks == place.blocks &&
-        unlit_slots_[mover.slot] == !place.lit && mover.revision == place.revision)
-        return;
+        unlit_slots_[mover.slot] == !place.lit && mover.revision == place.revision && !mover.outdated)
+        return nullptr;
     mark_affected(mover);
     if (added || mover.revision != place.revision)
         mover.blocker = MovingBlocker(meshes[place.mesh], place.solid);
@@ -157,24 +169,20 @@ void VisibilityDatabase::place_mover(const MoverPlace& place, const scene::MeshS
     unlit_slots_[mover.slot] = !place.lit;
     mover.matrix = place.matrix;
     mover.blocker.place(place.matrix);
-    set_mover_row(mover.slot);
-    mark_affected(mover);
-    replace_footprints(mover);
+    mover.outdated = false;
+    return &mover;
 }
 
-// Of the mover in a slot against static geometry; of a free slot, everything is unlit.
-void VisibilityDatabase::set_mover_row(std::uint32_t slot) {
-    const auto mover = movers_.find(mover_slots_[slot].bits());
-    std::vector<PairState> fixed(samples_.size(), PairState::unlit);
-    if (mover != movers_.end() && !mover_slots_[slot].is_null()) {
-        counters_.tests += samples_.size();
-        parallel_for_chunks(samples_.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t sample = begin; sample < end; ++sample)
-                fixed[sample] = decide_mover(mover->second.blocker, samples_[sample]);
-        });
-    }
-    for (std::uint32_t sample = 0; sample < samples_.size(); ++sample)
-        set_mover_pair(slot, sample, fixed[sample]);
+// Of movers against static geometry.
+void VisibilityDatabase::set_mover_pairs(std::span<Mover* const> movers, std::span<const std::uint32_t> samples) {
+    std::vector<PairState> fixed(movers.size() * samples.size());
+    counters_.tests += fixed.size();
+    parallel_for_chunks(fixed.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            fixed[i] = decide_mover(movers[i / samples.size()]->blocker, samples_[samples[i % samples.size()]]);
+    });
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+        set_mover_pair(movers[i / samples.size()]->slot, samples[i % samples.size()], fixed[i]);
 }
 
 void VisibilityDatabase::set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed) {

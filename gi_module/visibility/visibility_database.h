@@ -96,8 +96,10 @@ public:
     // Forgets the changes of the last frame. Once a frame, before the two below.
     void begin_frame();
     // Samples with these indices have changed (their values already have, where it is the same array); their number and
-    // which are dynamic have not. The patches stay.
-    void change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
+    // which are dynamic have not. The patches stay. `placed_next`: movers that change_movers or update_movers is called
+    // with next, which then finds what they shadow from the changed samples, too; until then that is as it was.
+    void change_samples(std::span<const LightSample> samples, std::span<const std::uint32_t> changed,
+                        std::span<const MoverPlace> placed_next = {});
     // Follows the movers. Either by those that are new or may have changed and those that are gone (of all others
     // nothing is looked at), or by the whole set, without which there is nothing to follow after a build. In any order;
     // states depend on the set alone.
@@ -169,25 +171,40 @@ private:
         std::uint32_t slot = 0;
         mat4 matrix{1.0f};
         bool blocks = true;
+        bool outdated = false; // samples have changed since its footprints were found
         MovingBlocker blocker;
         std::vector<Footprint> footprint; // by sample
     };
     struct Cluster {
         Bounds bounds;
+        float radius = 0.0f; // of the ball around the bounds; so in all of these
         std::vector<std::uint32_t> samples;
         bool unbounded = false; // directional samples
     };
+    // What of a patch decides most tests, in one line of the cache.
+    struct alignas(64) Outline {
+        Bounds bounds;
+        vec3 normal{0.0f}, corner{0.0f}; // of planar patches
+        float radius = 0.0f;
+        std::uint32_t first_child = shared::no_node;
+        bool planar = true;
+    };
     struct Group { // of root nodes
         Bounds bounds;
+        float radius = 0.0f;
         std::uint32_t left = 0, right = 0;
         std::vector<std::uint32_t> roots;
     };
     static constexpr std::size_t samples_per_cluster = 16;
-    // Footprints of one mover for samples of a cluster, while they are found.
-    struct FootprintWalk {
+    // Some samples of a cluster.
+    struct ClusterPart {
         const Cluster* cluster = nullptr;
-        const MovingBlocker* blocker = nullptr;
         std::span<const std::uint32_t> samples;
+    };
+    // Footprints of one mover for them, while they are found.
+    struct FootprintWalk {
+        ClusterPart part;
+        const MovingBlocker* blocker = nullptr;
         std::array<Footprint, samples_per_cluster> footprints;
         std::uint64_t tests = 0;
     };
@@ -204,25 +221,32 @@ private:
     void make_clusters();
     void make_groups();
     std::uint32_t make_group(std::vector<std::uint32_t> roots, std::size_t largest_leaf);
+    void make_outlines();
+    void change_static_states(std::span<const std::uint32_t> changed);
     void choose_exact_roots();
     bool is_exact(std::uint32_t node) const { return node >= is_exact_.size() || is_exact_[node] != 0; }
     bool may_split_more() const;
     void decide_coarse_roots(BuildProgress& progress);
     // Roots that a mover may shadow from a cluster of samples.
-    void candidate_roots(const Cluster& cluster, const Bounds& mover, std::uint32_t group, Footprint& roots,
+    void candidate_roots(const Cluster& cluster, const MovingBlocker& mover, std::uint32_t group, Footprint& roots,
                          std::uint64_t& tests) const;
+    static bool may_meet_hull(const Cluster& cluster, const Bounds& bounds, float radius, const MovingBlocker& mover);
+    static bool behind(const Outline& patch, const MovingBlocker& mover);
+    static bool may_shadow(const LightSample& light, const Outline& patch, const MovingBlocker& mover);
+    Blocking shadow_on(std::uint32_t node, const LightSample& light, const MovingBlocker& blocker) const;
     void find_footprints(FootprintWalk& walk, const Mover& mover) const;
     void descend(FootprintWalk& walk, std::uint32_t node, std::uint32_t active, std::uint32_t counting) const;
     void add_all(std::uint32_t node, std::uint32_t sample, Footprint& out) const;
     Footprint roots_for(const Cluster& cluster, const Mover& mover, std::uint64_t& tests) const;
     bool reaches(const Mover& mover, std::uint32_t sample) const;
-    void replace_footprints(Mover& mover);
+    std::vector<ClusterPart> all_clusters() const;
+    void replace_footprints(std::span<Mover* const> movers, std::span<const ClusterPart> parts);
     Mover& add_mover(const MoverPlace& place);
-    void place_mover(const MoverPlace& place, const scene::MeshStore& meshes);
+    Mover* place_mover(const MoverPlace& place, const scene::MeshStore& meshes);
     void remove_mover(EntityBits bits);
     void mark_affected(const Mover& mover);
     void apply(std::uint32_t sample, const Footprint& before, const Footprint& after, std::vector<PairChange>& changes);
-    void set_mover_row(std::uint32_t slot);
+    void set_mover_pairs(std::span<Mover* const> movers, std::span<const std::uint32_t> samples);
     void set_mover_pair(std::uint32_t slot, std::uint32_t sample, PairState fixed);
     void record(std::uint32_t node, std::uint32_t sample, PairState before, PairState after);
     bool counts(std::uint32_t node) const;
@@ -242,6 +266,7 @@ private:
     std::vector<Cluster> clusters_;
     std::vector<std::uint32_t> cluster_of_; // by sample
     std::vector<Group> groups_;
+    std::vector<Outline> outlines_;         // by node of the patches
     std::vector<std::uint8_t> is_exact_;    // by root; empty: all are
     std::map<EntityBits, Mover> movers_;    // ordered: results never depend on insertion
     std::vector<ecs::Entity> mover_slots_;  // node = static nodes + slot; null entity: free

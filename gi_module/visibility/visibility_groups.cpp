@@ -91,10 +91,10 @@ void VisibilityDatabase::decide_group(std::uint32_t group, const LightSample& sa
                                       std::vector<PairState>& states) const {
     const Group& node = groups_[group];
     const Bounds roomy{node.bounds.minimum - 1e-5f, node.bounds.maximum + 1e-5f};
-    const auto pyramid = pyramid_of_box(sample, OrientedBox::of(roomy));
-    if (!pyramid)
+    const auto gate = gate_of_box(sample, OrientedBox::of(roomy));
+    if (!gate)
         return decide_roots(group, PairState::unlit, states);
-    if (static_blockers_.covers(*pyramid))
+    if (static_blockers_.covers(*gate))
         return decide_roots(group, PairState::full, states);
     for (const std::uint32_t root : node.roots) {
         const SurfacePatch& patch = patches_.nodes()[root];
@@ -146,6 +146,18 @@ void VisibilityDatabase::make_clusters() {
         cluster.samples.push_back(order[i]);
         cluster_of_[order[i]] = std::uint32_t(clusters_.size() - 1);
     }
+    for (Cluster& cluster : clusters_)
+        cluster.radius = 0.5f * glm::length(cluster.bounds.extent());
+}
+
+void VisibilityDatabase::make_outlines() {
+    outlines_.clear();
+    outlines_.reserve(patches_.nodes().size());
+    for (const SurfacePatch& patch : patches_.nodes()) {
+        const vec3 corner = patch.planar ? vec3(patch.corners[0]) : vec3(0.0f);
+        outlines_.push_back({patch.bounds, vec3(patch.normal), corner, 0.5f * glm::length(patch.bounds.extent()),
+                             patch.first_child, patch.planar});
+    }
 }
 
 void VisibilityDatabase::make_groups() {
@@ -166,6 +178,7 @@ std::uint32_t VisibilityDatabase::make_group(std::vector<std::uint32_t> roots, s
         centres.add(patches_.nodes()[root].bounds.centre());
     }
     groups_[index].bounds = bounds;
+    groups_[index].radius = 0.5f * glm::length(bounds.extent());
     if (roots.size() <= largest_leaf) {
         groups_[index].roots = std::move(roots);
         return index;
