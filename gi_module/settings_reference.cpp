@@ -97,6 +97,15 @@ std::string views_section() {
     return text;
 }
 
+std::string overlays_section() {
+    std::string text = heading("Overlays", "Lines in the scene, in the editor's Views panel.",
+                               {"overlay", "what it shows", "colours"});
+    for (const Overlay* overlay : all_overlays())
+        text +=
+            row({"`" + std::string(overlay->name) + "`", std::string(overlay->tooltip), std::string(overlay->legend)});
+    return text;
+}
+
 } // namespace
 
 std::string settings_reference() {
@@ -107,7 +116,7 @@ std::string settings_reference() {
     // Not among the Settings of a System: sensors follow the fixed step, not frames.
     const SensorSettings sensors;
     text += settings_section({&SensorSettings::description(), &sensors});
-    return text + techniques_section() + sources_section() + counters_section() + views_section();
+    return text + techniques_section() + sources_section() + counters_section() + views_section() + overlays_section();
 }
 
 } // namespace sunfleck::gi

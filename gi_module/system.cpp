@@ -125,6 +125,41 @@ Status System::find_view() {
     return Error{"there is no view '" + std::string(input_.view) + "'"};
 }
 
+std::vector<ExplainedLight> System::explain(const ReceiverPoint& point, const raytrace::RayScene& rays) const {
+    const CellSet received =
+        cells_where([&](LightCell cell) { return cell.on_mover == point.on_mover && !cell.specular; });
+    std::vector<ExplainedLight> result;
+    for (std::size_t i = 0; i < techniques_.size(); ++i) {
+        const CellSet cells = plan_.lit_by(std::int32_t(i)) & received;
+        if (cells.none())
+            continue;
+        ExplainedLight part{techniques()[i].name};
+        if (auto shares = techniques_[i]->explain({point, rays, samples_, cells, settings_.shadows})) {
+            part.divided = true;
+            part.shares = std::move(*shares);
+        }
+        result.push_back(std::move(part));
+    }
+    return result;
+}
+
+Status System::draw_overlay(std::string_view name, OverlayLines& lines) {
+    const Services shared = services();
+    for (const Overlay& overlay : shared_overlays())
+        if (overlay.name == name) {
+            draw_shared_overlay(overlay.code, samples_, shared.visibility, lines);
+            return {};
+        }
+    for (std::size_t i = 0; i < techniques_.size(); ++i)
+        for (const Overlay& overlay : techniques()[i].overlays)
+            if (overlay.name == name) {
+                if (plan_.uses(std::int32_t(i)))
+                    techniques_[i]->draw_overlay(overlay, shared, lines);
+                return {};
+            }
+    return Error{"there is no overlay '" + std::string(name) + "'"};
+}
+
 void System::update_samples(const SceneView& scene) {
     const StageTimer timer(cpu_times_, "light samples");
     samples_.update(scene, settings_.sample_request(plan_), settings_, restart_, input_.keep_samples);

@@ -59,6 +59,12 @@ public:
     // Where precomputed data is kept from run to run; empty (the default): it is computed in every run.
     void set_cache_folder(std::filesystem::path folder) { cache_folder_ = std::move(folder); }
 
+    // What each technique's light gives a point of the scene, as it was at the last update; `rays` are those of that
+    // update. In the space that is lit.
+    std::vector<ExplainedLight> explain(const ReceiverPoint& point, const raytrace::RayScene& rays) const;
+    // Draws one of all_overlays(), by name; nothing while its owner lights nothing. An error if there is none.
+    Status draw_overlay(std::string_view name, OverlayLines& lines);
+
     // Numbers of the last frame; all_counters() says which there are.
     const Report& counters() const { return report_; }
     // Of the last update and add_passes.

@@ -17,6 +17,12 @@ Status Technique::light_pixels(const PixelStage&, Services&) {
     return Error{"this technique lights no pixels"};
 }
 
+std::optional<std::vector<LightShare>> Technique::explain(const PointQuestion&) const {
+    return std::nullopt;
+}
+
+void Technique::draw_overlay(const Overlay&, const Services&, OverlayLines&) const {}
+
 std::span<const TechniqueEntry> techniques() {
     return all_techniques();
 }
@@ -45,6 +51,18 @@ std::vector<const DebugView*> debug_views() {
     for (const TechniqueEntry& technique : techniques())
         for (const DebugView& view : technique.views)
             result.push_back(&view);
+    return result;
+}
+
+std::vector<const Overlay*> all_overlays() {
+    std::vector<const Overlay*> result;
+    const auto add = [&](std::span<const Overlay> overlays) {
+        for (const Overlay& overlay : overlays)
+            result.push_back(&overlay);
+    };
+    add(shared_overlays());
+    for (const TechniqueEntry& technique : techniques())
+        add(technique.overlays);
     return result;
 }
 

@@ -9,6 +9,8 @@
 #include "engine/core/stage_times.h"
 #include "engine/gpu/frame_graph.h"
 #include "engine/gpu/shader_library.h"
+#include "gi_module/inspection/light_shares.h"
+#include "gi_module/inspection/overlays.h"
 #include "gi_module/light_sum/light_sum.h"
 #include "gi_module/low_resolution/low_resolution.h"
 #include "gi_module/settings.h"
@@ -108,6 +110,10 @@ public:
     virtual Status light_pixels(const PixelStage& stage, Services& services);
     // Counters and memory of the last frame; for what the GPU counts, of the newest one that is complete.
     virtual void report(Report& report) const = 0;
+    // Which light gives how much of the irradiance that the technique gives a point, for tools. None: it cannot say.
+    virtual std::optional<std::vector<LightShare>> explain(const PointQuestion& question) const;
+    // Draws one of the technique's overlays, as things are after the last update.
+    virtual void draw_overlay(const Overlay& overlay, const Services& services, OverlayLines& lines) const;
 };
 
 struct TechniqueEntry {
@@ -133,6 +139,7 @@ struct TechniqueEntry {
     TechniqueSettings settings;
     std::span<const Counter> counters{};
     std::span<const DebugView> views{};
+    std::span<const Overlay> overlays{};
     std::span<const gpu::EmbeddedShader> (*shaders)() = nullptr;
     Result<std::unique_ptr<Technique>> (*create)(gpu::Device& device, gpu::PipelineStore& pipelines) = nullptr;
 };
@@ -146,5 +153,6 @@ void add_technique(const TechniqueEntry& entry);
 // Everything that is declared: of the rooms that techniques share, and of all techniques.
 std::vector<const Counter*> all_counters();
 std::vector<const DebugView*> debug_views();
+std::vector<const Overlay*> all_overlays();
 
 } // namespace sunfleck::gi

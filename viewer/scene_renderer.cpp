@@ -208,15 +208,6 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
     return {};
 }
 
-void SceneRenderer::draw_samples() {
-    debug_lines_->clear();
-    for (const gi::LightSample& sample : lighting_->samples()) {
-        const float brightest = std::max({sample.flux.x, sample.flux.y, sample.flux.z, 1e-12f});
-        debug_lines_->line(sample.position, sample.position + 0.12f * sample.normal, sample.flux / brightest);
-        debug_lines_->box({sample.position - 0.015f, sample.position + 0.015f}, sample.flux / brightest);
-    }
-}
-
 void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer,
                                 gpu::ResourceId irradiance, const gpu::UploadSlice& camera, gpu::ResourceId output) {
     render::CompositionInput composition;
@@ -245,10 +236,7 @@ void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuff
     };
     gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
     composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
-    if (request.show_samples && request.tone_map) {
-        draw_samples();
-        debug_lines_->add(*graph_, g_buffer, camera, current);
-    }
+    debug_lines_->add(*graph_, g_buffer, camera, current);
     if (smoothed) {
         const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
         if (drawn_with_edges)
@@ -266,6 +254,7 @@ void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuff
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
+    SUNFLECK_TRY(draw_lines(request));
     shared::CameraRow camera = camera_row(request);
     if (has_previous_camera_)
         camera.previous_view_projection = previous_camera_.view_projection;

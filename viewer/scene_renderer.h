@@ -24,11 +24,13 @@ struct FrameRequest {
     std::uint32_t screen_width = 0, screen_height = 0;
     bool simulate = true; // false: the caller has moved everything already
     std::uint32_t view = shared::view_final;
-    bool tone_map = true;      // false: scene-linear floats, for EXR
-    bool antialiasing = false; // PictureSettings; of the final picture with tone_map
-    float glare = 0.0f;        // the same
-    std::string lighting_view; // debug view of the lighting by name (gi::debug_views()), in place of irradiance
-    bool show_samples = false; // debug lines at the light samples
+    bool tone_map = true;              // false: scene-linear floats, for EXR
+    bool antialiasing = false;         // PictureSettings; of the final picture with tone_map
+    float glare = 0.0f;                // the same
+    std::string lighting_view;         // debug view of the lighting by name (gi::debug_views()), in place of irradiance
+    bool show_samples = false;         // debug lines at the light samples
+    std::vector<std::string> overlays; // overlays.h, by name; of tone-mapped pictures
+    std::optional<std::uint32_t> overlay_sample; // the light sample that overlays single out
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step of the movers
     std::uint32_t map_budget = 0xffffffffu;
@@ -125,6 +127,7 @@ private:
     void add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, gpu::ResourceId irradiance,
                      const gpu::UploadSlice& camera, gpu::ResourceId output);
     void draw_samples();
+    Status draw_lines(const FrameRequest& request);
     shared::CameraRow camera_row(const FrameRequest& request) const;
 
     gpu::Device& device_;

@@ -33,6 +33,7 @@ std::unique_ptr<Panel> make_hierarchy();
 std::unique_ptr<Panel> make_history();
 std::unique_ptr<Panel> make_inspector();
 std::unique_ptr<Panel> make_lighting();
+std::unique_ptr<Panel> make_pixel();
 std::unique_ptr<Panel> make_views();
 std::unique_ptr<Panel> make_counters();
 std::unique_ptr<Panel> make_compare();
@@ -61,7 +62,7 @@ private:
     Gizmo gizmo_;
     bool flying_ = false;
     ImVec2 pressed_{0, 0};
-    bool press_is_click_ = false;
+    bool press_is_click_ = false, press_inspects_ = false;
 };
 
 } // namespace sunfleck::editor

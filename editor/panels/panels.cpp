@@ -7,6 +7,7 @@ constexpr PanelEntry entries[] = {
     {"Hierarchy", "All entities, as a tree", Dock::left, make_hierarchy},
     {"Inspector", "The components of what is selected", Dock::right, make_inspector},
     {"Lighting", "Every setting of the lighting", Dock::right, make_lighting},
+    {"Pixel", "A place of the picture: its surface, and which light gives it how much", Dock::right, make_pixel},
     {"Views", "What the viewport shows: the picture, or false colours", Dock::bottom, make_views},
     {"Counters", "What the lighting counts in a frame", Dock::bottom, make_counters},
     {"Compare", "Against the path tracer or other settings; presets", Dock::bottom, make_compare},

@@ -83,6 +83,23 @@ void icon(Session& session, Entity entity, vec3 place) {
                    ImVec2(centre.x - radius, centre.y - radius), ImVec2(centre.x + radius, centre.y + radius));
 }
 
+// A cross where a pixel was looked into.
+void mark_inspected(const Session& session) {
+    const auto pixel = session.scene.inspected();
+    if (pixel == nullptr || pixel->report.entity.is_null())
+        return;
+    const vec3 place = project(session.camera.view(), viewport_size(session), pixel->report.position);
+    if (place.z < scene::camera_near)
+        return;
+    const vec2 centre = viewport_corner(session) + vec2(place);
+    const float arm = 0.6f * ui::unit();
+    for (const float width : {3.5f, 1.5f})
+        for (const vec2 along : {vec2(arm, 0.0f), vec2(0.0f, arm)})
+            ImGui::GetWindowDrawList()->AddLine(
+                ImVec2(centre.x - along.x, centre.y - along.y), ImVec2(centre.x + along.x, centre.y + along.y),
+                width > 2.0f ? IM_COL32(20, 18, 16, 220) : IM_COL32(255, 255, 255, 255), width);
+}
+
 struct Icon {
     Entity entity;
     vec3 place; // pixels and distance
@@ -217,6 +234,7 @@ void Viewport::toolbar(Session& session) {
     mode("Move", GizmoMode::move, "Drag an arrow, a square or the middle (W); Ctrl snaps");
     mode("Rotate", GizmoMode::rotate, "Drag a ring (E); Ctrl snaps");
     mode("Scale", GizmoMode::scale, "Drag a handle, or the middle for all (R); Ctrl snaps");
+    mode("Inspect", GizmoMode::inspect, "Click a pixel: what is there, and what lights it (I, or Alt and a click)");
     ImGui::SameLine(0.0f, ui::unit());
     if (ui::button(session.gizmo.local ? "Local##axes" : "World##axes", "Axes of the handles (X)"))
         session.gizmo.local = !session.gizmo.local;
@@ -236,6 +254,7 @@ void Viewport::overlay(Session& session) {
     if (session.view.show_icons)
         for (const Icon& one : icons(session))
             icon(session, one.entity, one.place);
+    mark_inspected(session);
     std::size_t outlines = 0;
     for (const Entity entity : document.selection())
         if (const std::optional<Placed> placed = place_of(document, entity);
@@ -261,14 +280,15 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
     ImGui::PopClipRect();
     if (hovered && ImGui::IsMouseClicked(0)) {
         pressed_ = ImGui::GetIO().MousePos;
-        press_is_click_ = !ImGui::GetIO().KeyAlt && !on_gizmo;
+        press_inspects_ = ImGui::GetIO().KeyAlt || session.gizmo.mode == GizmoMode::inspect;
+        press_is_click_ = press_inspects_ || !on_gizmo;
     }
     navigate(session, hovered || active);
     if (press_is_click_ && ImGui::IsMouseReleased(0)) {
         press_is_click_ = false;
         const ImVec2 now = ImGui::GetIO().MousePos;
         if (std::hypot(now.x - pressed_.x, now.y - pressed_.y) < 5.0f)
-            click(session);
+            press_inspects_ ? session.inspect(pointer_in_viewport(session)) : click(session);
     }
     toolbar(session);
     if (const std::string error = session.scene.status().error; !error.empty()) {

@@ -3,6 +3,7 @@
 #include "editor/panels/panel.h"
 #include "editor/window/fields.h"
 #include "gi_module/technique.h"
+#include "viewer/overlays.h"
 
 namespace sunfleck::editor {
 namespace {
@@ -30,6 +31,22 @@ void picture_views(Session& session) {
             session.view.lighting_view.clear();
             session.view.picture = view.code;
         }
+}
+
+void overlays(Session& session) {
+    ui::heading("Overlays");
+    for (const gi::Overlay* overlay : viewer::overlays()) {
+        const std::string name(overlay->name);
+        bool on = session.view.has_overlay(name);
+        if (ui::toggle(readable_name(name) + "##overlay " + name, on,
+                       std::string(overlay->tooltip) + "\n\nColours: " + std::string(overlay->legend)))
+            session.view.toggle_overlay(name);
+        if (session.view.has_overlay(name)) {
+            ImGui::PushTextWrapPos(0.0f);
+            ImGui::TextDisabled("%s", std::string(overlay->legend).c_str());
+            ImGui::PopTextWrapPos();
+        }
+    }
 }
 
 void lighting_views(Session& session) {
@@ -78,12 +95,14 @@ void legend(const Session& session) {
 
 void Views::draw(Session& session) {
     const ui::Scope scope("views");
-    if (!ImGui::BeginTable("views", 3, ImGuiTableFlags_SizingStretchSame))
+    if (!ImGui::BeginTable("views", 4, ImGuiTableFlags_SizingStretchSame))
         return;
     ImGui::TableNextColumn();
     picture_views(session);
     ImGui::TableNextColumn();
     lighting_views(session);
+    ImGui::TableNextColumn();
+    overlays(session);
     ImGui::TableNextColumn();
     ui::heading("Legend");
     legend(session);

@@ -3,9 +3,10 @@
 
 #include "editor/document/picking.h"
 #include "editor/window/comparison.h"
+#include "editor/window/fields.h"
 #include "editor/window/opening.h"
 #include "engine/scene/entity_templates.h"
-#include "gi_module/technique.h"
+#include "viewer/overlays.h"
 
 #include <algorithm>
 
@@ -161,6 +162,8 @@ void add_gizmo_commands(std::vector<Command>& list) {
     mode("Move", "Handles that move the selection", 'W', GizmoMode::move);
     mode("Rotate", "Rings that rotate the selection", 'E', GizmoMode::rotate);
     mode("Scale", "Handles that scale the selection", 'R', GizmoMode::scale);
+    mode("Inspect", "Clicks look into a pixel: its surface, and which light gives it how much", 'I',
+         GizmoMode::inspect);
     list.push_back({"Tools",
                     "Local axes",
                     "Handles along the axes of what is selected last",
@@ -184,6 +187,19 @@ void add_template_commands(std::vector<Command>& list) {
                         }});
 }
 
+void add_overlay_commands(std::vector<Command>& list) {
+    for (const gi::Overlay* overlay : viewer::overlays()) {
+        const std::string name(overlay->name);
+        list.push_back({"Overlays",
+                        readable_name(name),
+                        std::string(overlay->tooltip) + "\nColours: " + std::string(overlay->legend),
+                        {},
+                        [name](Session& session) { session.view.toggle_overlay(name); },
+                        {},
+                        [name](Session& session) { return session.view.has_overlay(name); }});
+    }
+}
+
 void add_view_commands(std::vector<Command>& list) {
     list.push_back(
         {"View", "Look at selection", "Or at the whole scene, if nothing is selected", {'F'}, look_at_selection});
@@ -204,13 +220,6 @@ void add_view_commands(std::vector<Command>& list) {
                     [](Session& session) { session.view.show_icons = !session.view.show_icons; },
                     {},
                     [](Session& session) { return session.view.show_icons; }});
-    list.push_back({"View",
-                    "Light samples",
-                    "A line for each, in its colour",
-                    {},
-                    [](Session& session) { session.view.show_samples = !session.view.show_samples; },
-                    {},
-                    [](Session& session) { return session.view.show_samples; }});
     list.push_back({"View",
                     "Flip",
                     "The scene, or what it is compared with",

@@ -38,6 +38,7 @@ Commands::Commands() {
     add_edit_commands(all_);
     add_template_commands(all_);
     add_show_commands(all_);
+    add_overlay_commands(all_);
     add_gizmo_commands(all_);
     add_view_commands(all_);
 }

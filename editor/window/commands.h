@@ -54,6 +54,7 @@ void add_edit_commands(std::vector<Command>& list);
 void add_show_commands(std::vector<Command>& list);
 void add_gizmo_commands(std::vector<Command>& list);
 void add_template_commands(std::vector<Command>& list);
+void add_overlay_commands(std::vector<Command>& list);
 void add_view_commands(std::vector<Command>& list);
 
 } // namespace sunfleck::editor

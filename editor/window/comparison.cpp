@@ -7,8 +7,8 @@ namespace sunfleck::editor {
 bool same_view(const ViewRequest& a, const ViewRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
            a.camera.vertical_field_of_view == b.camera.vertical_field_of_view && a.width == b.width &&
-           a.height == b.height && a.view == b.view && a.lighting_view == b.lighting_view &&
-           a.show_samples == b.show_samples && a.look.antialiasing == b.look.antialiasing &&
+           a.height == b.height && a.view == b.view && a.lighting_view == b.lighting_view && a.overlays == b.overlays &&
+           a.chosen_sample == b.chosen_sample && a.look.antialiasing == b.look.antialiasing &&
            a.look.glare == b.look.glare && a.ev100 == b.ev100 && a.playing == b.playing && a.read_back == b.read_back;
 }
 

@@ -277,7 +277,8 @@ void Gizmo::end(Session& session, bool keep) {
 }
 
 bool Gizmo::draw(Session& session, bool hovered) {
-    if (session.gizmo.mode == GizmoMode::none || session.document->selection().empty()) {
+    const bool has_handles = session.gizmo.mode != GizmoMode::none && session.gizmo.mode != GizmoMode::inspect;
+    if (!has_handles || session.document->selection().empty()) {
         if (dragging())
             end(session, false);
         return false;

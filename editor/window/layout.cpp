@@ -62,7 +62,10 @@ void Layout::dock(Session& session, Dock dock, ImVec2 size) {
             if (shown.entry->dock != dock)
                 continue;
             std::string& front = state_.front[std::size_t(dock)];
-            const bool bring = restore_front_ && front == shown.entry->name;
+            const bool asked = session.front == shown.entry->name;
+            const bool bring = asked || (restore_front_ && front == shown.entry->name);
+            if (asked)
+                session.front.clear();
             const bool open =
                 ImGui::BeginTabItem(shown.entry->name, nullptr, bring ? ImGuiTabItemFlags_SetSelected : 0);
             ui::note(std::string("tab ") + shown.entry->name, open ? "open" : "");

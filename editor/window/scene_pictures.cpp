@@ -1,6 +1,7 @@
 // How the scene thread draws: exposure, the frame, and the picture that is handed to the GUI.
 #include "editor/window/scene_thread.h"
 
+#include "editor/window/camera.h"
 #include "viewer/exposure.h"
 
 namespace sunfleck::editor {
@@ -17,7 +18,8 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.height = view_.height;
     request.view = view_.view;
     request.lighting_view = view_.lighting_view;
-    request.show_samples = view_.show_samples;
+    request.overlays = view_.overlays;
+    request.overlay_sample = view_.chosen_sample;
     request.antialiasing = view_.look.antialiasing;
     request.glare = view_.look.glare;
     request.keep_samples = light_is_slow_;
@@ -101,6 +103,49 @@ Status SceneThread::expose(viewer::FrameRequest& request) {
     }
     request.ev100 = given.value_or(automatic_ev100_);
     return {};
+}
+
+// The light that the picture has at the place, and what that is made of.
+Status SceneThread::look_into_pixel() {
+    viewer::SceneRenderer& renderer = copy_->renderer();
+    viewer::FrameRequest linear = frame_request();
+    linear.camera = inspection_->camera;
+    linear.width = inspection_->width;
+    linear.height = inspection_->height;
+    linear.tone_map = false;
+    linear.view = shared::view_irradiance;
+    linear.lighting_view.clear();
+    SUNFLECK_TRY(draw(linear, nullptr));
+    SUNFLECK_ASSIGN(const io::Picture light, renderer.read_back());
+    const auto place = [](float share, std::uint32_t size) {
+        return std::min(std::uint32_t(std::max(share, 0.0f) * float(size)), size - 1);
+    };
+    const std::uint32_t x = place(inspection_->x, linear.width), y = place(inspection_->y, linear.height);
+    auto answer = std::make_shared<InspectedPixel>();
+    answer->shown = vec3(light.pixels[std::size_t(y) * linear.width + x]);
+    const vec2 size(float(linear.width), float(linear.height));
+    const vec2 middle(float(x) + 0.5f, float(y) + 0.5f); // of the pixel, as its light is
+    answer->report = viewer::report_pixel(renderer, linear.camera.position, ray_through(linear.camera, size, middle));
+    answer->serial = inspection_->serial;
+    answer->revision = revision_;
+    {
+        const std::scoped_lock lock(mutex_);
+        inspected_ = std::move(answer);
+    }
+    wake_();
+    return {};
+}
+
+// Where something has changed since the last answer, and the picture has settled.
+void SceneThread::follow_inspection() {
+    if (!inspection_ || failed_ || frames_left_ > 0 || view_.playing || light_pending_)
+        return;
+    const std::array<std::uint64_t, 4> now{inspection_->serial, revision_, step_, status().builds};
+    if (now == inspected_state_)
+        return;
+    inspected_state_ = now;
+    if (const Status looked = look_into_pixel(); !looked && !stop_ && !cancelled_)
+        fail(looked.error());
 }
 
 Status SceneThread::draw_picture() {

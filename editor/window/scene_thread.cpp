@@ -73,6 +73,21 @@ void SceneThread::replace_shader(CompiledShader shader) {
     changed_.notify_one();
 }
 
+void SceneThread::inspect(std::optional<InspectRequest> request) {
+    {
+        const std::scoped_lock lock(mutex_);
+        next_inspection_ = std::move(request);
+        inspection_changed_ = true;
+        inspected_.reset();
+    }
+    changed_.notify_one();
+}
+
+std::shared_ptr<const InspectedPixel> SceneThread::inspected() const {
+    const std::scoped_lock lock(mutex_);
+    return inspected_;
+}
+
 std::shared_ptr<ScenePicture> SceneThread::picture() const {
     const std::scoped_lock lock(mutex_);
     return newest_;
@@ -86,7 +101,7 @@ SceneStatus SceneThread::status() const {
 bool SceneThread::has_work() const {
     const bool draws = copy_ != nullptr && !failed_ && view_.width > 0 && view_.height > 0;
     return next_change_.source != nullptr || view_changed_ || rewind_ || steps_ > 0 || !next_shaders_.empty() ||
-           (draws && (frames_left_ > 0 || view_.playing));
+           inspection_changed_ || (draws && (frames_left_ > 0 || view_.playing));
 }
 
 // What the GUI asked for becomes the thread's own. False: the thread ends.
@@ -113,6 +128,8 @@ bool SceneThread::take_work() {
         frames_left_ = std::max(frames_left_, frames_after_edit);
     }
     new_shaders_ = std::exchange(next_shaders_, {});
+    inspection_ = next_inspection_;
+    inspection_changed_ = false;
     if (std::exchange(view_changed_, false)) {
         if (next_view_.playing != view_.playing)
             last_frame_ = Clock::now();
@@ -142,6 +159,7 @@ void SceneThread::run() {
         follow_light();
         if (frames_left_ > 0 || view_.playing)
             frame();
+        follow_inspection();
     }
 }
 

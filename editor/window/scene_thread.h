@@ -12,7 +12,9 @@
 #include "editor/window/shader_watch.h"
 #include "viewer/lighting_change.h"
 #include "viewer/picture_settings.h"
+#include "viewer/pixel_report.h"
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
@@ -25,12 +27,29 @@ struct ViewRequest {
     scene::CameraView camera;
     std::uint32_t width = 0, height = 0; // pixels; 0: nothing is drawn
     std::uint32_t view = shared::view_final;
-    std::string lighting_view; // FrameRequest::lighting_view
-    bool show_samples = false;
+    std::string lighting_view;         // FrameRequest::lighting_view
+    std::vector<std::string> overlays; // FrameRequest::overlays
+    std::optional<std::uint32_t> chosen_sample;
     viewer::PictureSettings look;
     std::optional<float> ev100; // in place of the scene's, or of what the picture asks for
     bool playing = false;       // movers move
     bool read_back = false;     // settled pictures have their pixels on the CPU, too
+};
+
+// A place of the picture that is looked into, as a ray in the world: it stays where it is when the camera moves.
+struct InspectRequest {
+    scene::CameraView camera; // that it was chosen from
+    std::uint32_t width = 0, height = 0;
+    float x = 0.5f, y = 0.5f; // in the picture, shares of its width and height
+    std::uint64_t serial = 0; // another for every request
+};
+
+// What is there, once the picture has settled.
+struct InspectedPixel {
+    viewer::PixelReport report;
+    vec3 shown{0.0f};           // irradiance in the picture, W/m2
+    std::uint64_t serial = 0;   // of the request
+    std::uint64_t revision = 0; // of the document
 };
 
 // A finished picture, in its blit-source state. Its memory is used again when nobody holds it.
@@ -73,6 +92,10 @@ public:
     void step(std::uint32_t steps);
     // Movers stand where they start.
     void rewind();
+    // Answered now and whenever the settled picture changes; nothing is asked: no longer.
+    void inspect(std::optional<InspectRequest> request);
+    // The newest answer; null: there is none.
+    std::shared_ptr<const InspectedPixel> inspected() const;
     // From the next frame on. Where its pipeline cannot be made, status() says so and the old shader stays.
     void replace_shader(CompiledShader shader);
     // The newest picture; null before the first one.
@@ -95,6 +118,8 @@ private:
     Status draw(const viewer::FrameRequest& request, ScenePicture* picture);
     Status expose(viewer::FrameRequest& request);
     Status draw_picture();
+    Status look_into_pixel();
+    void follow_inspection();
     viewer::FrameRequest frame_request();
     bool go_on(float share);
     Result<std::shared_ptr<ScenePicture>> free_picture();
@@ -114,6 +139,9 @@ private:
     bool view_changed_ = false, rewind_ = false;
     std::vector<CompiledShader> next_shaders_;
     std::uint32_t steps_ = 0;
+    std::optional<InspectRequest> next_inspection_;
+    bool inspection_changed_ = false;
+    std::shared_ptr<const InspectedPixel> inspected_;
     std::shared_ptr<ScenePicture> newest_;
     SceneStatus status_;
 
@@ -126,6 +154,9 @@ private:
     std::vector<CompiledShader> new_shaders_;        // not in use yet
     SceneChange change_;                             // not applied yet
     ViewRequest view_;
+    std::optional<InspectRequest> inspection_;
+    // What the newest answer is of: request, document, step, lightings made so far.
+    std::array<std::uint64_t, 4> inspected_state_{};
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
     Clock::time_point build_began_, last_frame_;
     std::uint64_t step_ = 0, revision_ = 0, number_ = 0;

@@ -32,7 +32,8 @@ ViewRequest ViewOptions::request() const {
     ViewRequest result;
     result.view = picture;
     result.lighting_view = lighting_view;
-    result.show_samples = show_samples;
+    result.overlays = overlays;
+    result.chosen_sample = chosen_sample;
     result.look = look;
     result.ev100 = ev100;
     result.playing = playing;
@@ -50,6 +51,9 @@ void Session::take(std::shared_ptr<Document> opened) {
     view.playing = false;
     hidden.clear();
     locked.clear();
+    if (inspecting)
+        scene.inspect(std::nullopt);
+    view.chosen_sample.reset();
     const auto seen = viewer::find_camera(document->registry(), bounds_of_all(*document), "");
     if (seen)
         camera.set(*seen);
@@ -70,6 +74,22 @@ void Session::open(const std::filesystem::path& path) {
 void Session::open_now(const std::filesystem::path& path) {
     recovering.reset();
     opening = std::make_unique<Opening>(path, wake);
+}
+
+void Session::inspect(vec2 place) {
+    InspectRequest request;
+    request.camera = camera.view();
+    request.width = shown.width;
+    request.height = shown.height;
+    request.x = place.x / std::max(viewport_area.z, 1.0f);
+    request.y = place.y / std::max(viewport_area.w, 1.0f);
+    request.serial = inspecting ? inspecting->serial + 1 : 1;
+    if (request.width == 0 || request.height == 0)
+        return;
+    inspecting = request;
+    view.chosen_sample.reset();
+    scene.inspect(request);
+    front = "Pixel";
 }
 
 void Session::measure_cost(const std::string& setting) {

@@ -10,6 +10,7 @@
 #include "editor/window/scene_thread.h"
 #include "engine/app/window.h"
 
+#include <algorithm>
 #include <deque>
 #include <imgui.h>
 
@@ -44,17 +45,26 @@ private:
 struct ViewOptions {
     std::string lighting_view; // of gi::debug_views(); empty: none
     std::uint32_t picture = shared::view_final;
-    bool show_samples = false, show_grid = false, show_icons = true;
+    std::vector<std::string> overlays;          // of viewer::overlays()
+    std::optional<std::uint32_t> chosen_sample; // light sample that is singled out
+    bool show_grid = false, show_icons = true;
     float scale = 1.0f; // rendered pixels for each of the screen's, along a side
     viewer::PictureSettings look;
     std::optional<float> ev100;
     bool playing = false;
 
+    bool has_overlay(const std::string& name) const {
+        return std::find(overlays.begin(), overlays.end(), name) != overlays.end();
+    }
+    void toggle_overlay(const std::string& name) {
+        if (std::erase(overlays, name) == 0)
+            overlays.push_back(name);
+    }
     // The same for the scene thread, without camera and size.
     ViewRequest request() const;
 };
 
-enum class GizmoMode { none, move, rotate, scale };
+enum class GizmoMode { none, move, rotate, scale, inspect };
 struct GizmoOptions {
     GizmoMode mode = GizmoMode::move;
     bool local = false;                                               // along the axes of what is selected last
@@ -112,6 +122,12 @@ public:
     const app::InputState* input = nullptr; // of this frame
     ViewRequest shown;                      // what the scene thread was told last
     ImVec4 viewport_area{0, 0, 0, 0};       // x, y, width, height: pixels of the window
+
+    std::string front; // a panel that is to be brought to the front
+
+    // Looks into the pixel at a place of the viewport: what is there, and what lights it.
+    void inspect(vec2 place);
+    std::optional<InspectRequest> inspecting;
 
     // Replaces the document, as it is when it has been opened.
     void take(std::shared_ptr<Document> opened);

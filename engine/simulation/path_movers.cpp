@@ -121,4 +121,26 @@ void set_movers_to_step(ecs::Registry& registry, std::uint64_t step) {
     scene::update_world_transforms(registry);
 }
 
+std::vector<vec3> mover_path(const ecs::Registry& registry, ecs::Entity entity, std::uint32_t count) {
+    std::vector<vec3> places;
+    const auto* mover = registry.try_get<scene::Mover>(entity);
+    const auto* transform = registry.try_get<scene::Transform>(entity);
+    if (mover == nullptr || transform == nullptr || mover->path == MoverPath::none || count < 2)
+        return places;
+    const scene::MoverOrigin* origin = registry.try_get<scene::MoverOrigin>(entity);
+    const scene::Transform start = origin != nullptr ? origin->transform : *transform;
+    const mat4 world = scene::world_matrix(registry, entity);
+    const mat4 parent = world * glm::inverse(transform->matrix());
+    scene::MoverState state;
+    places.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double share = double(i) / double(count - 1);
+        state.progress = float(share);
+        const scene::Transform at =
+            pose(*mover, start, &state, registry.try_get<scene::SplinePath>(entity), share * double(mover->period));
+        places.push_back(vec3(parent * vec4(at.position, 1.0f)));
+    }
+    return places;
+}
+
 } // namespace sunfleck::simulation

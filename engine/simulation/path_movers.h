@@ -11,4 +11,8 @@ inline constexpr double step_seconds = 1.0 / 60.0;
 // change tick.
 void set_movers_to_step(ecs::Registry& registry, std::uint64_t step);
 
+// Where the mover's origin is in the world at `count` moments of one cycle (activated: of the way to its far end), the
+// first and the last included. Empty if it has no path.
+std::vector<vec3> mover_path(const ecs::Registry& registry, ecs::Entity entity, std::uint32_t count);
+
 } // namespace sunfleck::simulation

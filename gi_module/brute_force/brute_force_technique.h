@@ -14,6 +14,9 @@ public:
     Status update(const SceneView& scene, Services& services, CellSet cells) override;
     Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) override;
     void report(Report& report) const override;
+    std::optional<std::vector<LightShare>> explain(const PointQuestion& question) const override {
+        return sample_shares(question);
+    }
 
 private:
     std::unique_ptr<BruteForce> kernel_;

@@ -17,6 +17,9 @@ public:
     Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) override;
     Status light_pixels(const PixelStage& stage, Services& services) override;
     void report(Report& report) const override;
+    std::optional<std::vector<LightShare>> explain(const PointQuestion& question) const override {
+        return sample_shares(question);
+    }
 
     const ManyLight& lighting() const { return *lighting_; }
     const CurvedCharts& curved_charts() const { return curved_charts_; }

@@ -139,6 +139,29 @@ TEST_F(EditorWindow, ACrashLosesNoEdit) {
     EXPECT_TRUE(fs::is_empty(folder / "recovery")) << "a run that ends as it should leaves nothing";
 }
 
+// A click with the tool, and one with Alt: what is there, and lights whose shares make up the picture's light.
+TEST_F(EditorWindow, APixelSaysWhatLightsIt) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("viewport/Inspect"));
+    ASSERT_TRUE(editor->click("viewport/picture"));
+    ASSERT_TRUE(editor->appears("pixel/light 1"));
+    const double shown = std::stod(editor->value("pixel/in the picture"));
+    const double sum = std::stod(editor->value("pixel/sum of shares"));
+    EXPECT_GT(shown, 0.0);
+    EXPECT_NEAR(sum, shown, 0.1 * shown) << "of one pixel; EditorInspection measures many";
+    EXPECT_TRUE(editor->find("hierarchy/" + editor->value("pixel/surface")).has_value());
+    EXPECT_TRUE(editor->find("inspector/name") == std::nullopt) << "the tool selects nothing";
+
+    // Without its lamp the place is dark, which the panel follows by itself.
+    const std::string before = editor->value("pixel/sum of shares");
+    ASSERT_TRUE(editor->click("hierarchy/lamp"));
+    editor->key("Delete");
+    EXPECT_TRUE(editor->wait_until([&] { return editor->value("pixel/sum of shares") != before; }));
+    const auto report = editor->end();
+    EXPECT_EQ(report["validation_messages"], 0);
+}
+
 // Nothing is drawn while nothing happens, and pointers over panels draw no scene.
 TEST_F(EditorWindow, RestsWhileNothingHappens) {
     editor->start({small_scene});
@@ -183,6 +206,8 @@ TEST(EditorSources, PanelsNameNoComponentTechniqueOrSetting) {
         names.insert("\"" + std::string(view->name) + "\"");
     for (const gi::Counter* counter : gi::all_counters())
         names.insert("\"" + std::string(counter->name) + "\"");
+    for (const gi::Overlay* overlay : gi::all_overlays())
+        names.insert("\"" + std::string(overlay->name) + "\"");
     int files = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(SUNFLECK_SOURCE_DIR) / "editor/panels")) {
         const std::string text = read_file(entry.path()).value();

@@ -45,12 +45,14 @@ const Layers& allowed() {
         {"gi_module/harmonics", foundation},
         {"gi_module/light_sum", with(foundation, {"gi_module/transport"})},
         {"gi_module/light_sensors", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
+        {"gi_module/inspection",
+         with(foundation, {"gi_module/transport", "gi_module/light_sampling", "gi_module/visibility"})},
         {"gi_module/reference", with(foundation, {"gi_module/transport", "gi_module/light_sampling"})},
         {"gi_module/include/sunfleck", {"engine/core"}}, // what a foreign host sees
         {"gi_module", with(foundation, {"sunfleck", "gi_module/transport", "gi_module/light_sampling",
                                         "gi_module/shadows", "gi_module/visibility", "gi_module/low_resolution",
                                         "gi_module/light_sum", "gi_module/g_buffer", "gi_module/charts",
-                                        "gi_module/harmonics", "gi_module/light_sensors"})},
+                                        "gi_module/harmonics", "gi_module/light_sensors", "gi_module/inspection"})},
     };
     return layers;
 }

@@ -1,0 +1,227 @@
+// One place of the picture: its surface, and which light gives it how much.
+#include "editor/panels/panel.h"
+#include "editor/window/fields.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+namespace sunfleck::editor {
+namespace {
+
+// A light at the place, of any technique.
+struct Share {
+    const gi::LightShare* light;
+    float part = 0.0f, unshadowed = 0.0f; // of the sum's luminance
+};
+
+class Pixel final : public Panel {
+public:
+    void draw(Session& session) override;
+
+private:
+    void surface(Session& session, const viewer::PixelReport& report);
+    void summary(Session& session, const InspectedPixel& pixel);
+    void lamps(Session& session);
+    void list(Session& session);
+    void gather(const InspectedPixel& pixel);
+
+    std::shared_ptr<const InspectedPixel> shown_; // of the shares
+    std::vector<Share> shares_;                   // the largest first
+    float total_ = 0.0f;
+    bool hidden_too_ = false;
+    static constexpr std::size_t most_rows = 300;
+};
+
+std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0) {
+    char text[120];
+    std::snprintf(text, sizeof text, pattern, a, b, c);
+    return text;
+}
+
+std::string vector_text(vec3 value, const char* pattern = "%.3f  %.3f  %.3f") {
+    return format(pattern, double(value.x), double(value.y), double(value.z));
+}
+
+std::string light_text(vec3 irradiance) {
+    return format("%.4g W/m2", double(luminance(irradiance))) + "   (" + vector_text(irradiance, "%.3g, %.3g, %.3g") +
+           ")";
+}
+
+std::string percent(float share) {
+    return format(share < 0.001f ? "%.2f %%" : "%.1f %%", 100.0 * double(share));
+}
+
+std::string entity_name(Session& session, Entity entity) {
+    return session.document->exists(entity) ? session.document->name(entity) : "(not known)";
+}
+
+std::string bounces_text(std::uint32_t bounce) {
+    return bounce == 0 ? "straight" : bounce == 1 ? "1 bounce" : std::to_string(bounce) + " bounces";
+}
+
+void row(const std::string& name, const std::string& value, std::string_view tip = {}) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ui::label(name, tip, true);
+    ImGui::TableNextColumn();
+    ui::label(value);
+    ui::note(name, value);
+}
+
+void Pixel::gather(const InspectedPixel& pixel) {
+    shares_.clear();
+    total_ = std::max(luminance(pixel.report.irradiance()), 1e-30f);
+    for (const gi::ExplainedLight& part : pixel.report.light)
+        for (const gi::LightShare& light : part.shares)
+            shares_.push_back({&light, luminance(light.irradiance) / total_, luminance(light.unshadowed) / total_});
+    std::stable_sort(shares_.begin(), shares_.end(), [](const Share& a, const Share& b) {
+        return a.part != b.part ? a.part > b.part : a.unshadowed > b.unshadowed;
+    });
+}
+
+void Pixel::surface(Session& session, const viewer::PixelReport& report) {
+    ui::heading("Surface");
+    const std::string name = entity_name(session, report.entity);
+    if (ui::button(name + "##surface", "Selects it", session.document->exists(report.entity)))
+        session.document->select({report.entity});
+    ui::note("surface", name);
+    ImGui::SameLine();
+    ImGui::TextDisabled(report.moves ? "moves" : "stands still");
+    if (!ImGui::BeginTable("surface", 2, ImGuiTableFlags_SizingStretchProp))
+        return;
+    row("position", vector_text(report.position) + " m");
+    row("normal", vector_text(report.normal), "That light is received by");
+    row("distance", format("%.4g m", double(report.distance)), "From the camera");
+    ImGui::EndTable();
+    if (!ImGui::TreeNode("Material at this place"))
+        return;
+    if (ImGui::BeginTable("material", 2, ImGuiTableFlags_SizingStretchProp)) {
+        for (const viewer::PixelReport::Value& value : report.material_values())
+            row(readable_name(value.name), value.value + (value.unit.empty() ? "" : " " + value.unit));
+        ImGui::EndTable();
+    }
+    ImGui::TreePop();
+}
+
+void Pixel::summary(Session& session, const InspectedPixel& pixel) {
+    ui::heading("Light that arrives");
+    if (!ImGui::BeginTable("light", 2, ImGuiTableFlags_SizingStretchProp))
+        return;
+    const vec3 sum = pixel.report.irradiance();
+    row("in the picture", light_text(pixel.shown), "Irradiance of this pixel, as the techniques have computed it");
+    row("sum of shares", light_text(sum), "Of all lights below, each tested by a ray");
+    for (const gi::ExplainedLight& part : pixel.report.light)
+        row("by " + std::string(part.technique), part.divided ? light_text(part.sum()) : "not divided by lights");
+    ImGui::EndTable();
+    if (session.inspecting && session.inspecting->serial == pixel.serial &&
+        pixel.revision != session.document->revision())
+        ImGui::TextDisabled("Older than the last edit");
+}
+
+// How much comes from each lamp, straight and reflected.
+void Pixel::lamps(Session& session) {
+    struct Parts {
+        float straight = 0.0f, reflected = 0.0f;
+    };
+    std::map<std::string, std::pair<Entity, Parts>> by_lamp;
+    for (const Share& share : shares_) {
+        auto& [entity, parts] = by_lamp[entity_name(session, share.light->emitter)];
+        entity = share.light->emitter;
+        (share.light->bounce == 0 ? parts.straight : parts.reflected) += share.part;
+    }
+    ui::heading("Lamps");
+    if (!ImGui::BeginTable("lamps", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+        return;
+    for (const char* name : {"lamp", "straight", "reflected", "share"})
+        ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    for (const auto& [name, lamp] : by_lamp) {
+        const auto& [entity, parts] = lamp;
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        if (ui::choice(name + "##lamp", session.document->selected(entity), "Selects it") &&
+            session.document->exists(entity))
+            session.document->select({entity});
+        for (const float part : {parts.straight, parts.reflected, parts.straight + parts.reflected}) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(percent(part).c_str());
+        }
+        ui::note("lamp " + name, percent(parts.straight + parts.reflected));
+    }
+    ImGui::EndTable();
+}
+
+void Pixel::list(Session& session) {
+    ui::heading("Lights");
+    ui::toggle("Hidden ones, too", hidden_too_, "Lights that something stands in the way of");
+    if (session.view.chosen_sample) {
+        ImGui::SameLine();
+        if (ui::button("Choose none", "No light sample is singled out in overlays"))
+            session.view.chosen_sample.reset();
+    }
+    if (!ImGui::BeginTable("shares", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+        return;
+    for (const char* name : {"light", "way", "W/m2", "share"})
+        ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    std::size_t rows = 0;
+    for (const Share& share : shares_) {
+        const bool hidden = share.part <= 0.0f;
+        if ((hidden && !hidden_too_) || ++rows > most_rows)
+            continue;
+        const gi::LightShare& light = *share.light;
+        const std::string number = light.sample ? std::to_string(*light.sample) : std::to_string(rows);
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        const bool chosen = light.sample && session.view.chosen_sample == light.sample;
+        if (ui::choice(number + " " + entity_name(session, light.emitter) + "##light " + number, chosen,
+                       "Singles it out in overlays of light samples and patches") &&
+            light.sample)
+            session.view.chosen_sample = chosen ? std::nullopt : light.sample;
+        ui::note("light " + std::to_string(rows), percent(share.part));
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(bounces_text(light.bounce).c_str());
+        ImGui::TableNextColumn();
+        const std::string amount = format("%.3g", double(luminance(hidden ? light.unshadowed : light.irradiance)));
+        ImGui::TextUnformatted((hidden ? "(" + amount + ")" : amount).c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(hidden ? "hidden" : percent(share.part).c_str());
+    }
+    ImGui::EndTable();
+    if (rows > most_rows)
+        ImGui::TextDisabled("and %d more", int(rows - most_rows));
+}
+
+void Pixel::draw(Session& session) {
+    const ui::Scope scope("pixel");
+    const std::shared_ptr<const InspectedPixel> pixel = session.scene.inspected();
+    if (pixel == nullptr) {
+        ImGui::PushTextWrapPos(0.0f);
+        ImGui::TextDisabled(session.inspecting ? "Waits for the picture to settle"
+                                               : "Choose Inspect (I) over the picture and click a place, or click it "
+                                                 "holding Alt: what is there, and which lights give it how much");
+        ImGui::PopTextWrapPos();
+        return;
+    }
+    if (pixel != shown_) {
+        shown_ = pixel;
+        gather(*pixel);
+    }
+    if (pixel->report.entity.is_null()) {
+        ImGui::TextDisabled("There is no surface");
+        return;
+    }
+    surface(session, pixel->report);
+    summary(session, *pixel);
+    lamps(session);
+    list(session);
+}
+
+} // namespace
+
+std::unique_ptr<Panel> make_pixel() {
+    return std::make_unique<Pixel>();
+}
+
+} // namespace sunfleck::editor

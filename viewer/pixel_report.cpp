@@ -1,0 +1,56 @@
+#include "viewer/pixel_report.h"
+
+namespace sunfleck::viewer {
+
+vec3 PixelReport::irradiance() const {
+    vec3 sum(0.0f);
+    for (const gi::ExplainedLight& part : light)
+        sum += part.sum();
+    return sum;
+}
+
+std::vector<PixelReport::Value> PixelReport::material_values() const {
+    std::vector<Value> values;
+    const std::vector<Field>& fields = scene::Material::description().fields;
+    values.reserve(fields.size());
+    for (const Field& field : fields)
+        values.push_back({std::string(field.name), field_to_text(field, &material), std::string(field.unit)});
+    return values;
+}
+
+PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction) {
+    const scene::SceneSpace& space = renderer.space();
+    const raytrace::RayScene& rays = renderer.rays();
+    PixelReport report;
+    raytrace::Ray ray{space.point(origin), glm::normalize(direction)};
+    // What is invisible from behind lets the eye through, as in the picture.
+    constexpr int most_layers = 64;
+    for (int layer = 0; layer < most_layers; ++layer) {
+        const auto hit = rays.closest_hit(ray);
+        if (!hit)
+            return report;
+        const raytrace::SurfacePoint surface = rays.surface(ray, *hit);
+        const bool front = glm::dot(surface.geometric_normal, ray.direction) < 0.0f;
+        if (!front && !surface.material.double_sided) {
+            ray.minimum = hit->distance + 2.0f * surface.offset;
+            continue;
+        }
+        report.moves = !scene::is_static(renderer.registry(), surface.entity);
+        const gi::ReceiverPoint point = gi::ReceiverPoint::of(surface, ray.direction, report.moves);
+        report.entity = surface.entity;
+        report.position = point.position * space.unit + space.origin;
+        report.normal = point.normal;
+        report.geometric_normal = point.geometric_normal;
+        report.distance = hit->distance * space.unit;
+        report.material = surface.material;
+        report.light = renderer.lighting().explain(point, rays);
+        for (gi::ExplainedLight& part : report.light)
+            for (gi::LightShare& share : part.shares)
+                if (!share.parallel)
+                    share.position = share.position * space.unit + space.origin;
+        return report;
+    }
+    return report;
+}
+
+} // namespace sunfleck::viewer
