@@ -27,26 +27,35 @@ float depth_at(ivec2 pixel) {
     return texelFetch(depth_image, clamp(pixel, ivec2(0), ivec2(constants.width, constants.height) - 1), 0).r;
 }
 
-// Change of depth from the pixel to the next one along `across`. On a plane, depth is linear in screen space: of the
-// two neighbours on either side, those are used whose line extrapolates better to this pixel, so that no difference
-// spans an edge.
-float depth_slope(ivec2 pixel, ivec2 across, float depth) {
-    const float before = depth_at(pixel - across), after = depth_at(pixel + across);
-    const float miss_before = abs(2.0 * before - depth_at(pixel - 2 * across) - depth);
-    const float miss_after = abs(2.0 * after - depth_at(pixel + 2 * across) - depth);
+// Changes of depth from the pixel to the next one to the right and down. On a plane, depth is linear in screen space: of
+// the four corners round the pixel, that one is used whose five depths are nearest to lying on a plane with this pixel's.
+// So no difference spans an edge, and both are those of the same triangle.
+vec2 depth_slopes(ivec2 pixel, float depth) {
     const ivec2 size = ivec2(constants.width, constants.height);
-    const bool has_before = all(greaterThanEqual(pixel - 2 * across, ivec2(0)));
-    const bool has_after = all(lessThan(pixel + 2 * across, size));
-    const bool take_after = has_after && (!has_before || miss_after < miss_before);
-    return take_after ? after - depth : depth - before;
+    vec2 best = vec2(0.0);
+    float least = 3.4e38;
+    for (int corner = 0; corner < 4; ++corner) {
+        const ivec2 toward = 1 - 2 * ivec2(corner & 1, corner >> 1), across = ivec2(toward.x, 0), along = ivec2(0, toward.y);
+        if (any(lessThan(pixel + 2 * toward, ivec2(0))) || any(greaterThanEqual(pixel + 2 * toward, size)))
+            continue;
+        const float x = depth_at(pixel + across), y = depth_at(pixel + along);
+        const float miss = abs(2.0 * x - depth_at(pixel + 2 * across) - depth) +
+                           abs(2.0 * y - depth_at(pixel + 2 * along) - depth) +
+                           abs(x + y - depth_at(pixel + toward) - depth);
+        if (miss < least) {
+            least = miss;
+            best = vec2(x - depth, y - depth) * vec2(toward);
+        }
+    }
+    return best;
 }
 
 // The plane of this pixel's surface, from its neighbours: near * dot(plane, ray) is the depth at every pixel. Its
 // direction is the normal, its length the reciprocal of the camera's distance from the plane.
 vec3 plane_of(ivec2 pixel, float depth) {
+    const vec2 slope = depth_slopes(pixel, depth);
     const vec3 ray = camera_ray(camera, vec2(pixel) + 0.5);
     const vec3 right = camera.right.xyz * (2.0 / camera.forward.w), down = camera.down.xyz * (2.0 / camera.right.w);
-    const vec2 slope = vec2(depth_slope(pixel, ivec2(1, 0), depth), depth_slope(pixel, ivec2(0, 1), depth));
     const vec3 sum = depth * cross(right, down) + slope.x * cross(down, ray) + slope.y * cross(ray, right);
     return sum / (dot(ray, cross(right, down)) * camera.position.w);
 }
