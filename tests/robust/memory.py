@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""Memory while frames go on: resident memory and the bytes that are allocated, over the last half of a long run.
+
+Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool
+Resident memory may grow by less than 1 MiB in the last half, and allocated bytes, as counted by count_allocations.c, by
+less than 64 kB: buffers that keep the most that any frame needed grow now and then. Both are compared as the least of a
+tenth of the run with the least of another: what frames in flight hold comes and goes.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+
+def resident(pid):
+    with open(f"/proc/{pid}/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def watch(command, counter, environment):
+    """(resident, allocated) of the process, some 20 times a second, and its exit status."""
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    samples = []
+    while process.poll() is None:
+        try:
+            samples.append((resident(process.pid), int.from_bytes(counter.read_bytes()[:8], "little")))
+        except (OSError, IndexError):
+            pass
+        time.sleep(.05)
+    return samples, process.returncode, process.stderr.read().decode(errors="replace")
+
+
+def grown(values):
+    """From the middle of the run to its end."""
+    tenth = max(1, len(values) // 10)
+    return min(values[-tenth:]) - min(values[len(values) // 2:len(values) // 2 + tenth])
+
+
+def main():
+    build, frames = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else "20000"
+    runs = {"demo": ["sunfleck_demo", "--headless", "--size", "64x36", "--pictures", "0", "--frames", frames, "-o", "out"],
+            "tool": ["sunfleck", "render", "four_pillars", "--size", "64x36", "--lights", "64", "--frames", frames, "--orbit",
+                     "0.25", "-o", "out.png"]}
+    wrong = 0
+    print("| program | frames | s | resident, MB | grows, kB | allocated, MB | grows, kB |\n|---|---|---|---|---|---|---|")
+    for name, (program, *rest) in runs.items():
+        with tempfile.TemporaryDirectory() as folder:
+            counter = pathlib.Path(folder) / "allocated"
+            environment = dict(os.environ, LD_PRELOAD=str(build / "lib/libsunfleck_count_allocations.so"),
+                               SUNFLECK_ALLOCATED=str(counter))
+            begin = time.time()
+            os.chdir(folder)
+            samples, status, output = watch([str(build / "bin" / program), *rest], counter, environment)
+            pages, allocated = [s[0] for s in samples], [s[1] for s in samples]
+            right = status == 0 and grown(pages) < 1 << 20 and grown(allocated) < 65536
+            wrong += not right
+            print(f"| {name} | {frames} | {time.time() - begin:.0f} | {pages[-1] / 1e6:.1f} | {grown(pages) / 1e3:.0f} | "
+                  f"{allocated[-1] / 1e6:.1f} | {grown(allocated) / 1e3:.0f} |", flush=True)
+            if status != 0:
+                print(output[-500:])
+    print(f"{len(runs)} tried, {wrong} wrong")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
