@@ -13,7 +13,7 @@ Result<std::unique_ptr<PunctualKernel>> PunctualKernel::create(gpu::Device& devi
     gpu::BufferDescription unused;
     unused.name = "unused texels";
     unused.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-    unused.texel_format = VK_FORMAT_R32_SFLOAT;
+    unused.texel_format = VK_FORMAT_R32_UINT;
     SUNFLECK_ASSIGN(kernel->no_texels_, gpu::Buffer::create(device, unused));
     return kernel;
 }

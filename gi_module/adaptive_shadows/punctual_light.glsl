@@ -21,13 +21,13 @@ layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform Lights { TileLight lights[lights_per_pass]; };
 layout(set = 0, binding = 4) readonly buffer Table { uint table[]; };
-layout(set = 0, binding = 5) uniform samplerBuffer map_texels;
+layout(set = 0, binding = 5) uniform usamplerBuffer map_words;
 layout(set = 0, binding = 6) buffer Sums { vec4 sums[]; };
 layout(push_constant) uniform Constants { PunctualConstants constants; };
 
 float map_side() { return float(tile_side); }
 float map_value(uint slot, ivec2 texel) {
-    return texelFetch(map_texels, (int(slot) * int(tile_side) + texel.y) * int(tile_side) + texel.x).r;
+    return uintBitsToFloat(texelFetch(map_words, (int(slot) * int(tile_side) + texel.y) * int(tile_side) + texel.x).r);
 }
 
 #include "gi_module/shadows/shadowed_light.glsl"
@@ -100,7 +100,7 @@ float tile_visibility(TileLight light, Pixel pixel) {
     vec4 lit, vote;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const float on_plane = plane_value(light, receiver, uv + step * vec2(i & 1, i >> 1));
-        const float stored = texelFetch(map_texels, first + (i & 1) + (i >> 1) * int(tile_side)).r;
+        const float stored = uintBitsToFloat(texelFetch(map_words, first + (i & 1) + (i >> 1) * int(tile_side)).r);
         const vec2 result = texel_vote(on_plane, receiver.place.z, shadow_filter_window * receiver.bias,
                                        shadow_filter_slack * receiver.reach, depth_step(map_bits), stored);
         lit[i] = result.x;

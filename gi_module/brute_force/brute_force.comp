@@ -26,8 +26,8 @@ layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform Lights { LightRow uniform_lights[lights_per_batch]; };
 layout(set = 0, binding = 4) readonly buffer StoredLights { LightRow stored_lights[]; };
-layout(set = 0, binding = 5) uniform samplerBuffer map_texels;
-layout(set = 0, binding = 6) readonly buffer MapWords { uint map_words[]; };
+layout(set = 0, binding = 5) uniform usamplerBuffer map_words;
+layout(set = 0, binding = 6) readonly buffer MapWords { uint stored_map_words[]; };
 layout(set = 0, binding = 7) buffer Accumulation { vec4 accumulation[]; }; // rgb: W/m2; a: luminance clamped off
 layout(set = 0, binding = 8) writeonly uniform image2D output_image;
 layout(set = 0, binding = 9) buffer ClampedSums { vec4 clamped_sums[]; }; // a work group: flux W, irradiance, pixels, area
@@ -35,15 +35,13 @@ layout(push_constant) uniform Constants { BruteForceConstants constants; };
 
 shared vec4 group_sums[64];
 
+#include "gi_module/shadows/map_words.glsl"
+
 float map_value(uint slot, ivec2 texel) {
     const int resolution = int(constants.map_resolution);
     const int place = (int(slot) * resolution + texel.y) * resolution + texel.x;
-    if (maps == maps_texel_buffer)
-        return texelFetch(map_texels, place).r;
-    if (map_bits == 32)
-        return uintBitsToFloat(map_words[place]);
-    const uint word = map_words[place >> 1];
-    return float((place & 1) != 0 ? word >> 16 : word & 0xffffu) / 65535.0;
+    const int word = map_word(place);
+    return value_in_word(maps == maps_texel_buffer ? texelFetch(map_words, word).r : stored_map_words[word], place);
 }
 
 float map_side() { return float(constants.map_resolution); }

@@ -28,7 +28,7 @@ Result<std::unique_ptr<BruteForce>> BruteForce::create(gpu::Device& device, gpu:
     gpu::BufferDescription unused;
     unused.name = "unused texels";
     unused.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    unused.texel_format = VK_FORMAT_R32_SFLOAT;
+    unused.texel_format = VK_FORMAT_R32_UINT;
     SUNFLECK_ASSIGN(technique->unused_texels_, gpu::Buffer::create(device, unused));
     return technique;
 }

@@ -21,15 +21,18 @@ layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
 layout(set = 0, binding = 1) readonly buffer Changes { uint changes[]; };
 layout(set = 0, binding = 2) readonly buffer Lights { LightRow lights[]; };
-layout(set = 0, binding = 3) uniform samplerBuffer static_maps;
+layout(set = 0, binding = 3) uniform usamplerBuffer static_map_words;
 layout(set = 0, binding = 4) buffer Sums { ivec4 sums[]; };
 layout(set = 0, binding = 5) readonly buffer Points { CurvedPoint points[]; };
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
+#include "gi_module/shadows/map_words.glsl"
+
 float map_side() { return float(constants.map_resolution); }
 float map_value(uint slot, ivec2 texel) {
     const int side = int(constants.map_resolution);
-    return texelFetch(static_maps, (int(slot) * side + texel.y) * side + texel.x).r;
+    const int place = (int(slot) * side + texel.y) * side + texel.x;
+    return value_in_word(texelFetch(static_map_words, map_word(place)).r, place);
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 

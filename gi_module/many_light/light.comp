@@ -25,23 +25,26 @@ layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
 layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform Lights { LightRow light_rows[lights_per_batch]; };
-layout(set = 0, binding = 4) uniform samplerBuffer map_texels;
+layout(set = 0, binding = 4) uniform usamplerBuffer map_words;
 layout(set = 0, binding = 5) readonly buffer Pixels { uint pixels[]; };
 layout(set = 0, binding = 6) readonly buffer Slots { uint entry_local_nodes[]; };
 layout(set = 0, binding = 7) readonly buffer Entries { uint light_list[]; };
 layout(set = 0, binding = 8) readonly buffer Counts { LightListCounts counts[]; };
 layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 10) writeonly uniform image2D output_image;
-layout(set = 0, binding = 11) uniform samplerBuffer static_map_texels;
+layout(set = 0, binding = 11) uniform usamplerBuffer static_map_words;
 layout(set = 0, binding = 12) readonly buffer RoughEntries { uint rough_entries[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+#include "gi_module/shadows/map_words.glsl"
 
 float map_side() { return float(constants.map_resolution); }
 bool use_static_maps = false; // a constant wherever a map is read, so that it is folded
 float map_value(uint slot, ivec2 texel) {
     const int side = int(constants.map_resolution);
     const int place = (int(slot) * side + texel.y) * side + texel.x;
-    return use_static_maps ? texelFetch(static_map_texels, place).r : texelFetch(map_texels, place).r;
+    const int word = map_word(place);
+    return value_in_word(use_static_maps ? texelFetch(static_map_words, word).r : texelFetch(map_words, word).r, place);
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 

@@ -17,6 +17,8 @@ Result<std::unique_ptr<ManyLight>> ManyLight::create(gpu::Device& device, gpu::P
     unused.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
     unused.texel_format = VK_FORMAT_R32_SFLOAT;
     SUNFLECK_ASSIGN(technique->unused_texels_, gpu::Buffer::create(device, unused));
+    unused.texel_format = VK_FORMAT_R32_UINT;
+    SUNFLECK_ASSIGN(technique->unused_words_, gpu::Buffer::create(device, unused));
     return technique;
 }
 

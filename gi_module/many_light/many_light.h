@@ -92,7 +92,8 @@ private:
     std::uint32_t words_per_row_ = 0, state_words_ = 0, flag_words_ = 0, first_mover_ = 0, mover_count_ = 0;
     gpu::UploadSlice movers_; // spheres
     VkSampler sampler_ = VK_NULL_HANDLE;
-    gpu::Buffer nodes_, local_nodes_, entries_, counts_, block_groups_, rough_entries_, rough_commands_, unused_texels_;
+    gpu::Buffer nodes_, local_nodes_, entries_, counts_, block_groups_, rough_entries_, rough_commands_;
+    gpu::Buffer unused_texels_, unused_words_;
     // Of the frame, from add_passes on.
     ManyLightOptions options_;
     const ShadowMaps* maps_ = nullptr;

@@ -159,14 +159,14 @@ Status ManyLight::add_light(const Frame& frame, Phase phase, const LightBatch& b
         .sampled(frame.stage.g_buffer.depth, sampler_)
         .sampled(frame.stage.g_buffer.normals, sampler_)
         .uniform(batch.rows)
-        .texels(frame.maps.texels() ? frame.maps.texels() : unused_texels_)
+        .texels(frame.maps.texels() ? frame.maps.texels() : unused_words_)
         .storage_read(frame.stage.pixels)
         .storage_read(local_nodes_)
         .storage_read(entries_)
         .storage_read(counts_)
         .storage_read_write(frame.stage.sums)
         .storage_write(frame.stage.output)
-        .texels(phase == Phase::baked ? frame.maps.static_texels() : unused_texels_)
+        .texels(phase == Phase::baked ? frame.maps.static_texels() : unused_words_)
         .storage_read(rough_entries_)
         .push(frame.constants);
     dispatch(pass, frame, phase, shared::command_groups);

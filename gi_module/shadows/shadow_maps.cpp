@@ -97,10 +97,10 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     const std::uint64_t bytes_per_map = std::uint64_t(resolution) * resolution * bits_ / 8;
     gpu::BufferDescription buffer;
     buffer.name = names_.maps;
-    buffer.size = bytes_per_map * slots;
+    buffer.size = (bytes_per_map * slots + 3) / 4 * 4;
     buffer.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    buffer.texel_format = bits_ == 16 ? VK_FORMAT_R16_UNORM : VK_FORMAT_R32_SFLOAT;
+    buffer.texel_format = VK_FORMAT_R32_UINT; // see map_words.glsl
     SUNFLECK_ASSIGN(texels_, gpu::Buffer::create(device_, buffer));
     if (layout.keep_static) {
         buffer.name = names_.static_maps;
