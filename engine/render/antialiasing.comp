@@ -45,13 +45,14 @@ bool lies_across(Neighbourhood n) {
 vec2 walk(ivec2 pixel, ivec2 along, ivec2 over, float edge, float limit) {
     vec2 found = vec2(float(walk_lengths[walk_steps - 1]), 0.0);
     bool on = true;
-    for (int i = 0; i < walk_steps && on; ++i) {
+    int i = 0;
+    do { // tested at its end, as below
         const ivec2 place = pixel + along * walk_lengths[i];
         const float difference = 0.5 * (at(place) + at(place + over)) - edge;
         on = abs(difference) < limit;
         if (!on)
             found = vec2(float(walk_lengths[i]) - 0.5, difference);
-    }
+    } while (++i < walk_steps && on);
     return found;
 }
 
@@ -130,10 +131,10 @@ void main() {
         centre = below;
     }
     // A loop, not a branch for each pixel: a CPU device runs it as often as the pixel column with the most edges of a
-    // group asks for.
-    while (edges != 0u) {
+    // group asks for, and once more if it is tested at its head.
+    if (edges != 0u) do {
         const int i = findLSB(edges);
         edges &= edges - 1u;
         smooth_edge(first + ivec2(0, i));
-    }
+    } while (edges != 0u);
 }

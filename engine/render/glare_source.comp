@@ -36,8 +36,7 @@ void main() {
         for (int x = first.x; x < end.x; ++x) {
             const uint surface = texelFetch(surface_image, ivec2(x, y), 0).r;
             const bool shines = surface == 0u || (surface & (surface_emits | surface_unlit)) == surface_emits;
-            // A loop of at most one iteration: unlike a branch, a CPU device skips it where nothing shines.
-            for (bool is_left = shines; is_left; is_left = false)
+            if (shines)
                 sum += shining(ivec2(x, y), surface);
         }
     const ivec2 pixels = end - first;

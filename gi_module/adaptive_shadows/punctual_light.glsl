@@ -129,19 +129,17 @@ void main() {
         if (constants.first_pass == 0u)
             sum[k] = sums[pixel.y * int(constants.width) + pixel.x].rgb;
     }
-    for (uint i = 0; i < constants.light_count; ++i) {
+    uint i = 0u;
+    do { // there is a light; see light.comp
         const TileLight light = lights[i];
         [[unroll]] for (uint k = 0; k < pixels; ++k) {
             const float unshadowed = unshadowed_factor(light.row, surface[k]).unshadowed;
             float visibility = 1.0;
-            if (maps != maps_none) {
-                // A loop is what a CPU device leaves early, where no lane of a group is lit; branches it runs both.
-                for (bool lit = unshadowed > 0.0; lit; lit = false)
-                    visibility = tile_visibility(light, surface[k]);
-            }
+            if (maps != maps_none)
+                visibility = tile_visibility(light, surface[k]);
             sum[k] += light.row.intensity_slot.rgb * (unshadowed * visibility);
         }
-    }
+    } while (++i < constants.light_count);
     [[unroll]] for (uint k = 0; k < pixels; ++k) {
         const ivec2 pixel = ivec2(first_column + int(k) * 8, row);
         if (pixel.x <= last.x && pixel.y <= last.y) {

@@ -61,14 +61,14 @@ void list_block(uint block) {
     for (uint i = 0; i < units_per_block; ++i) {
         uint unit;
         uvec2 mask = marked_in(block, i, unit);
-        while ((mask.x | mask.y) != 0u && place < end) {
+        if ((mask.x | mask.y) != 0u && place < end) do {
             const int bit = mask.x != 0u ? findLSB(mask.x) : 32 + findLSB(mask.y);
             if (bit < 32)
                 mask.x &= mask.x - 1u;
             else
                 mask.y &= mask.y - 1u;
             listed[place++] = listed_value(unit, bit);
-        }
+        } while ((mask.x | mask.y) != 0u && place < end);
     }
 }
 

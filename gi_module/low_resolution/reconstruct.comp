@@ -163,7 +163,7 @@ void main() {
             }
         }
     }
-    while ((others.x | others.y) != 0u) {
+    if ((others.x | others.y) != 0u) do { // tested at its end, or it would run once more than needed
         const uint bit = uint(others.x != 0u ? findLSB(others.x) : 32 + findLSB(others.y));
         if (bit < 32u)
             others.x &= others.x - 1u;
@@ -201,6 +201,6 @@ void main() {
         if (surface && again)
             again_mask = with_bit(again_mask, bit);
         store(pixel, surface ? vec4(blend(neighbours, shares), 1.0) : vec4(0.0));
-    }
+    } while ((others.x | others.y) != 0u);
     cell_masks[uint(cell.y) * constants.cell_columns + uint(cell.x)] = again_mask;
 }

@@ -106,8 +106,12 @@ void main() {
     const LightMapJob job = jobs[number];
     const uint end = job.first + job.count;
     uint begin = job.first;
-    for (; begin + lanes < end; begin += lanes * texels_per_invocation)
+    if (begin + lanes < end) do { // tested at its end: see light.comp
         sum_many(job, begin, end);
-    for (; begin < end; begin += lanes)
+        begin += lanes * texels_per_invocation;
+    } while (begin + lanes < end);
+    if (begin < end) do {
         sum_few(job, begin, end);
+        begin += lanes;
+    } while (begin < end);
 }

@@ -79,7 +79,9 @@ void main() {
     if (number >= constants.jobs)
         return;
     const LightMapJob job = jobs[number];
-    for (uint i = job.first + gl_LocalInvocationID.x; i < job.first + job.count; i += 64u) {
+    const uint end = job.first + job.count;
+    uint i = job.first + gl_LocalInvocationID.x;
+    if (i < end) do { // tested at its end: see light.comp
         const ivec2 texel = ivec2(i % job.columns, i / job.columns);
         const bool inside = texel.x + 1 < int(job.columns) && texel.y + 1 < int(job.rows);
         const vec3 light = light_at(job, texel) / constants.fixed_point;
@@ -91,5 +93,6 @@ void main() {
         texels[job.first_texel + i] =
             uvec2(packHalf2x16(min(light.rg, vec2(largest_half))),
                   packHalf2x16(vec2(min(light.b, largest_half), shown)));
-    }
+        i += 64u;
+    } while (i < end);
 }

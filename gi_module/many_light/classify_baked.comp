@@ -93,7 +93,7 @@ void main() {
     uint tested = 0u, untested = 0u;
     for (uint i = 0; i < (any_meets ? max_words : 0u); ++i) {
         uint left = meets[i];
-        while (left != 0u) {
+        if (left != 0u) do { // tested at its end: see light.comp
             const uint bit = uint(findLSB(left));
             const uint sample_index = (first_word + i) * 32u + bit;
             left &= left - 1u;
@@ -106,7 +106,7 @@ void main() {
                 light_list[first + tested++] = in_batch;
             else
                 light_list[first + constants.list_stride - 1u - untested++] = in_batch;
-        }
+        } while (left != 0u);
     }
     counts[group] = LightListCounts(tested, untested);
 }

@@ -55,17 +55,19 @@ NodeRow node_row_at(uint i) {
 uint find_node(SurfaceInstance instance, vec3 position, vec3 geometric_normal) {
     bool found = false;
     SurfaceChart chart;
-    for (uint i = instance.first_chart; i < instance.first_chart + instance.chart_count && !found; ++i) {
+    const uint end = instance.first_chart + instance.chart_count;
+    uint i = instance.first_chart;
+    if (i < end) do { // tested at its end: see light.comp
         chart = chart_plane_at(i);
-        if (!on_chart(chart, position, geometric_normal))
-            continue;
-        const uvec4 grid = texelFetch(charts, int(i) * 4 + 3);
-        chart.first_cell = grid.x;
-        chart.columns = grid.y;
-        chart.rows = grid.z;
-        chart.cut_sides = grid.w;
-        found = !beyond_cut(chart, position);
-    }
+        if (on_chart(chart, position, geometric_normal)) {
+            const uvec4 grid = texelFetch(charts, int(i) * 4 + 3);
+            chart.first_cell = grid.x;
+            chart.columns = grid.y;
+            chart.rows = grid.z;
+            chart.cut_sides = grid.w;
+            found = !beyond_cut(chart, position);
+        }
+    } while (++i < end && !found);
     return found ? texelFetch(cells, int(chart_cell(chart, position))).r : box_node(instance, position);
 }
 
@@ -156,24 +158,20 @@ void main() {
                 const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
                 // Texels are lit with the patch's normal.
                 const bool differs = dot(difference, difference) >= flat_shaded_limit;
-                bool unshadowed = !differs && light.a != 0.0;
+                const bool unshadowed = !differs && light.a != 0.0;
                 node |= differs ? node_normal_differs : unshadowed ? 0u : node_baked;
                 sum = differs ? vec3(0.0) : light.rgb;
                 curved = differs && baked != 0 && instance.first_curved_chart != no_node;
-                // A loop of at most one iteration: unlike a branch, a CPU device skips it if no pixel needs it.
-                while (unshadowed) {
+                if (unshadowed)
                     sum = light_map(row, place);
-                    unshadowed = false;
-                }
             } else {
                 curved = baked != 0 && instance.first_curved_chart != no_node;
             }
         }
-        while (curved) {
+        if (curved) {
             const vec4 light = curved_light(instance.first_curved_chart, position, geometric_normal);
             node |= light.a == 0.0 ? node_baked : 0u;
             sum = light.a == 0.0 ? light.rgb : vec3(0.0);
-            curved = false;
         }
     }
     if (from_list == 0)

@@ -85,8 +85,10 @@ void main() {
             surface[k].normal = vec3(0.0); // so that no sample lights it
         sum[k] = sums[entry];
     }
+    // Loops are tested at their ends: a CPU device runs the body of others once more than they ask for.
     const uint first = group * constants.list_stride;
-    for (uint i = 0; i < count.tested; ++i) {
+    uint i = 0u;
+    if (count.tested > 0u) do {
         const uint element = light_list[first + i];
         const LightRow light = light_rows[element & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
@@ -99,9 +101,10 @@ void main() {
                 sum[k].rgb += light.intensity_slot.rgb * (factor.unshadowed * (tests ? factor.visibility - value : value));
             }
         }
-    }
+    } while (++i < count.tested);
     const uint last = first + constants.list_stride - 1u;
-    for (uint i = 0; i < count.untested; ++i) {
+    i = 0u;
+    if (count.untested > 0u) do {
         const uint element = light_list[last - i];
         const LightRow light = light_rows[element & list_sample_mask];
         [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
@@ -113,7 +116,7 @@ void main() {
                 sum[k].rgb += light.intensity_slot.rgb * (unshadowed_factor(light, surface[k]).unshadowed * value);
             }
         }
-    }
+    } while (++i < count.untested);
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
         // Slightly more may be subtracted than the interpolated light map holds: never below zero.
         if (to_image != 0) {

@@ -25,7 +25,9 @@ void main() {
     if (number >= constants.jobs)
         return;
     const LightMapJob job = jobs[number];
-    for (uint i = job.first + gl_LocalInvocationID.x; i < job.first + job.count; i += 64u) {
+    const uint end = job.first + job.count;
+    uint i = job.first + gl_LocalInvocationID.x;
+    if (i < end) do { // tested at its end: see light.comp
         const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
         const vec3 position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
         ivec4 sum = job.clear != 0u ? ivec4(0) : texels[job.first_texel + i];
@@ -36,5 +38,6 @@ void main() {
             sum.rgb += (change & light_map_subtract) != 0u ? -steps : steps;
         }
         texels[job.first_texel + i] = sum;
-    }
+        i += 64u;
+    } while (i < end);
 }
