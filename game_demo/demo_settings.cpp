@@ -72,6 +72,9 @@ const TypeDescription& DemoSettings::description() {
          SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "Speed at which mouse and stick turn the view"),
          SUNFLECK_FIELD(DemoSettings, invert_look, "", 0, 1, "Moving the mouse or stick forward looks down"),
          SUNFLECK_FIELD(DemoSettings, frame_cap, "Hz", 10, 1000, "Maximum frame rate"),
+         SUNFLECK_FIELD(DemoSettings, frame_milliseconds, "ms", 0, 100,
+                        "Time from frame to frame that is held by a larger or smaller rendered size and more or fewer "
+                        "shadow maps; 0: the settings of the picture are kept"),
          SUNFLECK_FIELD(DemoSettings, vertical_sync, "", 0, 1, "Synchronises frames with the display to avoid tearing"),
          SUNFLECK_FIELD(DemoSettings, full_screen, "", 0, 1, "Uses the whole screen"),
          SUNFLECK_FIELD(DemoSettings, show_times, "", 0, 1, "Shows the time of each GPU pass and CPU stage"),

@@ -47,6 +47,7 @@ struct DemoSettings {
     float sensitivity = 1.0f;
     bool invert_look = false;
     std::uint32_t frame_cap = 60;
+    float frame_milliseconds = 0.0f;
     bool vertical_sync = true;
     bool full_screen = false;
     bool show_times = false;

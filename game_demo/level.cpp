@@ -15,8 +15,6 @@ namespace sunfleck::demo {
 namespace {
 
 constexpr double seconds_per_camera = 9.0;
-// Samples that may change their strength in a frame: a door or the switch of bounced light changes a hundred and more.
-constexpr std::uint32_t strength_changes = 16;
 
 } // namespace
 
@@ -126,6 +124,12 @@ Status Level::advance_light() {
         return {};
     wanted_ = renderer_->lighting().settings();
     return changed.error();
+}
+
+void Level::set_map_budget(std::uint32_t maps) {
+    gi::Settings present = renderer_->lighting().settings();
+    if (std::exchange(present.map_budget, maps) != maps)
+        static_cast<void>(renderer_->lighting().set_settings(present)); // within its range, as that of a menu is
 }
 
 std::optional<float> Level::light_share() const {

@@ -23,6 +23,10 @@ Result<io::ImportReport> load_world(const LevelSource& source, ecs::Registry& re
 
 class Level {
 public:
+    // Samples that may change their strength in a frame: a door or the switch of bounced light changes a hundred and
+    // more.
+    static constexpr std::uint32_t strength_changes = 16;
+
     // `progress`: io::ImportOptions::progress.
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const LevelSource& source,
                                                const DemoSettings& settings, std::uint32_t frames_in_flight,
@@ -47,6 +51,8 @@ public:
     void restart();
     // The world was put elsewhere, by a checkpoint: there is no way from where it was.
     void jumped() { interpolation_.forget(); }
+    // Whether the last step moved anything, or the person's view.
+    bool moves() const { return interpolation_.moves(); }
     // viewer::SceneRenderer::update with what moves between the last two steps at that moment; the simulation is what
     // it was afterwards.
     Status update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment);
@@ -56,6 +62,8 @@ public:
     // that it takes effect; the error is why a change failed, and the light stays as it was.
     void apply_later(const DemoSettings& settings);
     Status advance_light();
+    // Shadow maps a frame, from the next frame on: needs no other light.
+    void set_map_budget(std::uint32_t maps);
     // How far a change of light is, 0 to 1; none: everything that was applied is shown.
     std::optional<float> light_share() const;
     // The frame request for a window or image of this size.

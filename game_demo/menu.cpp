@@ -257,7 +257,8 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
 void Menu::display_tab(DemoSettings& settings, bool& changed) {
     for (const auto& [name, label] :
          {std::pair("full_screen", "Full screen"), std::pair("vertical_sync", "Vertical sync"),
-          std::pair("frame_cap", "Frame limit"), std::pair("show_times", "Frame times")})
+          std::pair("frame_cap", "Frame limit"), std::pair("frame_milliseconds", "Frame time to hold"),
+          std::pair("show_times", "Frame times")})
         changed |= field(settings, name, label);
     DemoSettings dragged = settings;
     dragged.ui_scale = dragged_scale_.value_or(settings.ui_scale);

@@ -3,6 +3,7 @@
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "game_demo/controls.h"
+#include "game_demo/frame_pace.h"
 #include "game_demo/game_display.h"
 #include "game_demo/game_session.h"
 #include "game_demo/game_sounds.h"
@@ -69,7 +70,9 @@ private:
             if (!shown)
                 continue;
             ++frame;
-            const double rest = 1.0 / frame_rate() - seconds_since(began);
+            pace_.worked(1e3 * seconds_since(began));
+            const double shortest = std::max(1.0 / frame_rate(), pace_.shortest_frame());
+            const double rest = shortest - seconds_since(began);
             if (rest > 0.0)
                 std::this_thread::sleep_for(std::chrono::duration<double>(rest));
         }
@@ -82,6 +85,8 @@ private:
         const bool prepares = !started_ && level_->light_share();
         return prepares ? std::min(preparing, double(settings_.frame_cap)) : double(settings_.frame_cap);
     }
+
+    bool playing() const { return started_ && menu_.screen() == Screen::playing; }
 
     Status start() {
         LoadedSettings loaded = kept_.load(options_.settings_file);
@@ -224,7 +229,14 @@ private:
         const VkExtent2D extent = display_->swapchain().extent();
         viewer::SceneRenderer& renderer = level_->renderer();
         const simulation::DrawnMoment moment{clock_.fraction(), controls_.pending_look()};
-        viewer::FrameRequest request = level_->request(settings_, extent.width, extent.height, moment);
+        const FrameQuality quality =
+            pace_.choose(settings_, *level_, seconds_since(began_), moment.look != vec2(0.0f), playing());
+        if (const std::string message = pace_.take_message(); !message.empty())
+            menu_.say(message, 6.0);
+        DemoSettings shown = settings_;
+        shown.render_scale = quality.render_scale;
+        viewer::FrameRequest request = level_->request(shown, extent.width, extent.height, moment);
+        request.strength_budget = quality.strength_budget;
         if (!started_)
             request.camera = level_->title_camera(title_seconds_);
         request.indirect_scale = float(indirect_); // fades, since only some samples follow in each frame
@@ -359,6 +371,7 @@ private:
     WindowHitches hitches_;
     Clock::time_point last_;
     simulation::StepClock clock_;
+    FramePace pace_;
     double title_seconds_ = 0.0, smooth_ms_ = 0.0;
     bool started_ = false, indirect_ = true, wants_screenshot_ = false, wants_reset_ = false, start_before_ = false;
     const Clock::time_point began_ = Clock::now();

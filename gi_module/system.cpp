@@ -39,8 +39,11 @@ System::~System() = default;
 Status System::set_settings(const Settings& settings) {
     SUNFLECK_TRY(settings.validate());
     SUNFLECK_ASSIGN(plan_, settings.light_plan());
+    Settings known = settings_; // the budget of a frame asks for nothing to be made again
+    known.map_budget = settings.map_budget;
+    if (known != settings)
+        ++settings_generation_;
     settings_ = settings;
-    ++settings_generation_;
     return {};
 }
 

@@ -125,6 +125,10 @@ void StepInterpolation::find_carried(ecs::Registry& registry, const Simulation& 
     std::erase_if(moved_, [&](const Motion& motion) { return hangs_on(registry, motion.entity, root); });
 }
 
+bool StepInterpolation::moves() const {
+    return !moved_.empty() || before_ != now_;
+}
+
 DrawnEye StepInterpolation::eye(const Simulation& simulation, const DrawnMoment& moment) const {
     const Character& person = simulation.player();
     DrawnEye eye{person.eye(), person.yaw() + moment.look.x,

@@ -31,6 +31,7 @@ struct DrawnEye {
     vec3 position{0.0f};
     float yaw = 0.0f, pitch = 0.0f; // rad, as of Character
     vec3 forward() const { return view_direction(yaw, pitch); }
+    bool operator==(const DrawnEye&) const = default;
 };
 
 // What a frame shows of the time since the step before the last one.
@@ -47,6 +48,8 @@ public:
     // The world was exchanged (restart, checkpoint, reset of a room): the next step has none before it.
     void forget();
 
+    // Whether anything, or the eye, moved in the last step.
+    bool moves() const;
     DrawnEye eye(const Simulation& simulation, const DrawnMoment& moment) const;
     // Sets the world transforms of what moved to their place at that moment; what is carried keeps its place before the
     // eye. To be undone before the next step, and before anything but drawing looks at them.

@@ -1,13 +1,11 @@
 // The game in a real window with real keys, from outside: each step waits for what it should bring about, never for a
 // time.
 #include "engine/core/file.h"
-#include "game_demo/game/saved_game.h"
-#include "tests/game/played_game.h"
 #include "tests/support/command_line.h"
 #include "tests/support/driven_display.h"
+#include "tests/support/key_solver.h"
 #include "tests/support/test_size.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -192,49 +190,34 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
 }
 
 // Presses what the solution would do next, by the state of the game in the window.
-class KeySolver {
+class SolvedByKeys {
 public:
-    explicit KeySolver(const DrivenGame& game) : game_(game), solution_(*copy_.world) {}
-    ~KeySolver() { game_.run("xdotool keyup w keyup c"); }
-    KeySolver(const KeySolver&) = delete;
-    KeySolver& operator=(const KeySolver&) = delete;
+    explicit SolvedByKeys(const DrivenGame& game) : game_(game) {}
+    ~SolvedByKeys() { game_.run("xdotool keyup w keyup c"); }
+    SolvedByKeys(const SolvedByKeys&) = delete;
+    SolvedByKeys& operator=(const SolvedByKeys&) = delete;
 
     // After each frame. False: the solution does not work.
     bool act() {
-        const nlohmann::json now = game_.state();
-        const auto steps = now.value("steps", std::uint64_t(0));
-        if (steps == steps_ || !demo::load_game(*copy_.world, "lantern_game", now.value("saved", std::string())))
+        const auto motion = solver_.next(game_.state());
+        if (!motion)
             return true;
-        simulation::StepInput input;
-        std::uint32_t buttons = 0;
-        for (; steps_ < steps; ++steps_) {
-            input = solution_.next();
-            buttons |= input.buttons;
-        }
-        press(input, buttons);
-        return solution_.problem().empty();
-    }
-    const std::string& problem() const { return solution_.problem(); }
-
-private:
-    void press(const simulation::StepInput& input, std::uint32_t buttons) {
-        // The share of the angle that a frame of five steps would turn, in pixels of 22e-4 rad.
-        const auto pixels = [](std::int32_t turn) { return std::to_string(std::lround(-5.0 * turn / 22.0)); };
-        std::string keys = "xdotool mousemove_relative -- " + pixels(input.turn) + " " + pixels(input.look_up);
-        const bool walks = input.forward > 0, slowly = walks && input.forward < 50;
-        if (std::exchange(walks_, walks) != walks)
-            keys += walks ? " keydown w" : " keyup w";
-        if (std::exchange(slowly_, slowly) != slowly)
-            keys += slowly ? " keydown c" : " keyup c";
-        if ((buttons & simulation::button_use) != 0)
+        std::string keys =
+            "xdotool mousemove_relative -- " + std::to_string(motion->right) + " " + std::to_string(motion->down);
+        if (std::exchange(walks_, motion->walks) != motion->walks)
+            keys += walks_ ? " keydown w" : " keyup w";
+        if (std::exchange(slowly_, motion->slowly) != motion->slowly)
+            keys += slowly_ ? " keydown c" : " keyup c";
+        if (motion->uses)
             keys += " key e";
         game_.run(keys);
+        return solver_.problem().empty();
     }
+    const std::string& problem() const { return solver_.problem(); }
 
+private:
     const DrivenGame& game_;
-    tests::Played copy_;
-    demo::Solution solution_;
-    std::uint64_t steps_ = 0;
+    tests::KeySolver solver_;
     bool walks_ = false, slowly_ = false;
 };
 
@@ -245,7 +228,7 @@ TEST_F(GameWindow, IsPlayedToItsEnd) {
     DrivenGame game(folder);
     ASSERT_TRUE(game.start("null")) << game.log();
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
-    KeySolver solver(game);
+    SolvedByKeys solver(game);
     bool works = true;
     const auto ended = [&] {
         works = works && solver.act();

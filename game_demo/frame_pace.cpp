@@ -1,0 +1,27 @@
+#include "game_demo/frame_pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sunfleck::demo {
+
+FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, double now, bool turns, bool playing) {
+    const double target = double(settings.frame_milliseconds);
+    control_.set(target, {settings.render_scale, settings.map_budget, Level::strength_changes});
+    playing_ = playing;
+    if (!playing) {
+        level.set_map_budget(control_.quality().maps);
+        return control_.quality();
+    }
+    double gpu_ms = 0.0; // where the GPU works beside the CPU, whichever takes longer counts
+    for (const auto& [pass, milliseconds] : level.renderer().statistics().gpu_ms)
+        gpu_ms += milliseconds;
+    const FrameQuality quality = control_.next(std::max(work_ms_, gpu_ms), now, turns || level.moves());
+    level.set_map_budget(quality.maps);
+    if (!std::exchange(told_, control_.out_of_reach()) && control_.out_of_reach())
+        message_ = "Frames of " + std::to_string(std::lround(target)) +
+                   " ms are out of reach here: they take longer with the least settings";
+    return quality;
+}
+
+} // namespace sunfleck::demo

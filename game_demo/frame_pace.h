@@ -1,0 +1,31 @@
+// Holds a window's level to the player's time from frame to frame (FrameTimeControl), and says where that is not
+// possible.
+#pragma once
+
+#include "game_demo/frame_time_control.h"
+#include "game_demo/level.h"
+
+#include <utility>
+
+namespace sunfleck::demo {
+
+class FramePace {
+public:
+    // Once a frame: with what the next one is drawn. `now`: s; `turns`: the view does. Nothing changes while the game
+    // is not `playing`.
+    FrameQuality choose(const DemoSettings& settings, Level& level, double now, bool turns, bool playing);
+    // What a frame took until it was handed over, ms.
+    void worked(double milliseconds) { work_ms_ = milliseconds; }
+    // The shortest time from the start of one frame to the start of the next, s.
+    double shortest_frame() const { return playing_ ? 1e-3 * control_.shortest_frame() : 0.0; }
+    // One line for each target that cannot be reached; empty: nothing is to be said.
+    std::string take_message() { return std::exchange(message_, {}); }
+
+private:
+    FrameTimeControl control_;
+    double work_ms_ = 0.0;
+    bool told_ = false, playing_ = false;
+    std::string message_;
+};
+
+} // namespace sunfleck::demo

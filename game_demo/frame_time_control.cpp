@@ -1,0 +1,107 @@
+#include "game_demo/frame_time_control.h"
+
+#include "engine/statistics/summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sunfleck::demo {
+namespace {
+
+// Of the target. Together they leave room for what varies from frame to frame: 1.15 for nineteen frames of twenty.
+constexpr double usual_share = 0.92, high_share = 1.06;
+constexpr double low_load = 0.85;            // below it, the picture may become larger
+constexpr double first_look = 0.6;           // s after the start until the first choice of a size
+constexpr double maps_regained = 0.01;       // of the usual number, in a frame with time to spare
+constexpr std::uint32_t settling = 2;        // frames after a change that do not count
+constexpr std::size_t fewest = 6, most = 60; // frames that a choice looks at
+
+} // namespace
+
+void FrameTimeControl::set(double target_ms, const FrameQuality& usual) {
+    if (target_ms == target_ && usual == usual_)
+        return; // nothing is new
+    *this = FrameTimeControl();
+    target_ = target_ms;
+    usual_ = quality_ = usual;
+    maps_ = usual.maps;
+}
+
+double FrameTimeControl::percentile(double share) const {
+    return statistics::percentile({times_.begin(), times_.end()}, share);
+}
+
+FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
+    if (!on())
+        return usual_;
+    if (!started_) {
+        started_ = true;
+        changed_ = now - scale_interval + first_look;
+        return quality_;
+    }
+    if (skipped_ < settling) {
+        ++skipped_;
+    } else {
+        times_.push_back(work_ms);
+        if (times_.size() > most)
+            times_.pop_front();
+        choose_maps(work_ms);
+    }
+    if (times_.size() >= fewest)
+        out_of_reach_ = quality_.render_scale <= least_scale && maps_ <= least_maps && percentile(0.5) > target_;
+    if (times_.size() >= fewest && now - changed_ >= scale_interval && moves)
+        choose_scale(now);
+    return quality_;
+}
+
+// What the last change of the size did to the time tells how much of a frame does not depend on it.
+void FrameTimeControl::learn(double usual) {
+    if (before_ms_ <= 0.0)
+        return;
+    const double pixels = std::pow(double(quality_.render_scale / before_scale_), 2.0);
+    if (std::abs(1.0 - pixels) > 0.1) {
+        const double seen = (usual / before_ms_ - pixels) / (1.0 - pixels);
+        fixed_ = 0.5 * (fixed_ + std::clamp(seen, 0.1, 0.8));
+    }
+    before_ms_ = 0.0;
+}
+
+void FrameTimeControl::choose_scale(double now) {
+    const double usual = percentile(0.5);
+    learn(usual);
+    const double load = std::max(usual / (usual_share * target_), percentile(0.9) / (high_share * target_));
+    if (load <= 1.0 && load > low_load)
+        return;
+    const double pixels = std::clamp((0.97 / load - fixed_) / (1.0 - fixed_), 0.2, 2.0);
+    float scale = quality_.render_scale * float(std::sqrt(pixels));
+    scale = scale_step * std::floor(scale / scale_step + 0.25f);
+    scale = std::clamp(scale, least_scale, 1.0f);
+    if (std::abs(scale - usual_.render_scale) <= scale_step) // which the picture is drawn best at
+        scale = usual_.render_scale;
+    if (scale == quality_.render_scale || (scale > quality_.render_scale) != (load < 1.0))
+        return;
+    before_ms_ = usual;
+    before_scale_ = quality_.render_scale;
+    quality_.render_scale = scale;
+    changed_ = now;
+    times_.clear();
+    skipped_ = 0;
+}
+
+// Two long frames in a row take maps away; a single one may have any cause.
+void FrameTimeControl::choose_maps(double work_ms) {
+    const double full = usual_.maps;
+    const double shorter = std::min(work_ms, std::exchange(last_ms_, work_ms));
+    if (shorter > target_)
+        maps_ *= std::max(0.5, usual_share * target_ / shorter);
+    else if (work_ms < usual_share * target_)
+        maps_ += maps_regained * full;
+    maps_ = std::clamp(maps_, std::min(full, double(least_maps)), full);
+    quality_.maps = std::uint32_t(std::lround(maps_));
+    const double share = full > 0.0 ? maps_ / full : 1.0;
+    quality_.strength_budget = std::max(std::min(usual_.strength_budget, least_strength_budget),
+                                        std::uint32_t(std::lround(share * usual_.strength_budget)));
+}
+
+} // namespace sunfleck::demo

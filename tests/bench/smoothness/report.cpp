@@ -1,0 +1,152 @@
+// Tables of what was measured, beside the targets.
+#include "tests/bench/smoothness/measure.h"
+
+#include "engine/core/file.h"
+#include "engine/simulation/path_movers.h"
+#include "engine/statistics/summary.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+namespace sunfleck::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+using statistics::median, statistics::percentile;
+
+struct Side { // of one commit
+    std::vector<double> frames, late, looking, walking, latency_frames;
+    std::map<std::string, std::vector<double>> by_room;
+    std::vector<std::string> ends, long_frames;
+    unsigned lost = 0;
+};
+
+void append(std::vector<double>& to, const nlohmann::json& from, const char* name) {
+    for (const auto& value : from.value(name, nlohmann::json::array()))
+        to.push_back(value.get<double>());
+}
+
+// Of a run with a target: without the seconds in which it is reached.
+constexpr double reaching = 5000.0; // ms
+
+std::vector<double> after_reaching(const nlohmann::json& file) {
+    std::vector<double> frames, late;
+    append(frames, file, "frames_ms");
+    double time = 0.0;
+    for (const double frame : frames)
+        if ((time += frame) > reaching)
+            late.push_back(frame);
+    return late;
+}
+
+void add_file(Side& side, const nlohmann::json& file) {
+    const std::string room = file.value("room", std::string());
+    if (file.value("measured", std::string()) == "latency") {
+        append(side.looking, file, "looking_ms");
+        append(side.walking, file, "walking_ms");
+        append(side.latency_frames, file, "frames_ms");
+        side.lost += file.value("lost", 0u);
+        return;
+    }
+    append(side.frames, file, "frames_ms");
+    append(side.by_room[room], file, "frames_ms");
+    const std::vector<double> late = after_reaching(file);
+    side.late.insert(side.late.end(), late.begin(), late.end());
+    side.ends.push_back(room + ": " + file.value("ended", std::string()));
+    for (const auto& line : file.value("long_frames", nlohmann::json::array()))
+        side.long_frames.push_back(room + ": " + line.get<std::string>());
+}
+
+Result<std::map<std::string, Side>> read_all(const fs::path& folder) {
+    std::map<std::string, Side> sides;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator(folder, code)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.path().extension() != ".json")
+            continue;
+        SUNFLECK_ASSIGN(const std::string text, read_file(entry.path()));
+        const auto file = nlohmann::json::parse(text, nullptr, false);
+        if (!file.is_object())
+            return Error{"'" + entry.path().string() + "' is damaged: remove it and run the bench once more"};
+        add_file(sides[name.substr(0, name.find('-'))], file);
+    }
+    return sides;
+}
+
+// A line of the report; true if it is within the bound.
+bool judge(const char* what, double value, double bound) {
+    const bool held = value <= bound;
+    std::printf("    %-44s %7.2f  (at most %.2f)%s\n", what, value, bound, held ? "" : "  MISSED");
+    return held;
+}
+
+void print_frames(const std::string& name, const Side& side) {
+    std::printf("%s: %zu frames, ms: median %.1f, 95 %% %.1f, 99 %% %.1f, longest %.1f\n", name.c_str(),
+                side.frames.size(), median(side.frames), percentile(side.frames, 0.95), percentile(side.frames, 0.99),
+                percentile(side.frames, 1.0));
+    for (const auto& [room, frames] : side.by_room)
+        std::printf("    %-10s %5zu frames  median %6.1f  95 %% %6.1f  99 %% %6.1f  longest %6.1f\n", room.c_str(),
+                    frames.size(), median(frames), percentile(frames, 0.95), percentile(frames, 0.99),
+                    percentile(frames, 1.0));
+    for (const std::string& end : side.ends)
+        if (end.find("time is over") == std::string::npos)
+            std::printf("    %s\n", end.c_str());
+}
+
+bool report_pacing(const Side& side) {
+    const double usual = median(side.frames);
+    const auto above = double(
+        std::count_if(side.frames.begin(), side.frames.end(), [&](double frame) { return frame > 3.0 * usual; }));
+    bool held = judge("95th percentile / median", percentile(side.frames, 0.95) / usual, 1.5);
+    held = judge("99th percentile / median", percentile(side.frames, 0.99) / usual, 2.0) && held;
+    held = judge("frames above 3 x the median, in 1,000", 1e3 * above / double(side.frames.size()), 1.0) && held;
+    for (const std::string& line : side.long_frames)
+        std::printf("      %s\n", line.c_str());
+    return held;
+}
+
+// `name`: "target50" and the like.
+bool report_target(const std::string& name, const Side& side) {
+    const double target = std::atof(name.c_str() + std::string("target").size());
+    const bool held = judge("95th percentile / target", percentile(side.late, 0.95) / target, 1.15);
+    const double usual = median(side.late) / target;
+    std::printf("    %-44s %7.2f  (at least 0.80)%s\n", "median / target", usual, usual >= 0.8 ? "" : "  MISSED");
+    return held && usual >= 0.8;
+}
+
+bool report_latency(const Side& side) {
+    const double frame = median(side.latency_frames), step = 1e3 * simulation::step_seconds / frame;
+    std::printf("    latency: %zu looks, %zu walks, %u lost; in frames of %.1f ms\n", side.looking.size(),
+                side.walking.size(), side.lost, frame);
+    bool held = judge("looking, median", median(side.looking) / frame, 1.7);
+    held = judge("looking, 95th percentile", percentile(side.looking, 0.95) / frame, 2.5) && held;
+    held = judge("walking, median", median(side.walking) / frame, 1.7 + step) && held;
+    return judge("walking, 95th percentile", percentile(side.walking, 0.95) / frame, 2.5 + step) && held;
+}
+
+} // namespace
+
+Result<bool> report(const fs::path& folder) {
+    SUNFLECK_ASSIGN(const auto sides, read_all(folder));
+    bool held = true;
+    for (const auto& [name, side] : sides) {
+        if (!side.frames.empty())
+            print_frames(name, side);
+        const bool has_target = name.rfind("target", 0) == 0;
+        const bool paced = side.frames.empty() || (has_target ? report_target(name, side) : report_pacing(side));
+        const bool quick = side.looking.empty() || report_latency(side);
+        held = held && (name == "before" || (paced && quick)); // targets are for what is measured now
+    }
+    const auto before = sides.find("before"), after = sides.find("after");
+    if (before == sides.end() || after == sides.end() || before->second.frames.empty() || after->second.frames.empty())
+        return held;
+    const Side &b = before->second, &a = after->second;
+    std::printf("after / before\n");
+    held = judge("median", median(a.frames) / median(b.frames), 0.41) && held;
+    return judge("95th percentile", percentile(a.frames, 0.95) / percentile(b.frames, 0.95), 0.35) && held;
+}
+
+} // namespace sunfleck::bench
