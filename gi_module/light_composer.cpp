@@ -34,7 +34,7 @@ std::vector<LightComposer::Part> LightComposer::parts_of(const LightPlan& plan, 
     for (std::size_t i = 0; i < techniques().size(); ++i) {
         const TechniqueEntry& entry = techniques()[i];
         const CellSet cells = plan.lit_by(std::int32_t(i));
-        if (cells.none() || (view != nullptr && !has_view(entry, *view)))
+        if (cells.none() || entry.lights_specular || (view != nullptr && !has_view(entry, *view)))
             continue;
         // What is shown is shown on all receivers.
         const std::uint32_t receivers = view != nullptr ? all_receivers : receivers_of(cells);
@@ -96,7 +96,18 @@ Status LightComposer::add_passes(gpu::FrameGraph& graph, std::span<const std::un
                                      {target.irradiance, target.area, part.replaces, part.receivers}, picture,
                                      services.resources));
     }
-    return empty ? light_sum_->clear(graph, target.g_buffer, picture, services.resources) : Status();
+    if (empty)
+        SUNFLECK_TRY(light_sum_->clear(graph, target.g_buffer, picture, services.resources));
+    target.irradiance = picture;
+    return add_specular(graph, all, plan, services, target);
+}
+
+Status LightComposer::add_specular(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> all,
+                                   const LightPlan& plan, Services& services, LightTarget& target) {
+    for (std::size_t i = 0; i < techniques().size() && target.specular.valid() && target.view == nullptr; ++i)
+        if (techniques()[i].lights_specular && plan.uses(std::int32_t(i)))
+            SUNFLECK_TRY(all[i]->add_passes(graph, services, target));
+    return {};
 }
 
 } // namespace sunfleck::gi

@@ -32,6 +32,9 @@ private:
     Status add_part(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> techniques, const Part& part,
                     Services& services, LightTarget& target);
 
+    Status add_specular(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> techniques,
+                        const LightPlan& plan, Services& services, LightTarget& target);
+
     std::unique_ptr<LowResolution> low_resolution_;
     std::unique_ptr<LightSum> light_sum_;
 };

@@ -62,10 +62,11 @@ bool System::any_in_use(bool TechniqueEntry::*request) const {
     return false;
 }
 
-CellSet System::cells_with_maps() const {
+// Specular light is only that of glossy surfaces.
+CellSet System::cells_with_maps(const scene::GpuScene& gpu_scene) const {
     CellSet cells;
     for (std::size_t i = 0; i < techniques_.size(); ++i)
-        if (techniques()[i].reads_maps)
+        if (techniques()[i].reads_maps && (!techniques()[i].lights_specular || gpu_scene.has_glossy_surfaces()))
             cells |= plan_.lit_by(std::int32_t(i));
     return cells;
 }
@@ -104,7 +105,7 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
         const StageTimer timer(cpu_times_, "shadow scheduling");
         shadows_->measured(input.measured_serial, input.measured_map_milliseconds);
         shadows_->schedule(samples_, {gpu_scene, services().visibility, input.serial, input.map_budget,
-                                      input.view_projection, cells_with_maps(), input.milliseconds});
+                                      input.view_projection, cells_with_maps(gpu_scene), input.milliseconds});
     }
     SUNFLECK_TRY(update_techniques(scene));
     input_.progress = {}; // what it refers to may end with this call
@@ -217,7 +218,7 @@ Result<gpu::ResourceId> System::add_passes(gpu::FrameGraph& graph, const scene::
 }
 
 Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
-                          const gpu::UploadSlice& camera, gpu::ResourceId output) {
+                          const gpu::UploadSlice& camera, gpu::ResourceId output, gpu::ResourceId specular) {
     const StageTimer timer(cpu_times_, "light lists");
     if (restart_)
         graph.add_full_barrier();
@@ -226,6 +227,7 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
     Services shared = services();
     LightTarget target{gpu_scene, g_buffer, camera, output};
     target.view = view_;
+    target.specular = specular;
     SUNFLECK_TRY(composer_->add_passes(graph, techniques_, plan_, shared, target));
     graph.when_executed([this] { recorded_ = true; });
     make_report();

@@ -46,9 +46,12 @@ public:
                                        const GBufferInput& g_buffer, const gpu::UploadSlice& camera,
                                        VkFormat output_format = VK_FORMAT_R16G16B16A16_SFLOAT);
 
-    // The same into an image of the caller's: four channels of float, storage write.
+    // The same into images of the caller's: four channels of float, storage write. `specular`: not valid where it is
+    // not wanted; glossy pixels are written where lights_specular().
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
-                      const gpu::UploadSlice& camera, gpu::ResourceId output);
+                      const gpu::UploadSlice& camera, gpu::ResourceId output, gpu::ResourceId specular = {});
+    // Whether a technique owns specular light.
+    bool lights_specular() const { return plan_.lights_any(~all_diffuse_cells()); }
 
     // Lights that another system has seen change (SampleSet::varying_lights): their next change is none to remember.
     void expect_varying(const std::set<ecs::Entity>& lights) { samples_.expect_varying(lights); }
@@ -83,7 +86,7 @@ private:
     explicit System(gpu::Device& device) : max_buffer_bytes_(device.traits().max_storage_range), resources_(device) {}
     Services services();
     bool wants_visibility() const;
-    CellSet cells_with_maps() const;
+    CellSet cells_with_maps(const scene::GpuScene& gpu_scene) const;
     bool any_in_use(bool TechniqueEntry::*request) const;
     void update_samples(const SceneView& scene);
     Status make_rows(const SceneView& scene, bool static_changed);

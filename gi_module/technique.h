@@ -96,6 +96,9 @@ struct LightTarget {
     const DebugView* view = nullptr;
     // TechniqueEntry::adds_in_place: the image holds light, to which the technique adds its own.
     bool holds_light = false;
+    // Of a technique with TechniqueEntry::lights_specular, which writes this one's glossy pixels and reads
+    // `irradiance`, which holds all diffuse light. See transport/g_buffer.h.
+    gpu::ResourceId specular{};
 };
 
 class Technique {
@@ -134,6 +137,8 @@ struct TechniqueEntry {
     bool reads_maps = true;
     // It evaluates light pixel by pixel, at low resolution (low_resolution/): light_pixels is called.
     bool lights_pixels = false;
+    // It lights specular cells, after all others: add_passes is called where the host wants specular light.
+    bool lights_specular = false;
     // It can add its light to a picture that holds other light, which saves a layer and a pass.
     bool adds_in_place = false;
     TechniqueSettings settings;

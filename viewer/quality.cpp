@@ -23,6 +23,9 @@ const gi::Settings& usual_lighting() {
     static const gi::Settings usual = [] {
         gi::Settings settings;
         settings.shadow_filter = true; // without it, maps draw their texels on the walls
+        const std::vector<std::string_view>& choices = gi::Settings::find("specular")->choices;
+        if (std::find(choices.begin(), choices.end(), "gloss") != choices.end())
+            settings.with("specular", "gloss");
         return settings;
     }();
     return usual;
@@ -53,6 +56,8 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     result.map_priority = gi::MapPriority::contribution;
     if (gi::Settings::find("moving_light_tiles") != nullptr)
         result.with("moving_light_tiles", std::to_string(preset.moving_light_tiles));
+    if (quality == Quality::software && gi::Settings::find("gloss_samples") != nullptr)
+        result.with("gloss_samples", "48");
     if (preset.transfer && has_transfer())
         result.with("movers", "prt");
     return result;

@@ -15,15 +15,14 @@ namespace sunfleck::viewer {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
 double milliseconds(Clock::duration duration) {
     return std::chrono::duration<double, std::milli>(duration).count();
 }
 
 constexpr const char* waiting = "waiting for the GPU";
-
 constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat light_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 bool is_enlarged(const FrameRequest& request) {
     return request.tone_map && request.screen_width > 0 && request.screen_height > 0 &&
@@ -208,10 +207,11 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
     return {};
 }
 
-void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer,
-                                gpu::ResourceId irradiance, const gpu::UploadSlice& camera, gpu::ResourceId output) {
+void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
+                                const gpu::UploadSlice& camera, gpu::ResourceId output) {
     render::CompositionInput composition;
-    composition.irradiance = irradiance;
+    composition.irradiance = light.irradiance;
+    composition.specular = light.specular;
     composition.view = request.view;
     composition.tone_map = request.tone_map;
     composition.ev100 = request.ev100;
@@ -251,6 +251,19 @@ void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuff
         upscale_.add(*graph_, current, output);
 }
 
+Result<SceneRenderer::Light> SceneRenderer::add_lighting(const FrameRequest& request, const render::GBuffer& g_buffer,
+                                                         const gpu::UploadSlice& camera) {
+    const gi::GBufferInput input{g_buffer.depth, g_buffer.normals, g_buffer.surface,
+                                 g_buffer.width, g_buffer.height,  {},
+                                 g_buffer.gloss, g_buffer.albedo};
+    Light light;
+    light.irradiance = graph_->create_image("irradiance", light_format, request.width, request.height);
+    if (request.view == shared::view_final && lighting_->lights_specular() && gpu_scene_->has_glossy_surfaces())
+        light.specular = graph_->create_image("specular light", light_format, request.width, request.height);
+    SUNFLECK_TRY(lighting_->add_passes(*graph_, *gpu_scene_, input, camera, light.irradiance, light.specular));
+    return light;
+}
+
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
@@ -266,13 +279,9 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
     gpu_scene_->add_passes(*graph_);
     const render::GBuffer g_buffer = g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width,
                                                         request.height, request.view == shared::view_motion);
-    SUNFLECK_ASSIGN(
-        const gpu::ResourceId irradiance,
-        lighting_->add_passes(*graph_, *gpu_scene_,
-                              {g_buffer.depth, g_buffer.normals, g_buffer.surface, g_buffer.width, g_buffer.height},
-                              camera_slice));
+    SUNFLECK_ASSIGN(const Light light, add_lighting(request, g_buffer, camera_slice));
     const gpu::ResourceId output = graph_->import_image(output_);
-    add_picture(request, g_buffer, irradiance, camera_slice, output);
+    add_picture(request, g_buffer, light, camera_slice, output);
     if (overlay)
         SUNFLECK_TRY(overlay(*graph_, output, *resources_));
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();

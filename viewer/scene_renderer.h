@@ -124,7 +124,12 @@ private:
     Status make_output(const FrameRequest& request);
     Status update_lighting(const FrameRequest& request, const scene::SceneChanges& changes, std::uint64_t completed);
     // From the light to output(): composition, anti-aliasing, enlargement.
-    void add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, gpu::ResourceId irradiance,
+    struct Light {
+        gpu::ResourceId irradiance, specular; // no specular light: not valid
+    };
+    Result<Light> add_lighting(const FrameRequest& request, const render::GBuffer& g_buffer,
+                               const gpu::UploadSlice& camera);
+    void add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
                      const gpu::UploadSlice& camera, gpu::ResourceId output);
     void draw_samples();
     Status draw_lines(const FrameRequest& request);

@@ -23,6 +23,7 @@ layout(set = 0, binding = 7) readonly buffer Rows { InstanceRow rows[]; };
 layout(set = 0, binding = 8) writeonly uniform image2D output_image;
 layout(set = 0, binding = 9) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 10) uniform sampler2D sky_image;
+layout(set = 0, binding = 11) uniform sampler2D specular_image;
 layout(push_constant) uniform Constants { CompositionConstants constants; };
 
 #include "engine/render/sky_radiance.glsl"
@@ -31,6 +32,10 @@ vec3 surface_radiance(ivec2 pixel, uint surface) {
     const vec3 irradiance = texelFetch(irradiance_image, pixel, 0).rgb;
     const vec3 albedo = unpack_albedo(texelFetch(albedo_image, pixel, 0));
     vec3 radiance = albedo * irradiance * (1.0 / pi);
+    if (constants.has_gloss != 0u && (surface & surface_glossy) != 0u) {
+        const vec4 specular = texelFetch(specular_image, pixel, 0);
+        radiance = specular.a * radiance + specular.rgb;
+    }
     if ((surface & surface_emits) != 0u)
         radiance += textured_emission != 0 ? texelFetch(emission_image, pixel, 0).rgb
                                            : rows[surface_row(surface)].emission.rgb;

@@ -70,6 +70,7 @@ shared::CompositionConstants composition_constants(const GBuffer& g_buffer, cons
     constants.sky_blue = input.sky.z;
     constants.sky_rotation = input.sky_rotation;
     constants.glare_share = input.glare_share;
+    constants.has_gloss = input.specular.valid() ? 1 : 0;
     return constants;
 }
 
@@ -90,6 +91,7 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
         .read(g_buffer.albedo, gpu::Usage::sampled)
         .read(emission_image ? g_buffer.emission : g_buffer.surface, gpu::Usage::sampled)
         .read(input.glare.valid() ? input.glare : g_buffer.albedo, gpu::Usage::sampled)
+        .read(input.specular.valid() ? input.specular : g_buffer.albedo, gpu::Usage::sampled)
         .write(output, gpu::Usage::colour_attachment)
         .execute([this, &scene, g_buffer, input, camera, output, emission_image](gpu::PassContext& context) -> Status {
             const gpu::Pipeline& kernel =
@@ -114,7 +116,8 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
                                              input.sky_image != nullptr ? input.sky_image->binding()
                                                                         : image(g_buffer.albedo),
                                              gpu::Binding::uniform(camera),
-                                             glare_binding(context, g_buffer, input)};
+                                             glare_binding(context, g_buffer, input),
+                                             image(input.specular.valid() ? input.specular : g_buffer.albedo)};
             gpu::begin_rendering(vk, context.commands, rendering, constants.width, constants.height);
             Status status = context.resources.bind(context.commands, kernel, bindings);
             if (status)
@@ -189,6 +192,7 @@ void CompositionPass::add_view(gpu::FrameGraph& graph, const scene::GpuScene& sc
         pass.constant(input.sky_image->binding());
     else
         pass.sampled(stand_in, sampler_);
+    pass.sampled(input.specular.valid() ? input.specular : stand_in, sampler_);
     pass.push(constants).dispatch((constants.width + 7) / 8, (constants.height + 7) / 8);
 }
 

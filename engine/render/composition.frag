@@ -18,6 +18,7 @@ layout(set = 0, binding = 2) uniform sampler2D emission_image;
 layout(set = 0, binding = 3) uniform sampler2D sky_image;
 layout(set = 0, binding = 4) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 5) uniform sampler2D glare_image;
+layout(set = 0, binding = 6) uniform sampler2D specular_image; // see CompositionInput
 layout(push_constant) uniform Constants { CompositionConstants constants; };
 
 layout(location = 0) out vec4 out_colour;
@@ -33,6 +34,10 @@ void main() {
     const vec4 texel = texelFetch(albedo_image, pixel, 0);
     const vec3 albedo = unpack_albedo(texel);
     vec3 radiance = albedo * texelFetch(irradiance_image, pixel, 0).rgb * (1.0 / pi);
+    if (constants.has_gloss != 0u && abs(texel.a - albedo_glossy) < albedo_step) {
+        const vec4 specular = texelFetch(specular_image, pixel, 0);
+        radiance = specular.a * radiance + specular.rgb;
+    }
     // What shines is scattered by a share, and what others scatter is added.
     const float kept = has_glare != 0 ? 1.0 - constants.glare_share : 1.0;
     if (textured_emission != 0)
@@ -41,7 +46,7 @@ void main() {
     if (has_glare != 0)
         radiance += glare(gl_FragCoord.xy / vec2(constants.width, constants.height));
     const vec3 shown = shown_from_radiance(radiance, constants.exposure);
-    const bool unlit = abs(texel.a - albedo_unlit) < 0.25; // the base colour itself
+    const bool unlit = abs(texel.a - albedo_unlit) < albedo_step; // the base colour itself
     const vec3 colour = srgb_from_linear_colour(unlit ? albedo : shown);
     out_colour = vec4(colour, alpha_is_brightness != 0 ? display_brightness(colour) : 1.0);
 }

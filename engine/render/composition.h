@@ -20,6 +20,9 @@ struct CompositionInput {
     // Of the final tone-mapped picture: what is scattered (GlarePass), and the share of what shines that is.
     gpu::ResourceId glare;
     float glare_share = 0.0f;
+    // Light of glossy pixels: rgb: radiance that facets reflect, W/(sr m2); a: share of the base's light that leaves
+    // it through the coat. Not valid: all is matt.
+    gpu::ResourceId specular;
 };
 shared::CompositionConstants composition_constants(const GBuffer& g_buffer, const CompositionInput& input);
 

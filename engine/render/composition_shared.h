@@ -23,6 +23,7 @@ struct CompositionConstants {
         sky_blue;       // radiance where nothing is, W/(sr m2); times the sky's picture, if there is one
     float sky_rotation; // rad, of that picture
     float glare_share;  // of what shines, scattered
+    uint has_gloss;     // 1: the image of specular light holds that of glossy pixels
 };
 
 // Glare is found at a fraction of the size, and the coarser levels of its pyramid; the image is the sum of them all.
@@ -33,9 +34,11 @@ SHARED_CONSTANT uint glare_levels = 4u;
 // alpha says what the pixel is, so that the final picture need not read surface ids.
 SHARED_CONSTANT float albedo_of_nothing = 0.0f; // no surface
 SHARED_CONSTANT float albedo_unlit = 0.5f;      // shown as it is, whatever the light
+SHARED_CONSTANT float albedo_glossy = 0.75f;    // lit, and reflects by microfacets
 SHARED_CONSTANT float albedo_lit = 1.0f;
-SHARED_FUNCTION vec4 pack_albedo(vec3 albedo, bool unlit) {
-    return vec4(sqrt(max(albedo, vec3(0.0f))), unlit ? albedo_unlit : albedo_lit);
+SHARED_CONSTANT float albedo_step = 0.1f; // within which the alpha is one of these
+SHARED_FUNCTION vec4 pack_albedo(vec3 albedo, bool unlit, bool glossy) {
+    return vec4(sqrt(max(albedo, vec3(0.0f))), unlit ? albedo_unlit : glossy ? albedo_glossy : albedo_lit);
 }
 SHARED_FUNCTION vec3 unpack_albedo(vec4 texel) {
     return vec3(texel) * vec3(texel);
@@ -51,7 +54,7 @@ struct EmissionConstants {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::CompositionConstants) == 40);
+static_assert(sizeof(sunfleck::shared::CompositionConstants) == 44);
 static_assert(sizeof(sunfleck::shared::EmissionConstants) == 72);
 #endif
 #endif

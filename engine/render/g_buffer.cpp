@@ -10,7 +10,7 @@ namespace sunfleck::render {
 namespace {
 
 // Surfaces with textures read more of a vertex, and three textures.
-void describe_kind(std::uint32_t kind, bool motion, gpu::GraphicsDescription& description) {
+void describe_kind(std::uint32_t kind, bool motion, bool extra_images, gpu::GraphicsDescription& description) {
     const bool textured = kind >= scene::surface_kind_textured;
     description.vertex_shader = textured ? "engine/render/g_buffer_textured.vert" : "engine/render/g_buffer.vert";
     description.fragment_shader = textured ? "engine/render/g_buffer_textured.frag" : "engine/render/g_buffer.frag";
@@ -21,7 +21,7 @@ void describe_kind(std::uint32_t kind, bool motion, gpu::GraphicsDescription& de
     description.attributes.push_back({2, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({3, VK_FORMAT_R32G32B32A32_SFLOAT, 16});
     description.attributes.push_back({4, VK_FORMAT_R8G8B8A8_UNORM, 4});
-    description.specialization = {kind == scene::surface_kind_holes, motion};
+    description.specialization = {kind == scene::surface_kind_holes, motion, extra_images};
 }
 
 } // namespace
@@ -32,14 +32,16 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
     description.depth_format = depth_format;
     description.dynamic_cull = true;
     for (std::uint32_t kind = 0; kind < scene::surface_kinds; ++kind) {
-        describe_kind(kind, false, description);
+        describe_kind(kind, false, false, description);
         description.colour_formats = {normals_format, surface_format, albedo_format};
         SUNFLECK_ASSIGN(pass.pipelines_[nothing][kind], pipelines.graphics(description));
-        describe_kind(kind, true, description);
+        describe_kind(kind, true, false, description);
         description.colour_formats.push_back(motion_format);
         SUNFLECK_ASSIGN(pass.pipelines_[motion][kind], pipelines.graphics(description));
+        describe_kind(kind, true, true, description);
         description.colour_formats.push_back(emission_format);
-        SUNFLECK_ASSIGN(pass.pipelines_[motion_and_emission][kind], pipelines.graphics(description));
+        description.colour_formats.push_back(gloss_format);
+        SUNFLECK_ASSIGN(pass.pipelines_[emission_and_gloss][kind], pipelines.graphics(description));
     }
     return pass;
 }
@@ -105,13 +107,15 @@ GBuffer GBufferPass::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, c
     target.normals = graph.create_image("normals", normals_format, width, height);
     target.surface = graph.create_image("surface ids", surface_format, width, height);
     target.albedo = graph.create_image("albedo", albedo_format, width, height);
-    const bool emission = scene.has_emission_textures();
-    if (with_motion || emission)
+    const bool with_extras = scene.has_emission_textures() || scene.has_gloss_textures();
+    if (with_motion || with_extras)
         target.motion = graph.create_image("motion", motion_format, width, height);
-    if (emission)
+    if (with_extras) {
         target.emission = graph.create_image("emission", emission_format, width, height);
+        target.gloss = graph.create_image("gloss", gloss_format, width, height);
+    }
     auto pass = graph.add_pass("g-buffer");
-    for (const gpu::ResourceId extra : {target.motion, target.emission})
+    for (const gpu::ResourceId extra : {target.motion, target.emission, target.gloss})
         if (extra.valid())
             pass.write(extra, gpu::Usage::colour_attachment);
     pass.write(target.depth, gpu::Usage::depth_attachment)
@@ -134,10 +138,12 @@ Status GBufferPass::record(gpu::PassContext& context, const scene::GpuScene& sce
         attachment(target.normals, colour), attachment(target.surface, colour), attachment(target.albedo, colour)};
     if (target.motion.valid())
         colours.push_back(attachment(target.motion, colour));
-    if (target.emission.valid())
+    if (target.emission.valid()) {
         colours.push_back(attachment(target.emission, colour));
+        colours.push_back(attachment(target.gloss, colour));
+    }
     colours[0].loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // normals: nobody reads them where no surface is
-    const Extra extra = target.emission.valid() ? motion_and_emission : target.motion.valid() ? motion : nothing;
+    const Extra extra = target.emission.valid() ? emission_and_gloss : target.motion.valid() ? motion : nothing;
     const VkRenderingAttachmentInfo depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL);
     VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
     rendering.renderArea.extent = {target.width, target.height};

@@ -24,6 +24,7 @@ layout(location = 1) out uint out_surface;  // row + 1, and what instance_shared
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec2 out_motion;   // in units of the picture: where the point was, minus where it is
 layout(location = 4) out vec4 out_emission; // radiance, W/(sr m2)
+layout(location = 5) out vec2 out_gloss;    // metallic, roughness
 
 void main() {
     // Surfaces are two-sided: the geometric normal faces the camera, the shading normal is on its side.
@@ -35,6 +36,7 @@ void main() {
     out_normals = uvec2(pack_normal(shading), pack_normal(geometric));
     out_surface = draw.surface;
     out_emission = vec4(draw.emission.rgb, 1.0);
+    out_gloss = unpackUnorm2x16(draw.gloss);
     vec3 albedo = base_colour_of(draw);
     if (pattern_kind != pattern_none) {
         const uint row = surface_row(draw.surface);
@@ -48,6 +50,7 @@ void main() {
         albedo = mix(albedo, pattern.rgb,
                      filtered_pattern_share(pattern_kind, pattern.w, local, local_normal, footprint));
     }
-    out_albedo = pack_albedo(albedo, (draw.surface & surface_unlit) != 0u);
+    out_albedo = pack_albedo(albedo, (draw.surface & surface_unlit) != 0u,
+                             (draw.surface & surface_glossy) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

@@ -8,6 +8,7 @@
 
 // Masked and blended surfaces have a pipeline of their own: `discard` keeps others from early depth tests.
 layout(constant_id = 0) const uint has_holes = 0;
+layout(constant_id = 2) const uint writes_extras = 0; // emission and gloss
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
@@ -15,6 +16,7 @@ layout(set = 0, binding = 2) readonly buffer Materials { MaterialRow materials[]
 layout(set = 0, binding = 3) uniform sampler2D colour_texture;
 layout(set = 0, binding = 4) uniform sampler2D normal_texture;
 layout(set = 0, binding = 5) uniform sampler2D emission_texture;
+layout(set = 0, binding = 6) uniform sampler2D gloss_texture; // green: roughness, blue: metallic
 
 layout(push_constant) uniform Constants { DrawConstants draw; };
 
@@ -25,13 +27,14 @@ layout(location = 3) in vec4 in_current;
 layout(location = 5) in vec4 in_tangent;
 layout(location = 6) in vec4 in_colour;
 layout(location = 7) in vec4 in_colour_normal_place;
-layout(location = 8) in vec2 in_emission_place;
+layout(location = 8) in vec4 in_emission_gloss_place;
 
 layout(location = 0) out uvec2 out_normals; // see g_buffer.frag
 layout(location = 1) out uint out_surface;
 layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec2 out_motion;
 layout(location = 4) out vec4 out_emission;
+layout(location = 5) out vec2 out_gloss;
 
 // A threshold for each pixel of a 4x4 square, all different and evenly spread: what lets half of the light through is
 // drawn at half of the pixels (B. Bayer, 1973).
@@ -45,7 +48,11 @@ void main() {
     // All textures are read before anything is discarded or branched.
     const vec4 colour = texture(colour_texture, in_colour_normal_place.xy) * in_colour;
     const vec3 bump_texel = texture(normal_texture, in_colour_normal_place.zw).xyz;
-    const vec3 emission_texel = texture(emission_texture, in_emission_place).rgb;
+    vec3 emission_texel = vec3(1.0), gloss_texel = vec3(1.0);
+    if (writes_extras != 0) {
+        emission_texel = texture(emission_texture, in_emission_gloss_place.xy).rgb;
+        gloss_texel = texture(gloss_texture, in_emission_gloss_place.zw).rgb;
+    }
     const vec4 factors = materials[rows[surface_row(draw.surface)].material.x].factors;
     if (has_holes != 0) {
         const float alpha = colour.a * factors.x;
@@ -77,7 +84,9 @@ void main() {
     if (factors.w != 0.0)
         emission *= emission_texel;
     out_emission = vec4(emission, 1.0);
+    out_gloss = unpackUnorm2x16(draw.gloss) * gloss_texel.bg;
     out_surface = draw.surface;
-    out_albedo = pack_albedo(base_colour_of(draw) * colour.rgb, (draw.surface & surface_unlit) != 0u);
+    out_albedo = pack_albedo(base_colour_of(draw) * colour.rgb, (draw.surface & surface_unlit) != 0u,
+                             (draw.surface & surface_glossy) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

@@ -27,7 +27,7 @@ layout(location = 6) out vec4 out_colour;
 // Places on the textures. Found here, not for each pixel: beside a triangle's edge a device may not read buffers, and
 // the derivatives there would be wrong.
 layout(location = 7) out vec4 out_colour_normal_place;
-layout(location = 8) out vec2 out_emission_place;
+layout(location = 8) out vec4 out_emission_gloss_place;
 
 #include "engine/render/draw_vertex.glsl"
 
@@ -39,7 +39,8 @@ void main() {
     const uint material = rows[surface_row(draw.surface)].material.x;
     out_colour_normal_place = vec4(texture_place(materials[material].base_colour, in_coordinates),
                                    texture_place(materials[material].normal, in_coordinates));
-    out_emission_place = texture_place(materials[material].emission, in_coordinates);
+    out_emission_gloss_place = vec4(texture_place(materials[material].emission, in_coordinates),
+                                    texture_place(materials[material].metallic_roughness, in_coordinates));
     out_tangent = vec4(dot(draw.model[0].xyz, in_tangent.xyz), dot(draw.model[1].xyz, in_tangent.xyz),
                        dot(draw.model[2].xyz, in_tangent.xyz), in_tangent.w);
     out_colour = in_colour;

@@ -34,14 +34,14 @@ struct DrawItem {
     std::int32_t vertex_offset = 0;
     std::uint32_t row = 0;
     std::uint32_t vertex_count = 0;
-    std::span<const DetailRange> details;    // from fine to coarse; the first is the whole mesh
-    bool closed = false;                     // and not mirrored: seen from outside, only front faces show
-    bool single_sided = false;               // pictures do not show it from behind
-    bool mirrored = false;                   // the model matrix turns triangles round
-    float scale = 1.0f;                      // greatest length of the model matrix's axes
-    Bounds bounds;                           // world space
-    std::uint32_t kind = 0;                  // of its surface
-    std::int32_t textures[3] = {-1, -1, -1}; // base colour, normal, emission
+    std::span<const DetailRange> details;        // from fine to coarse; the first is the whole mesh
+    bool closed = false;                         // and not mirrored: seen from outside, only front faces show
+    bool single_sided = false;                   // pictures do not show it from behind
+    bool mirrored = false;                       // the model matrix turns triangles round
+    float scale = 1.0f;                          // greatest length of the model matrix's axes
+    Bounds bounds;                               // world space
+    std::uint32_t kind = 0;                      // of its surface
+    std::int32_t textures[4] = {-1, -1, -1, -1}; // base colour, normal, emission, metallic and roughness
     shared::DrawConstants constants{};
     bool casts_shadow = true; // movers only: static geometry always does
     bool is_static = true;
@@ -89,6 +89,9 @@ public:
     const gpu::UploadSlice& materials() const { return materials_; }
     // Some surface's emission has a texture.
     bool has_emission_textures() const { return has_emission_textures_; }
+    // Some surface reflects by microfacets (surface_glossy); and the metallic or roughness of some has a texture.
+    bool has_glossy_surfaces() const { return has_glossy_surfaces_; }
+    bool has_gloss_textures() const { return has_gloss_textures_; }
     // Rows of this frame, by DrawItem::row; a storage buffer slice.
     const gpu::UploadSlice& rows() const { return rows_; }
     // Box around all static geometry, and around everything.
@@ -136,7 +139,7 @@ private:
     void describe_place(const Drawable& drawable, const MeshStore& meshes, DrawItem& item,
                         shared::InstanceRow& row) const;
     void find_bounds(bool static_ones);
-    void find_emission_textures();
+    void find_surface_kinds();
     Status copy_vertices(gpu::PassContext& context) const;
     Status copy_staged(gpu::PassContext& context);
     // Calls make(buffer, its name, its values, its usage) for all of them.
@@ -154,7 +157,7 @@ private:
     GpuTextures textures_;
     gpu::Buffer positions_, normals_, indices_, texture_coordinates_, tangents_, colours_;
     gpu::UploadSlice materials_;
-    bool has_emission_textures_ = false;
+    bool has_emission_textures_ = false, has_glossy_surfaces_ = false, has_gloss_textures_ = false;
     std::vector<VertexCopy> copies_; // until they were recorded
     std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;

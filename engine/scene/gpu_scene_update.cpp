@@ -2,6 +2,7 @@
 #include "engine/scene/gpu_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace sunfleck::scene {
@@ -23,6 +24,12 @@ float greatest_displacement(const mat4& before, const mat4& after, const Bounds&
     return greatest;
 }
 
+// Where emission has no texture, the picture shows what shines without gloss.
+bool is_glossy(const shared::InstanceRow& row) {
+    const bool has_facets = row.material.w != 0 || (row.material.z & 0xffffu) != 0;
+    return has_facets && (row.material.y & shared::material_unlit) == 0 && row.emission.w == 0.0f;
+}
+
 shared::DrawConstants draw_constants(const shared::InstanceRow& row, std::uint32_t number) {
     shared::DrawConstants constants{};
     const mat4 model_rows = glm::transpose(row.model);
@@ -34,7 +41,9 @@ shared::DrawConstants draw_constants(const shared::InstanceRow& row, std::uint32
     constants.emission = vec4(emission, 0.0f);
     constants.surface = (number + 1) | (row.emission.w > 0.0f ? shared::surface_area_light : 0) |
                         (emission.r + emission.g + emission.b > 0.0f ? shared::surface_emits : 0) |
-                        (row.material.y != 0 ? shared::surface_unlit : 0);
+                        ((row.material.y & shared::material_unlit) != 0 ? shared::surface_unlit : 0) |
+                        (is_glossy(row) ? shared::surface_glossy : 0);
+    constants.gloss = row.material.z;
     return constants;
 }
 
@@ -54,6 +63,7 @@ shared::MaterialRow material_row(const Drawable& drawable) {
     row.base_colour = texture_row(textures.base_colour);
     row.normal = texture_row(textures.normal);
     row.emission = texture_row(textures.emission);
+    row.metallic_roughness = texture_row(textures.metallic_roughness);
     row.factors = vec4(material.alpha, material.alpha_mode == AlphaMode::mask ? material.alpha_cutoff : -1.0f,
                        textures.normal ? textures.normal_scale : 0.0f, textures.emission ? 1.0f : 0.0f);
     return row;
@@ -73,7 +83,9 @@ void describe_surface(const Drawable& drawable, DrawItem& item, shared::Instance
         row.inverse_model = glm::inverse(drawable.matrix);
     }
     row.emission = vec4(material.emission, drawable.is_lamp ? 1.0f : 0.0f);
-    row.material.y = material.unlit ? 1 : 0;
+    row.material.y = (material.unlit ? shared::material_unlit : 0) | (drawable.is_static ? 0 : shared::material_moves);
+    row.material.z = glm::packUnorm2x16(vec2(material.metallic, material.roughness));
+    row.material.w = material.specular ? std::bit_cast<std::uint32_t>(material.index_of_refraction) : 0;
 }
 
 } // namespace
@@ -181,7 +193,7 @@ void GpuScene::lay_out(const SceneChanges& changes, const MeshStore& meshes) {
         removed_bounds_.push_back(items_before[place].bounds);
     ranges_changed_ = false;
     find_bounds(true);
-    find_emission_textures();
+    find_surface_kinds();
 }
 
 void GpuScene::refresh(const SceneChanges& changes, const MeshStore& meshes) {
@@ -197,7 +209,7 @@ void GpuScene::refresh(const SceneChanges& changes, const MeshStore& meshes) {
     if (moved)
         find_bounds(changes.static_geometry);
     if (surfaces)
-        find_emission_textures();
+        find_surface_kinds();
 }
 
 void GpuScene::find_bounds(bool static_ones) {
@@ -212,10 +224,14 @@ void GpuScene::find_bounds(bool static_ones) {
         bounds_.add(draws_[place].bounds);
 }
 
-void GpuScene::find_emission_textures() {
-    has_emission_textures_ = std::any_of(draws_.begin(), draws_.end(), [&](const DrawItem& item) {
+void GpuScene::find_surface_kinds() {
+    const auto any = [&](const auto& holds) { return std::any_of(draws_.begin(), draws_.end(), holds); };
+    const auto is_glossy = [](const DrawItem& item) { return (item.constants.surface & shared::surface_glossy) != 0; };
+    has_emission_textures_ = any([&](const DrawItem& item) {
         return item.textures[2] >= 0 && vec3(instance_rows_[item.row].emission) != vec3(0.0f);
     });
+    has_glossy_surfaces_ = any(is_glossy);
+    has_gloss_textures_ = any([&](const DrawItem& item) { return item.textures[3] >= 0 && is_glossy(item); });
 }
 
 // `item` and `row` are as they were in the last update, or, of new ones, empty but for their numbers.
@@ -229,6 +245,7 @@ void GpuScene::describe(const Drawable& drawable, const MeshStore& meshes, DrawI
         item.textures[0] = drawable.textures.base_colour.texture;
         item.textures[1] = drawable.textures.normal.texture;
         item.textures[2] = drawable.textures.emission.texture;
+        item.textures[3] = drawable.textures.metallic_roughness.texture;
         material_rows_[row.material.x] = material_row(drawable);
     }
     item.constants = draw_constants(row, item.row);

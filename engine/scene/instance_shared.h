@@ -12,14 +12,19 @@ struct InstanceRow {
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
     vec4 pattern;        // 224: rgb of the second colour; w: scale, m
     mat4 inverse_model;  // 240: world to object, for patterns
-    uvec4 material;      // 304: x: row of the material buffer, for textured surfaces
+    uvec4 material; // 304: x: row of the material buffer, for textured surfaces; y: material_unlit, material_moves;
+                    // z: metallic and roughness, 16 bits each; w: bits of the coat's index of refraction, 0: none
 };
 
+SHARED_CONSTANT uint material_unlit = 1u;
+SHARED_CONSTANT uint material_moves = 2u; // the instance is a mover
+
 // A surface id in the G-buffer: instance row + 1 in the low bits; 0 for the background.
-SHARED_CONSTANT uint surface_row_mask = 0x1fffffffu;
+SHARED_CONSTANT uint surface_row_mask = 0x0fffffffu;
 SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an AreaLight
 SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
 SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour, unaffected by light
+SHARED_CONSTANT uint surface_glossy = 0x10000000u;     // reflects by microfacets, as metal or under a coat
 
 // What drawing one instance into the G-buffer needs of its row, as push constants: a CPU device reads those once per
 // draw, but a buffer once per vertex or pixel.
@@ -28,6 +33,7 @@ struct DrawConstants {
     vec4 normal_colour[3]; // 48: columns of the normal matrix; w: red, green, blue of the base colour
     vec4 emission;         // 96: rgb, radiance W/(sr m2)
     uint surface;          // 112: surface id, as above
+    uint gloss;            // 116: metallic and roughness, as in InstanceRow
 };
 
 // Row of a surface id that is not 0.
@@ -41,6 +47,6 @@ SHARED_FUNCTION vec3 base_colour_of(DrawConstants draw) {
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::InstanceRow) == 320);
-static_assert(sizeof(sunfleck::shared::DrawConstants) == 116);
+static_assert(sizeof(sunfleck::shared::DrawConstants) == 120);
 #endif
 #endif

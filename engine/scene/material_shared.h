@@ -14,6 +14,7 @@ struct MaterialRow {
     TextureRow base_colour;
     TextureRow normal;
     TextureRow emission;
+    TextureRow metallic_roughness;
     vec4 factors; // x: alpha; y: what alpha is compared with (mask: the cutoff; blend: -1, stippled);
                   // z: scale of the normal map, 0 without one; w: 1 if emission has a texture
 };
@@ -27,6 +28,6 @@ SHARED_FUNCTION vec2 texture_place(TextureRow row, vec4 coordinates) {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::MaterialRow) == 112);
+static_assert(sizeof(sunfleck::shared::MaterialRow) == 144);
 #endif
 #endif

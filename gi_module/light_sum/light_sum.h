@@ -5,13 +5,10 @@
 #include "engine/gpu/frame_graph.h"
 #include "engine/scene/gpu_scene.h"
 #include "gi_module/light_sum/light_sum_shared.h"
+#include "gi_module/light_sum/pixel_area.h"
 #include "gi_module/transport/g_buffer.h"
 
 namespace sunfleck::gi {
-
-struct PixelArea {
-    std::uint32_t x = 0, y = 0, width = 0, height = 0;
-};
 
 class LightSum {
 public:

@@ -6,9 +6,14 @@ namespace sunfleck::gi {
 
 bool owns_sample(CellSet cells, const LightSample& sample) {
     LightCell cell{path_part(sample.bounce, sample.punctual), sample.dynamic, false, false};
-    const bool on_fixed = cells[cell.index()];
-    cell.on_mover = true;
-    return on_fixed || cells[cell.index()];
+    for (const bool specular : {false, true})
+        for (const bool on_mover : {false, true}) {
+            cell.specular = specular;
+            cell.on_mover = on_mover;
+            if (cells[cell.index()])
+                return true;
+        }
+    return false;
 }
 
 Result<std::vector<LightBatch>> make_light_batches(const SampleSet& samples, const ShadowService& shadows,

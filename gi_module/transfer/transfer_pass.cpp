@@ -11,29 +11,13 @@ namespace {
 
 constexpr VkFormat drawn_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-// The pixels that the boxes of all draws may cover; the whole picture if one reaches behind the camera.
 PixelArea covered(const std::vector<TransferDraw>& draws, const gpu::UploadSlice& camera,
                   const GBufferInput& g_buffer) {
-    shared::CameraRow row;
-    std::memcpy(&row, camera.data, sizeof row);
-    vec2 low(1e9f), high(-1e9f);
+    std::vector<Bounds> boxes;
+    boxes.reserve(draws.size());
     for (const TransferDraw& draw : draws)
-        for (int i = 0; i < 8; ++i) {
-            const Bounds& b = draw.item.bounds;
-            const vec3 corner(i & 1 ? b.maximum.x : b.minimum.x, i & 2 ? b.maximum.y : b.minimum.y,
-                              i & 4 ? b.maximum.z : b.minimum.z);
-            const vec4 clip = row.view_projection * vec4(corner, 1.0f);
-            if (clip.w <= 1e-4f)
-                return {0, 0, g_buffer.width, g_buffer.height};
-            const vec2 place(clip.x / clip.w, clip.y / clip.w);
-            low = glm::min(low, place);
-            high = glm::max(high, place);
-        }
-    const vec2 size(float(g_buffer.width), float(g_buffer.height));
-    const vec2 first = glm::clamp(glm::floor((low * 0.5f + 0.5f) * size) - 1.0f, vec2(0.0f), size);
-    const vec2 end = glm::clamp(glm::ceil((high * 0.5f + 0.5f) * size) + 1.0f, first, size);
-    return {std::uint32_t(first.x), std::uint32_t(first.y), std::uint32_t(end.x - first.x),
-            std::uint32_t(end.y - first.y)};
+        boxes.push_back(draw.item.bounds);
+    return covered_pixels(boxes, camera, g_buffer.width, g_buffer.height);
 }
 
 } // namespace

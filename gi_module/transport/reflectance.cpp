@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace sunfleck::gi {
 namespace {
@@ -65,8 +66,19 @@ public:
         return mix(mean_[row.low], mean_[row.low + 1], row.rest);
     }
 
+    std::vector<vec2> rows() const {
+        std::vector<vec2> result;
+        result.reserve(roughnesses * shared::facet_columns);
+        for (std::size_t r = 0; r < roughnesses; ++r) {
+            for (std::size_t c = 0; c < cosines; ++c)
+                result.emplace_back(directional_[r * cosines + c].at_normal, directional_[r * cosines + c].at_grazing);
+            result.emplace_back(mean_[r].at_normal, mean_[r].at_grazing);
+        }
+        return result;
+    }
+
 private:
-    static constexpr std::size_t roughnesses = 32, cosines = 48;
+    static constexpr std::size_t roughnesses = shared::facet_roughnesses, cosines = shared::facet_cosines;
     struct Place {
         std::size_t low;
         float rest;
@@ -114,9 +126,7 @@ GgxLayer::GgxLayer(vec3 reflectance, float roughness)
     : reflectance_(reflectance), alpha_(std::max(roughness * roughness, smallest_alpha)) {
     const Split mean = Tables::get().mean(alpha_);
     mean_lost_ = 1.0f - mean.whole();
-    // Schlick's term in the mean over all directions; a series of reflections, each of which all but mean_lost_ leaves.
-    const vec3 average = reflectance_ + (vec3(1.0f) - reflectance_) / 21.0f;
-    given_back_ = average * average * mean.whole() / (vec3(1.0f) - average * mean_lost_);
+    given_back_ = shared::facets_given_back(reflectance_, vec2(mean.at_normal, mean.at_grazing));
     mean_albedo_ = reflectance_ * mean.at_normal + mean.at_grazing + given_back_ * mean_lost_;
 }
 
@@ -141,6 +151,11 @@ vec3 GgxLayer::multiple(float outgoing, float incoming) const {
     const float lost =
         (1.0f - tables.directional(outgoing, alpha_).whole()) * (1.0f - tables.directional(incoming, alpha_).whole());
     return given_back_ * (lost / (pi * mean_lost_));
+}
+
+std::span<const vec2> facet_table() {
+    static const std::vector<vec2> table = Tables::get().rows();
+    return table;
 }
 
 float dielectric_reflectance(float index_of_refraction) {

@@ -9,6 +9,9 @@
 #pragma once
 
 #include "engine/scene/components.h"
+#include "gi_module/transport/facets_shared.h"
+
+#include <span>
 
 namespace sunfleck::gi {
 
@@ -36,6 +39,9 @@ private:
     vec3 given_back_; // of what single reflections lose
     vec3 mean_albedo_;
 };
+
+// What GgxLayer looks up, for shaders; facets_shared.h says how it is laid out. Made at the first call, in any thread.
+std::span<const vec2> facet_table();
 
 // Reflectance of a dielectric at normal incidence.
 float dielectric_reflectance(float index_of_refraction);

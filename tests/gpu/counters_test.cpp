@@ -56,6 +56,7 @@ struct Course {
     Changes halfway{}; // from the third frame on
     std::uint32_t strength_budget = 0xffffffffu;
     float last_indirect_scale = 1.0f; // in the last frame
+    std::uint32_t view = shared::view_irradiance;
 };
 
 // Small scenes in which, together, each counter has something to count.
@@ -69,6 +70,7 @@ const std::vector<Course>& courses() {
         // With other maps, all light is baked again; after a level's first frame, that is work of several.
         {assets::make_two_rooms, {{"lights", "300"}}, 64, 48, {{"shadow_map_resolution", "32"}}},
         {assets::make_cornell, {{"direct", "brute_force"}, {"indirect", "brute_force"}, {"count_clamped", "on"}}},
+        {assets::make_ring, {{"specular", "gloss"}}, 64, 48, {}, 0xffffffffu, 1.0f, shared::view_final},
         {assets::make_cornell, {}, 64, 48, {}, 2, 0.5f}, // bounced light is dimmed, two samples a frame
         {assets::make_cornell, {{"repair_contrast", "0"}, {"repair_angle", "0.1"}, {"low_resolution", "4"}}, 640, 480},
     };
@@ -91,6 +93,7 @@ void count(const Course& course, std::map<std::string, double>& greatest) {
     world.request.width = course.width;
     world.request.strength_budget = course.strength_budget;
     world.request.height = course.height;
+    world.request.view = course.view;
     std::set<std::string_view> declared;
     for (const gi::Counter* counter : gi::all_counters())
         declared.insert(counter->name);

@@ -103,7 +103,7 @@ struct TextureData {
 struct MaterialData {
     Vector3 albedo = {0.8f, 0.8f, 0.8f};     // what reflected light is multiplied by, 0 to 1
     Vector3 emission = {0.0f, 0.0f, 0.0f};   // radiance on the front side, W/(sr m2); not zero: an emitter of any shape
-    float metallic = 0.0f, roughness = 1.0f; // as in glTF; for specular light, which no technique has yet
+    float metallic = 0.0f, roughness = 1.0f; // as in glTF; for specular light (setting `specular`)
     TextureData albedo_texture;              // multiplies albedo, where the mesh has texture coordinates
 };
 
@@ -200,10 +200,10 @@ struct HostImage {
 //   motion              R16G16_SFLOAT or R32G32_SFLOAT. Place in the previous frame minus place in this one; 1 is the
 //                       picture's width or height.
 //   metallic_roughness  R8G8_UNORM, R8G8B8A8_UNORM or R16G16_SFLOAT. x: metallic, y: roughness, as in glTF.
-//   specular            R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. Output, radiance W/(sr m2); 0 as long as no
-//                       technique lights it.
-// Motion, metallic and roughness are read by no technique yet: giving them costs no more than the change to the layout
-// at exit.
+//   specular            R16G16B16A16_SFLOAT or R32G32B32A32_SFLOAT. Output, with the setting `specular=gloss`; else 0.
+//                       rgb: radiance that metals reflect, W/(sr m2); a: share of the diffuse base's light that leaves
+//                       it: the camera sees albedo * irradiance / pi * a + rgb. Where nothing is glossy, all are 0.
+// Motion is read by no technique yet: giving it costs no more than the change to the layout at exit.
 struct FrameImages {
     std::uint32_t width = 0, height = 0; // of all of them, in fact: images cannot be asked for their size
     HostImage depth, normals, surface, irradiance;

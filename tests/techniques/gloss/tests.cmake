@@ -1,0 +1,1 @@
+list(APPEND truth_sources techniques/gloss/gloss_test.cpp)
