@@ -5,17 +5,31 @@ namespace sunfleck::demo {
 Result<std::unique_ptr<GameDisplay>> GameDisplay::create(const std::string& title, const Options& options) {
     std::unique_ptr<GameDisplay> display(new GameDisplay());
     SUNFLECK_ASSIGN(display->window_, app::Window::create(title, options.width, options.height));
-    SUNFLECK_ASSIGN(display->device_,
-                    gpu::Device::create({options.device, options.validation, display->window_->instance_extensions()}));
-    SUNFLECK_ASSIGN(display->swapchain_, app::Swapchain::create(*display->device_, *display->window_, 2));
-    SUNFLECK_ASSIGN(display->screen_, app::GuiScreen::create(*display->device_, *display->swapchain_));
+    SUNFLECK_TRY(display->make_device(options));
     return display;
 }
 
-Status GameDisplay::begin_renderer() {
+Status GameDisplay::make_device(const Options& options) {
+    SUNFLECK_ASSIGN(device_, gpu::Device::create({options.device, options.validation, window_->instance_extensions()}));
+    SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
+    SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
+    return {};
+}
+
+Status GameDisplay::replace_device(const Options& options) {
+    blit_resources_.reset();
+    screen_.reset();
+    swapchain_.reset();
+    lost_.push_back(std::move(device_));
+    return make_device(options);
+}
+
+Result<bool> GameDisplay::begin_renderer() {
     SUNFLECK_TRY(device_->wait_idle());
     blit_resources_ = std::make_unique<gpu::FrameResources>(*device_);
-    return {};
+    const bool is_another = !lost_.empty();
+    lost_.clear();
+    return is_another;
 }
 
 Result<VkCommandBuffer> GameDisplay::begin_frame(viewer::SceneRenderer& renderer) {

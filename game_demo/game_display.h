@@ -4,6 +4,9 @@
 #include "engine/app/gui_screen.h"
 #include "game_demo/options.h"
 
+#include <memory>
+#include <vector>
+
 namespace sunfleck::demo {
 
 class GameDisplay {
@@ -15,8 +18,12 @@ public:
     app::Swapchain& swapchain() { return *swapchain_; }
     app::GuiScreen& screen() { return *screen_; }
 
-    // Before the first frame of a renderer, whose serials start at 1. Waits for the device.
-    Status begin_renderer();
+    // The device is lost: another one, for the same window. What was made on the one before may live until the next
+    // renderer begins. An error: there is no device.
+    Status replace_device(const Options& options);
+    // Before the first frame of a renderer, whose serials start at 1. Waits for the device. True: the device is
+    // another.
+    Result<bool> begin_renderer();
     // Starts the renderer's next frame: its command buffer. Waits until a slot is free.
     Result<VkCommandBuffer> begin_frame(viewer::SceneRenderer& renderer);
     // Draws the user interface over the picture.
@@ -26,7 +33,9 @@ public:
 
 private:
     GameDisplay() = default;
+    Status make_device(const Options& options);
     std::unique_ptr<app::Window> window_;
+    std::vector<std::unique_ptr<gpu::Device>> lost_; // until what lies on them is gone
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<app::Swapchain> swapchain_;
     std::unique_ptr<gpu::FrameResources> blit_resources_;

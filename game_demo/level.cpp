@@ -56,6 +56,18 @@ Status Level::prepare(const DemoSettings& settings, const std::function<bool(flo
     return viewer::prepare_lighting(*renderer_, request(settings, 64, 36), {100.0, progress});
 }
 
+Status Level::move_to(gpu::Device& device, std::uint32_t frames_in_flight) {
+    SUNFLECK_ASSIGN(auto renderer, viewer::SceneRenderer::create(device, frames_in_flight));
+    renderer->lighting().set_cache_folder(user_cache_folder());
+    SUNFLECK_TRY(renderer->lighting().set_settings(wanted_));
+    SUNFLECK_TRY(renderer->take_scene(renderer_->copy_scene(viewer::SceneRenderer::CopyOf::all)));
+    SUNFLECK_TRY(game_->continue_with(renderer->registry(), renderer->meshes(), &renderer->textures()));
+    changes_ = std::make_unique<viewer::LightingChanges>(device); // the one before draws with the renderer before
+    interpolation_.forget();
+    renderer_ = std::move(renderer);
+    return {};
+}
+
 void Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
     game_->restart();
@@ -64,7 +76,7 @@ void Level::restart() {
 
 Status Level::update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment) {
     interpolation_.apply(renderer_->registry(), game_->simulation(), moment);
-    const Status updated = renderer_->update(request);
+    Status updated = renderer_->update(request);
     simulation::StepInterpolation::undo(renderer_->registry());
     return updated;
 }

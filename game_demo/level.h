@@ -35,6 +35,9 @@ public:
     // that other threads can present frames meanwhile. `progress` receives the fraction done and returns false to
     // cancel with an error.
     Status prepare(const DemoSettings& settings, const std::function<bool(float)>& progress);
+    // To another device, because the present one is lost: the world goes on from where it is, and its light is made
+    // once more. Nothing has changed on an error. The device before may go then.
+    Status move_to(gpu::Device& device, std::uint32_t frames_in_flight);
 
     viewer::SceneRenderer& renderer() { return *renderer_; }
     GameWorld& game() { return *game_; }

@@ -7,18 +7,32 @@ namespace {
 
 // Fraction of the progress bar for reading; the rest is preparation.
 constexpr float read_until = 0.3f;
+constexpr std::uint32_t frames_in_flight = 2;
 
 } // namespace
 
 LevelLoader::LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings)
     : device_(device), source_(std::move(source)), settings_(settings) {
+    start();
+}
+
+LevelLoader::LevelLoader(gpu::Device& device, std::unique_ptr<Level> level, const DemoSettings& settings)
+    : device_(device), settings_(settings), level_(std::move(level)), moves_(true) {
+    start();
+}
+
+LevelLoader::~LevelLoader() {
+    stop();
+}
+
+void LevelLoader::start() {
     thread_ = std::thread([this] {
-        result_ = load();
+        loaded_ = load();
         finished_ = true;
     });
 }
 
-LevelLoader::~LevelLoader() {
+void LevelLoader::stop() {
     stop_ = true;
     if (thread_.joinable())
         thread_.join();
@@ -29,17 +43,26 @@ bool LevelLoader::report(float share) {
     return !stop_;
 }
 
-Result<std::unique_ptr<Level>> LevelLoader::load() {
+Status LevelLoader::load() {
     const auto reading = [&](float share) { return report(read_until * share); };
     const auto preparing = [&](float share) { return report(read_until + (1.0f - read_until) * share); };
-    SUNFLECK_ASSIGN(std::unique_ptr<Level> level, Level::load(device_, source_, settings_, 2, reading));
-    SUNFLECK_TRY(level->prepare(settings_, preparing));
-    return level;
+    if (moves_) {
+        SUNFLECK_TRY(level_->move_to(device_, frames_in_flight));
+    } else {
+        SUNFLECK_ASSIGN(level_, Level::load(device_, source_, settings_, frames_in_flight, reading));
+    }
+    return level_->prepare(settings_, preparing);
 }
 
 Result<std::unique_ptr<Level>> LevelLoader::take() {
     thread_.join();
-    return std::move(*result_);
+    SUNFLECK_TRY(loaded_);
+    return std::move(level_);
+}
+
+std::unique_ptr<Level> LevelLoader::give_back() {
+    stop();
+    return moves_ ? std::move(level_) : nullptr;
 }
 
 } // namespace sunfleck::demo

@@ -12,6 +12,8 @@ class LevelLoader {
 public:
     // Starts loading.
     LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings);
+    // The same for a level that moves to the device from one that is lost.
+    LevelLoader(gpu::Device& device, std::unique_ptr<Level> level, const DemoSettings& settings);
     // Cancels loading and waits for the thread, which in the long parts takes a fraction of a second.
     ~LevelLoader();
     LevelLoader(const LevelLoader&) = delete;
@@ -22,9 +24,13 @@ public:
     float share() const { return share_; }
     // The level or the error. Call once, after finished().
     Result<std::unique_ptr<Level>> take();
+    // The level that was to move, where it did not get as far as take(): cancels and waits. Null if there was none.
+    std::unique_ptr<Level> give_back();
 
 private:
-    Result<std::unique_ptr<Level>> load();
+    void start();
+    Status load();
+    void stop();
     bool report(float share);
 
     gpu::Device& device_;
@@ -32,7 +38,9 @@ private:
     const DemoSettings settings_;
     std::atomic<bool> finished_{false}, stop_{false};
     std::atomic<float> share_{0.0f};
-    std::optional<Result<std::unique_ptr<Level>>> result_;
+    std::unique_ptr<Level> level_;
+    bool moves_ = false;
+    Status loaded_;
     std::thread thread_;
 };
 

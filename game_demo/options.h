@@ -31,6 +31,8 @@ inline LevelSource source_of(const Options& options) {
     return {options.scene, options.allow_outside, options.sensors};
 }
 
+// Whether what a run in the window reads and writes can be read and written, before it takes anybody's time.
+Status check_window_files(const Options& options);
 Status run_window(const Options& options);
 Status run_headless(const Options& options);
 Status run_simulation(const Options& options); // --simulate

@@ -1,6 +1,5 @@
 // The demo in a window: real time, the simulation on its fixed step.
 #include "engine/core/log.h"
-#include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "game_demo/controls.h"
 #include "game_demo/frame_pace.h"
@@ -15,6 +14,7 @@
 #include "game_demo/presets.h"
 #include "game_demo/screenshot.h"
 #include "game_demo/state_file.h"
+#include "viewer/lost_devices.h"
 
 #include <algorithm>
 #include <chrono>
@@ -38,23 +38,19 @@ public:
 
     // However it ends, settings and recording are written.
     Status run() {
-        SUNFLECK_TRY(check_files());
+        SUNFLECK_TRY(check_window_files(options_));
         SUNFLECK_TRY(start());
         watch_stop_signals();
-        const Status played = play();
-        const Status finished = finish();
+        const Status played = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
+            if (!std::exchange(first, false))
+                SUNFLECK_TRY(take_new_device());
+            return play();
+        });
+        const Status finished = finish(played);
         return played ? finished : played;
     }
 
 private:
-    Status check_files() const {
-        const NamedFile outputs[] = {
-            {"--record", options_.record}, {"--settings", options_.settings_file}, {"--state", options_.state}};
-        const NamedFile inputs[] = {{"--scene", options_.scene}};
-        SUNFLECK_TRY(check_outputs(outputs, inputs));
-        return options_.record.empty() ? Status() : try_output(options_.record);
-    }
-
     Status play() {
         const auto ends = [&](std::uint32_t frame) {
             return window_->should_close() || stop_requested() || (options_.frames > 0 && frame >= options_.frames);
@@ -111,9 +107,21 @@ private:
         return {};
     }
 
+    // The level, which lies on the device that is lost, moves to another one behind the loading screen.
+    Status take_new_device() {
+        if (loading_)
+            level_ = loading_->give_back();
+        loading_.reset();
+        SUNFLECK_TRY(display_->replace_device(options_));
+        start_loading();
+        return {};
+    }
+
     void start_loading() {
         window_->set_title("Lantern House - loading");
-        loading_ = std::make_unique<LoadingScreen>(display_->device(), source_of(options_), first_light(settings_));
+        loading_ =
+            level_ ? std::make_unique<LoadingScreen>(display_->device(), std::move(level_), settings_)
+                   : std::make_unique<LoadingScreen>(display_->device(), source_of(options_), first_light(settings_));
     }
 
     // The device is idle when the level takes over, because submission serials restart.
@@ -123,7 +131,9 @@ private:
         if (!level_)
             return {};
         loading_.reset();
-        SUNFLECK_TRY(display_->begin_renderer());
+        SUNFLECK_ASSIGN(const bool another_device, display_->begin_renderer());
+        if (another_device)
+            menu_.say("The GPU stopped answering; a new device goes on with the picture", 8.0);
         window_->set_title("Lantern House");
         level_->apply_later(settings_); // all of the light comes in view
         hitches_.log("first picture", seconds_since(began_));
@@ -343,15 +353,16 @@ private:
         recording_.clear();
     }
 
-    Status finish() {
+    Status finish(const Status& played) {
         loading_.reset();
         hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
-        SUNFLECK_TRY(display_->device().wait_idle());
+        if (played)
+            SUNFLECK_TRY(display_->device().wait_idle());
         if (kept_.differ_from_start(settings_)) // else nothing is lost
             SUNFLECK_TRY(stored);
         SUNFLECK_TRY(recorded);
-        if (display_->device().validation_messages() > 0)
+        if (played && display_->device().validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};
     }

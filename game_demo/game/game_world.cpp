@@ -20,7 +20,7 @@ std::vector<ecs::Entity> all_with(ecs::Registry& registry) {
 } // namespace
 
 GameWorld::GameWorld(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures)
-    : registry_(registry), meshes_(meshes), textures_(textures) {
+    : registry_(&registry), meshes_(&meshes), textures_(textures) {
     registry.view<scene::Mover, scene::Transform>().each(
         [&](ecs::Entity entity, const scene::Mover& mover, const scene::Transform& transform) {
             if (mover.path == scene::MoverPath::none)
@@ -45,8 +45,19 @@ Result<std::unique_ptr<GameWorld>> GameWorld::create(ecs::Registry& registry, co
     return world;
 }
 
+Status GameWorld::continue_with(ecs::Registry& registry, const scene::MeshStore& meshes,
+                                const scene::TextureStore* textures) {
+    SUNFLECK_ASSIGN(auto sensors, gi::LightSensors::create());
+    SUNFLECK_TRY(sensors->set_settings(sensors_->settings()));
+    sensors_ = std::move(sensors);
+    registry_ = &registry;
+    meshes_ = &meshes;
+    textures_ = textures;
+    return {};
+}
+
 void GameWorld::restart() {
-    simulation_ = std::make_unique<simulation::Simulation>(registry_, meshes_);
+    simulation_ = std::make_unique<simulation::Simulation>(*registry_, *meshes_);
     sensors_->forget();
     opened_.clear();
     area_ = ecs::null_entity;
@@ -60,21 +71,21 @@ Status GameWorld::step(const simulation::StepInput& input) {
     held_ = input.buttons;
     if (reset)
         reset_room();
-    simulation_->step(registry_, input);
+    simulation_->step(*registry_, input);
     find_area();
     if (!has_sensors_)
         return {};
-    SUNFLECK_TRY(sensors_->step(registry_, meshes_, textures_));
+    SUNFLECK_TRY(sensors_->step(*registry_, *meshes_, textures_));
     note_open_sensors();
     return {};
 }
 
 const scene::GameArea* GameWorld::area() const {
-    return area_.is_null() ? nullptr : registry_.try_get<scene::GameArea>(area_);
+    return area_.is_null() ? nullptr : registry_->try_get<scene::GameArea>(area_);
 }
 
 Bounds GameWorld::box_of(ecs::Entity area) const {
-    const vec3 centre(scene::world_matrix(registry_, area)[3]), half = registry_.get<scene::GameArea>(area).half_size;
+    const vec3 centre(scene::world_matrix(*registry_, area)[3]), half = registry_->get<scene::GameArea>(area).half_size;
     return {centre - half, centre + half};
 }
 
@@ -83,7 +94,7 @@ void GameWorld::find_area() {
     for (const ecs::Entity area : areas_) {
         if (!inside(box_of(area), place))
             continue;
-        if (registry_.get<scene::GameArea>(area).goal)
+        if (registry_->get<scene::GameArea>(area).goal)
             finished_ = true;
         else
             area_ = area;
@@ -91,7 +102,7 @@ void GameWorld::find_area() {
 }
 
 void GameWorld::note_open_sensors() {
-    registry_.view<scene::SensorReading>().each([&](ecs::Entity entity, const scene::SensorReading& reading) {
+    registry_->view<scene::SensorReading>().each([&](ecs::Entity entity, const scene::SensorReading& reading) {
         if (reading.open && std::find(opened_.begin(), opened_.end(), entity) == opened_.end())
             opened_.push_back(entity);
     });
@@ -112,36 +123,36 @@ void GameWorld::reset_room() {
     const Bounds box = box_of(area_);
     reset_bodies(box);
     reset_used(box);
-    const vec3 centre(scene::world_matrix(registry_, area_)[3]);
+    const vec3 centre(scene::world_matrix(*registry_, area_)[3]);
     simulation_->place_player(centre + area->entry, area->entry_facing);
 }
 
 void GameWorld::reset_bodies(const Bounds& box) {
     for (const Start& start : starts_) {
         const bool here = inside(box, start.transform.position);
-        if (registry_.has<scene::Lantern>(start.entity)) {
+        if (registry_->has<scene::Lantern>(start.entity)) {
             if (here)
-                simulation_->put_lantern(registry_, start.entity, start.transform);
+                simulation_->put_lantern(*registry_, start.entity, start.transform);
             else
-                simulation_->hand_lantern(registry_, start.entity);
+                simulation_->hand_lantern(*registry_, start.entity);
         } else if (here) {
-            simulation_->physics().place(registry_, start.entity, start.transform);
+            simulation_->physics().place(*registry_, start.entity, start.transform);
         }
     }
 }
 
 void GameWorld::reset_used(const Bounds& box) {
-    for (const ecs::Entity entity : all_with<scene::MoverState>(registry_)) {
-        const auto* origin = registry_.try_get<scene::MoverOrigin>(entity);
-        if (registry_.get<scene::Mover>(entity).activation == scene::MoverActivation::use && origin != nullptr &&
+    for (const ecs::Entity entity : all_with<scene::MoverState>(*registry_)) {
+        const auto* origin = registry_->try_get<scene::MoverOrigin>(entity);
+        if (registry_->get<scene::Mover>(entity).activation == scene::MoverActivation::use && origin != nullptr &&
             inside(box, origin->transform.position))
-            registry_.update<scene::MoverState>(entity, {});
+            registry_->update<scene::MoverState>(entity, {});
     }
     for (const auto& [entity, on] : switches_) {
-        if (!inside(box, vec3(scene::world_matrix(registry_, entity)[3])))
+        if (!inside(box, vec3(scene::world_matrix(*registry_, entity)[3])))
             continue;
-        registry_.patch<scene::LightSwitch>(entity, [&, lit = on](scene::LightSwitch& state) { state.on = lit; });
-        simulation::apply_switch(registry_, scene::LightSwitch(registry_.get<scene::LightSwitch>(entity)));
+        registry_->patch<scene::LightSwitch>(entity, [&, lit = on](scene::LightSwitch& state) { state.on = lit; });
+        simulation::apply_switch(*registry_, scene::LightSwitch(registry_->get<scene::LightSwitch>(entity)));
     }
 }
 

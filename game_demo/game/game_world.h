@@ -14,12 +14,15 @@ public:
                                                      const scene::TextureStore* textures,
                                                      const gi::SensorSettings& settings = {});
 
+    // From now on the level is that of another registry, which holds the same: entities, components, and what they are
+    // made of. Light sensors follow all of their paths once more. An error: why they can't, and nothing has changed.
+    Status continue_with(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
     // The registry holds the freshly loaded level once more, with the same entities.
     void restart();
     // One step of simulation::step_seconds. An error: readings of sensors stay as they were.
     Status step(const simulation::StepInput& input);
 
-    ecs::Registry& registry() const { return registry_; }
+    ecs::Registry& registry() const { return *registry_; }
     simulation::Simulation& simulation() const { return *simulation_; }
     const gi::LightSensors& sensors() const { return *sensors_; }
     bool has_sensors() const { return has_sensors_; }
@@ -58,8 +61,8 @@ private:
     void reset_used(const Bounds& box);
     Bounds box_of(ecs::Entity area) const;
 
-    ecs::Registry& registry_;
-    const scene::MeshStore& meshes_;
+    ecs::Registry* registry_;
+    const scene::MeshStore* meshes_;
     const scene::TextureStore* textures_;
     std::vector<Start> starts_; // of free bodies and the lantern
     std::vector<std::pair<ecs::Entity, bool>> switches_;

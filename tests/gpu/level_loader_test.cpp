@@ -68,5 +68,46 @@ TEST_F(LevelLoaderTest, ARestartedWorldIsAFreshOne) {
     EXPECT_EQ(play(150), std::vector<std::uint64_t>(fresh.begin(), fresh.begin() + 2));
 }
 
+// A level whose device is lost goes on, on another one, with the world that it had.
+TEST_F(LevelLoaderTest, AMovedLevelHasTheSameWorld) {
+    auto level = demo::Level::load(device(), {"lantern_house"}, small_settings(), 2);
+    ASSERT_TRUE(level) << level.error().message;
+    const auto hash = [](demo::Level& of) { return of.simulation().world_hash(of.renderer().registry()); };
+    const auto play = [&](demo::Level& of, demo::WalkThrough& walk, int steps) {
+        for (int i = 0; i < steps; ++i)
+            of.step(walk.next(of.simulation()));
+        return hash(of);
+    };
+    demo::WalkThrough walk;
+    play(**level, walk, 400);
+    const demo::WalkThrough walk_then = walk;
+    const std::uint64_t then = hash(**level), whole = play(**level, walk, 300);
+    (*level)->restart();
+    walk = {};
+    EXPECT_EQ(play(**level, walk, 400), then);
+    const auto other = gpu::Device::create({});
+    ASSERT_TRUE(other) << other.error().message;
+    demo::LevelLoader loader(**other, std::move(*level), small_settings());
+    while (!loader.finished())
+        std::this_thread::sleep_for(1ms);
+    level = loader.take();
+    ASSERT_TRUE(level) << level.error().message;
+    EXPECT_EQ(hash(**level), then);
+    walk = walk_then;
+    EXPECT_EQ(play(**level, walk, 300), whole);
+    const viewer::FrameRequest request = (*level)->request(small_settings(), 64, 36);
+    ASSERT_TRUE((*level)->renderer().render_and_wait(request));
+    EXPECT_GE((*level)->renderer().statistics().counters["light_samples"], 40u);
+    level->reset(); // before its device
+}
+
+// One that can't move, because it is called off, comes back.
+TEST_F(LevelLoaderTest, ALevelThatDoesNotMoveComesBack) {
+    auto level = demo::Level::load(device(), {"four_pillars"}, small_settings(), 2);
+    ASSERT_TRUE(level) << level.error().message;
+    demo::LevelLoader loader(device(), std::move(*level), small_settings());
+    EXPECT_NE(loader.give_back(), nullptr);
+}
+
 } // namespace
 } // namespace sunfleck::tests

@@ -63,5 +63,47 @@ TEST_F(RobustLostDevice, AWalkIsTheSame) {
     EXPECT_GT(pictures, 0);
 }
 
+// Nothing here waits for a time: each step is done when what it asks for is there, or after two minutes.
+const char* const window_script = R"(
+export XDG_CONFIG_HOME=$PWD/config SUNFLECK_LOSE_FILE=$PWD/lose
+until_true() { for i in $(seq 600); do eval "$1" && return; kill -0 $P 2>/dev/null || return; sleep 0.2; done; echo "not so: $1"; }
+until_true 'xdotool getdisplaygeometry >/dev/null 2>&1'
+$PROGRAM --size 192x108 --record walk.txt > log 2>&1 & P=$!
+steps() { awk '/^[0-9]/ { n += $1 } END { print n + 0 }' walk.txt 2>/dev/null || echo 0; }
+loaded='W=$(xdotool search --name "Lantern House$" | head -1); [ -n "$W" ]'
+until_true "$loaded"
+# The recording begins when the game does, which Return starts once the window has the focus.
+until_true '[ $(steps) -gt 0 ] || { xdotool windowfocus $W; xdotool key Return; sleep 0.3; false; }'
+for loss in 1 2; do
+    before=$(steps)
+    touch lose
+    until_true '[ $(grep -c "new device" log) = '$loss' ]'
+    until_true "$loaded"
+    # It is paused where the window lost the focus.
+    until_true '[ $(steps) -gt '$before' ] || { xdotool windowfocus $W; xdotool key Return; sleep 0.3; false; }'
+    echo "played on after loss $loss: $before"
+done
+touch lose
+until_true false
+kill -9 $P 2>/dev/null && echo 'it hung'
+wait $P; echo status $?
+cat log
+)";
+
+TEST_F(RobustLostDevice, TheGameGoesOnInItsWindow) {
+    if (shell("command -v xvfb-run && command -v xdotool").status != 0)
+        GTEST_SKIP() << "xvfb and xdotool are not installed";
+    ASSERT_TRUE(write_file(folder.path / "drive.sh", "cd '" + folder.path.string() + "'\nexport " + layer +
+                                                         "\nPROGRAM='" SUNFLECK_DEMO " --scene four_pillars'\nP=$$" +
+                                                         window_script));
+    const Outcome outcome =
+        shell("timeout 280 xvfb-run -a -s '-screen 0 800x600x24 -noreset' bash " + file("drive.sh"));
+    EXPECT_EQ(count(outcome.output, "played on after loss"), 2) << outcome.output;
+    EXPECT_EQ(count(outcome.output, "status 1"), 1) << outcome.output;
+    EXPECT_EQ(count(outcome.output, "3 times"), 1) << outcome.output;
+    EXPECT_EQ(count(outcome.output, "it hung"), 0) << outcome.output;
+    EXPECT_EQ(count(outcome.output, "not so"), 0) << outcome.output;
+}
+
 } // namespace
 } // namespace sunfleck
