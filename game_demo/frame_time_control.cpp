@@ -11,11 +11,11 @@ namespace {
 
 // Of the target. Together they leave room for what varies from frame to frame: 1.15 for nineteen frames of twenty.
 constexpr double usual_share = 0.92, high_share = 1.06;
-constexpr double low_load = 0.85;            // below it, the picture may become larger
-constexpr double first_look = 0.6;           // s after the start until the first choice of a size
-constexpr double maps_regained = 0.01;       // of the usual number, in a frame with time to spare
-constexpr std::uint32_t settling = 2;        // frames after a change that do not count
-constexpr std::size_t fewest = 6, most = 60; // frames that a choice looks at
+constexpr double low_load = 0.85;                              // below it, the picture may become larger
+constexpr double first_look = 0.6;                             // s after the start until the first choice of a size
+constexpr double maps_regained = 0.01;                         // of the usual number, in a frame with time to spare
+constexpr std::uint32_t settling = 2;                          // frames after a change that do not count
+constexpr std::size_t fewest = 6, most = 60, remembered = 100; // frames that a choice looks at
 
 } // namespace
 
@@ -28,8 +28,22 @@ void FrameTimeControl::set(double target_ms, const FrameQuality& usual) {
     maps_ = usual.maps;
 }
 
-double FrameTimeControl::percentile(double share) const {
-    return statistics::percentile({times_.begin(), times_.end()}, share);
+double FrameTimeControl::usual() const {
+    return statistics::median({times_.begin(), times_.end()});
+}
+
+double FrameTimeControl::high() const {
+    return statistics::percentile({history_.begin(), history_.end()}, 0.95);
+}
+
+void FrameTimeControl::remember(double work_ms) {
+    const auto add = [&](std::deque<double>& to, std::size_t limit) {
+        to.push_back(work_ms);
+        if (to.size() > limit)
+            to.pop_front();
+    };
+    add(times_, most);
+    add(history_, remembered);
 }
 
 FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
@@ -43,34 +57,31 @@ FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
     if (skipped_ < settling) {
         ++skipped_;
     } else {
-        times_.push_back(work_ms);
-        if (times_.size() > most)
-            times_.pop_front();
+        remember(work_ms);
         choose_maps(work_ms);
     }
     if (times_.size() >= fewest)
-        out_of_reach_ = quality_.render_scale <= least_scale && maps_ <= least_maps && percentile(0.5) > target_;
+        out_of_reach_ = quality_.render_scale <= least_scale && maps_ <= least_maps && usual() > target_;
     if (times_.size() >= fewest && now - changed_ >= scale_interval && moves)
         choose_scale(now);
     return quality_;
 }
 
 // What the last change of the size did to the time tells how much of a frame does not depend on it.
-void FrameTimeControl::learn(double usual) {
+void FrameTimeControl::learn() {
     if (before_ms_ <= 0.0)
         return;
     const double pixels = std::pow(double(quality_.render_scale / before_scale_), 2.0);
     if (std::abs(1.0 - pixels) > 0.1) {
-        const double seen = (usual / before_ms_ - pixels) / (1.0 - pixels);
+        const double seen = (usual() / before_ms_ - pixels) / (1.0 - pixels);
         fixed_ = 0.5 * (fixed_ + std::clamp(seen, 0.1, 0.8));
     }
     before_ms_ = 0.0;
 }
 
 void FrameTimeControl::choose_scale(double now) {
-    const double usual = percentile(0.5);
-    learn(usual);
-    const double load = std::max(usual / (usual_share * target_), percentile(0.9) / (high_share * target_));
+    learn();
+    const double load = std::max(usual() / (usual_share * target_), high() / (high_share * target_));
     if (load <= 1.0 && load > low_load)
         return;
     const double pixels = std::clamp((0.97 / load - fixed_) / (1.0 - fixed_), 0.2, 2.0);
@@ -81,8 +92,12 @@ void FrameTimeControl::choose_scale(double now) {
         scale = usual_.render_scale;
     if (scale == quality_.render_scale || (scale > quality_.render_scale) != (load < 1.0))
         return;
-    before_ms_ = usual;
+    before_ms_ = usual();
     before_scale_ = quality_.render_scale;
+    // What frames before would have taken at the new size.
+    const double ratio = fixed_ + (1.0 - fixed_) * std::pow(double(scale / before_scale_), 2.0);
+    for (double& time : history_)
+        time *= ratio;
     quality_.render_scale = scale;
     changed_ = now;
     times_.clear();

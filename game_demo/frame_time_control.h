@@ -3,9 +3,9 @@
 // only windows use it; headless runs, replays and the gate work by counts.
 //
 // The model: a frame takes fixed + (1 - fixed) * pixels of what it took, for a share `fixed` that is learned whenever
-// the size changes. Once in two seconds at most another size is chosen, so that nine frames of ten fit into the target;
-// between those moments, frames that are too long take maps away at once, and short ones give them back slowly. A frame
-// that ends early waits, which evens the time between frames, and takes input later.
+// the size changes. Once in two seconds at most another size is chosen, so that nineteen frames of twenty fit into the
+// target; between those moments, frames that are too long take maps away at once, and short ones give them back slowly.
+// A frame that ends early waits, which evens the time between frames, and takes input later.
 #pragma once
 
 #include <cstdint>
@@ -43,14 +43,17 @@ public:
 
 private:
     static constexpr double wait_share = 0.87; // of the target
-    void learn(double usual);
+    void remember(double work_ms);
+    void learn();
     void choose_scale(double now);
     void choose_maps(double work_ms);
-    double percentile(double share) const;
+    double usual() const; // median at the present size, ms
+    double high() const;  // 95th percentile, ms
 
     double target_ = 0.0;
     FrameQuality usual_, quality_;
-    std::deque<double> times_; // work of frames at the present size, ms
+    std::deque<double> times_;   // work of frames at the present size, ms
+    std::deque<double> history_; // and of those before, as if at the present size
     std::uint32_t skipped_ = 0;
     double changed_ = 0.0; // when the size did, s
     double maps_ = 0.0, last_ms_ = 0.0, fixed_ = 0.35;

@@ -77,7 +77,7 @@ void Level::restart() {
 Status Level::update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment) {
     interpolation_.apply(renderer_->registry(), game_->simulation(), moment);
     Status updated = renderer_->update(request);
-    simulation::StepInterpolation::undo(renderer_->registry());
+    interpolation_.undo(renderer_->registry());
     return updated;
 }
 

@@ -100,7 +100,7 @@ void StepInterpolation::took_step(ecs::Registry& registry, const Simulation& sim
             if (is_new || known->second == world.matrix)
                 return;
             if (!jumped)
-                moved_.push_back({entity, known->second, world.matrix});
+                moved_.push_back({entity, known->second, world.matrix, world.matrix});
             known->second = world.matrix;
         });
     seen_ = registry.advance_tick();
@@ -120,7 +120,7 @@ void StepInterpolation::find_carried(ecs::Registry& registry, const Simulation& 
         const auto moved =
             std::find_if(moved_.begin(), moved_.end(), [&](const Motion& motion) { return motion.entity == entity; });
         const mat4& before = moved != moved_.end() ? moved->before : world.matrix;
-        carried_.push_back({entity, to_eye_before * before, to_eye * world.matrix});
+        carried_.push_back({entity, to_eye_before * before, to_eye * world.matrix, world.matrix});
     });
     std::erase_if(moved_, [&](const Motion& motion) { return hangs_on(registry, motion.entity, root); });
 }
@@ -150,6 +150,13 @@ void StepInterpolation::apply(ecs::Registry& registry, const Simulation& simulat
     const mat4 frame = frame_of(eye(simulation, moment));
     for (const Motion& motion : carried_)
         place(motion.entity, frame * between(motion.before, motion.now, moment.fraction));
+}
+
+void StepInterpolation::undo(ecs::Registry& registry) const {
+    for (const std::vector<Motion>* motions : {&moved_, &carried_})
+        for (const Motion& motion : *motions)
+            if (registry.alive(motion.entity))
+                registry.update<scene::WorldTransform>(motion.entity, {motion.exact});
 }
 
 } // namespace sunfleck::simulation

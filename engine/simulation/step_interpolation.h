@@ -54,13 +54,14 @@ public:
     // Sets the world transforms of what moved to their place at that moment; what is carried keeps its place before the
     // eye. To be undone before the next step, and before anything but drawing looks at them.
     void apply(ecs::Registry& registry, const Simulation& simulation, const DrawnMoment& moment) const;
-    // World transforms follow from the simulation once more.
-    static void undo(ecs::Registry& registry) { scene::update_world_transforms(registry); }
+    // World transforms are those of the simulation once more.
+    void undo(ecs::Registry& registry) const;
 
 private:
     struct Motion {
         ecs::Entity entity;
-        mat4 before{1.0f}, now{1.0f};
+        mat4 before{1.0f}, now{1.0f}; // in the world, or before the eye
+        mat4 exact{1.0f};             // in the world, after the last step
     };
     struct Jumps { // counts of what jumps, and what is carried: another value means a jump
         std::uint64_t persons = 0, bodies = 0;

@@ -45,7 +45,7 @@ struct Hall {
     mat4 shown(ecs::Entity entity, const DrawnMoment& moment) {
         drawn.apply(registry, *simulation, moment);
         const mat4 matrix = registry.get<WorldTransform>(entity).matrix;
-        StepInterpolation::undo(registry);
+        drawn.undo(registry);
         return matrix;
     }
     ecs::Entity lantern() {
@@ -130,7 +130,7 @@ TEST(StepInterpolation, TheSimulationDoesNotSeeIt) {
         undrawn.step(input);
         for (std::uint32_t frames = random() % 3; frames > 0; --frames) {
             drawn.drawn.apply(drawn.registry, *drawn.simulation, {share(random), vec2(share(random))});
-            StepInterpolation::undo(drawn.registry);
+            drawn.drawn.undo(drawn.registry);
         }
         ASSERT_EQ(drawn.simulation->world_hash(drawn.registry), undrawn.simulation->world_hash(undrawn.registry)) << i;
     }

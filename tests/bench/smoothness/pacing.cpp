@@ -3,11 +3,25 @@
 #include "engine/core/file.h"
 #include "tests/support/key_solver.h"
 
+#include <sys/resource.h>
+
 namespace sunfleck::bench {
 namespace {
 
 // The first frames after the title belong to loading.
 constexpr auto settling = std::chrono::milliseconds(1000);
+
+// What this program takes of the cores that it measures on, s.
+double own_seconds() {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    const auto seconds = [](const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+double seconds_since(Clock::time_point time) {
+    return std::chrono::duration<double>(Clock::now() - time).count();
+}
 
 class Hands {
 public:
@@ -74,6 +88,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
     SUNFLECK_ASSIGN(const auto game, DrivenGame::start(start));
     const std::size_t logged = game->log().size();
     const Clock::time_point began = Clock::now();
+    const double idle = own_seconds();
     std::uint64_t steps = 0;
     const auto whole = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     const std::string ended = play(*game, began + settling + whole, steps);
@@ -81,9 +96,13 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
     if (frames.size() < 10)
         return Error{"the game did not go on: " + ended};
     const nlohmann::ordered_json result = {
-        {"measured", "pacing"}, {"room", start.room},
-        {"ended", ended},       {"steps", steps},
-        {"frames_ms", frames},  {"long_frames", lines_with(game->log().substr(logged), " times the median")}};
+        {"measured", "pacing"},
+        {"room", start.room},
+        {"ended", ended},
+        {"steps", steps},
+        {"own_share", (own_seconds() - idle) / seconds_since(began)},
+        {"frames_ms", frames},
+        {"long_frames", lines_with(game->log().substr(logged), " times the median")}};
     return write_file(output, result.dump(1) + "\n");
 }
 
