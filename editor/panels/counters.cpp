@@ -2,7 +2,9 @@
 #include "editor/panels/panel.h"
 #include "gi_module/technique.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 namespace sunfleck::editor {
 namespace {
@@ -20,6 +22,42 @@ std::string amount(double value, std::string_view unit) {
     else
         std::snprintf(text, sizeof text, "%.6g %s", value, std::string(unit).c_str());
     return text;
+}
+
+// Click it to give it a budget; what is over its own is amber.
+void value(Session& session, const gi::Counter& counter, double count) {
+    const std::string name(counter.name);
+    const auto budget = session.budgets.counters.find(name);
+    const bool has = budget != session.budgets.counters.end(), over = has && count > budget->second;
+    const std::string text = amount(count, counter.unit) + (has ? " / " + amount(budget->second, counter.unit) : "");
+    ImGui::PushID(name.c_str());
+    if (over)
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.66f, 0.4f, 1.0f));
+    if (ImGui::Selectable(text.c_str()))
+        ImGui::OpenPopup("budget");
+    if (over)
+        ImGui::PopStyleColor();
+    ui::note(name, text);
+    ui::tooltip(std::string(counter.tooltip) + "\n\nClick: a budget for it");
+    if (ImGui::BeginPopup("budget")) {
+        const ui::Scope scope("budget");
+        ui::NumberLook look;
+        look.value = has ? budget->second : count;
+        look.maximum = 1e12;
+        look.unit = std::string(counter.unit);
+        look.width = 10.0f * ui::unit();
+        const ui::NumberEdit edit = ui::number_box("most", look);
+        if (edit.phase == ui::NumberEdit::Phase::dragged)
+            session.budgets.counters[name] = edit.value;
+        if (edit.phase == ui::NumberEdit::Phase::typed)
+            session.budgets.counters[name] = std::max(std::atof(edit.text.c_str()), 0.0);
+        if (ui::button("No budget", {}, has)) {
+            session.budgets.counters.erase(name);
+            ImGui::CloseCurrentPopup();
+        }
+        ImGui::EndPopup();
+    }
+    ImGui::PopID();
 }
 
 void Counters::draw(Session& session) {
@@ -44,7 +82,7 @@ void Counters::draw(Session& session) {
         ImGui::TableNextColumn();
         ui::label(std::string(counter->name), counter->tooltip);
         ImGui::TableNextColumn();
-        ui::text(std::string(counter->name), amount(picture->statistics.counters[counter->name], counter->unit));
+        value(session, *counter, picture->statistics.counters[counter->name]);
     }
     ImGui::EndTable();
 }

@@ -38,6 +38,15 @@ bool Lighting::shown(const Field& field) const {
            readable_name(field.name).find(filter_) != std::string::npos;
 }
 
+std::string budget_text(const Session& session, const Cost& cost) {
+    if (!cost.finished || !cost.error.empty() || cost.frame.includes_zero())
+        return {};
+    char text[48];
+    std::snprintf(text, sizeof text, "; %+.0f %% of the budget",
+                  100.0 * cost.frame.estimate / double(session.budgets.frame_ms));
+    return text;
+}
+
 // What the value costs over the usual one: asked for, or found.
 void cost_row(Session& session, const Field& field, bool changed) {
     const Cost cost = session.cost != nullptr ? session.cost->cost() : Cost();
@@ -57,8 +66,9 @@ void cost_row(Session& session, const Field& field, bool changed) {
     if (!is_measured)
         return ImGui::NewLine();
     ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextDisabled("%s", cost_text(cost).c_str());
-    ui::note("cost", cost_text(cost));
+    const std::string text = cost_text(cost) + budget_text(session, cost);
+    ImGui::TextDisabled("%s", text.c_str());
+    ui::note("cost", text);
     std::string passes;
     for (const auto& [name, interval] : cost.passes) {
         char line[120];

@@ -5,7 +5,9 @@
 #include "viewer/trace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace sunfleck::editor {
 namespace {
@@ -17,10 +19,11 @@ public:
 private:
     void controls(Session& session);
     void save(Session& session, bool trace) const;
-    void history(const std::deque<ProfiledFrame>& frames);
+    void history(const std::deque<ProfiledFrame>& frames, double budget);
     void graph(const char* name, const std::vector<gpu::ScopeTime>& scopes, double whole);
-    std::uint64_t chosen_ = 0; // number of a frame; 0: the newest
-    float budget_ms_ = 33.3f;
+    void compare(const ProfiledFrame& frame);
+    std::uint64_t chosen_ = 0;          // number of a frame; 0: the newest
+    std::optional<ProfiledFrame> kept_; // that others are compared with
 };
 
 ImU32 colour_of_name(const std::string& name) {
@@ -85,18 +88,64 @@ void Profile::controls(Session& session) {
         save(session, false);
     ImGui::SameLine();
     ImGui::SetNextItemWidth(7.0f * ui::unit());
-    ImGui::DragFloat("##budget", &budget_ms_, 0.1f, 1.0f, 1000.0f, "budget %.1f ms");
-    ui::note("budget", ui::number_text(double(budget_ms_), false));
+    ImGui::DragFloat("##budget", &session.budgets.frame_ms, 0.1f, 1.0f, 1000.0f, "budget %.1f ms");
+    ui::note("budget", ui::number_text(double(session.budgets.frame_ms), false));
+    ui::tooltip("What a frame may take; the status bar and measured costs are held against it");
+}
+
+// Both frames' stages and passes, those that differ most first.
+void Profile::compare(const ProfiledFrame& frame) {
+    struct Row {
+        std::string name;
+        double before = 0.0, now = 0.0;
+    };
+    std::map<std::string, Row> rows;
+    for (const bool on_gpu : {false, true})
+        for (const bool now : {false, true}) {
+            const viewer::FrameStatistics& statistics = now ? frame.statistics : kept_->statistics;
+            for (const auto& [name, time] : on_gpu ? statistics.gpu_ms : statistics.cpu_ms) {
+                Row& row = rows[(on_gpu ? "GPU  " : "CPU  ") + name];
+                (now ? row.now : row.before) = time;
+            }
+        }
+    std::vector<Row> sorted;
+    sorted.reserve(rows.size());
+    for (auto& [name, row] : rows)
+        sorted.push_back({name, row.before, row.now});
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Row& a, const Row& b) {
+        return std::abs(a.now - a.before) > std::abs(b.now - b.before);
+    });
+    if (!ImGui::BeginTable("compare", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+        return;
+    const std::string kept = "frame " + std::to_string(kept_->number), shown = "frame " + std::to_string(frame.number);
+    for (const char* name : {"stage or pass", kept.c_str(), shown.c_str(), "difference"})
+        ImGui::TableSetupColumn(name);
+    ImGui::TableHeadersRow();
+    for (const Row& row : sorted) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ui::label(row.name);
+        for (const double time : {row.before, row.now}) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(milliseconds(time).c_str());
+        }
+        ImGui::TableNextColumn();
+        const double change = row.now - row.before;
+        ImGui::TextColored(change > 0.0 ? ImVec4(1.0f, 0.6f, 0.5f, 1.0f) : ImVec4(0.6f, 0.9f, 0.6f, 1.0f), "%+.2f ms",
+                           change);
+        ui::note("difference " + row.name, milliseconds(change));
+    }
+    ImGui::EndTable();
 }
 
 // A bar a frame; click one to look at it.
-void Profile::history(const std::deque<ProfiledFrame>& frames) {
+void Profile::history(const std::deque<ProfiledFrame>& frames, double budget) {
     std::vector<double> times;
     times.reserve(frames.size());
     for (const ProfiledFrame& frame : frames)
         times.push_back(frame.statistics.frame_ms);
     const double middle = statistics::median(times), high = statistics::percentile(times, 0.95);
-    const double top = std::max(1.15 * high, 1.1 * double(budget_ms_));
+    const double top = std::max(1.15 * high, 1.1 * budget);
     const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 4.0f * ui::unit());
     ImGui::InvisibleButton("history", size);
     ui::note("history", milliseconds(middle) + " median, " + milliseconds(high) + " 95 %");
@@ -107,9 +156,9 @@ void Profile::history(const std::deque<ProfiledFrame>& frames) {
         const float x = low.x + float(i) * wide, height = float(std::min(times[i] / top, 1.0)) * size.y;
         const bool chosen = frames[i].number == chosen_;
         list->AddRectFilled(ImVec2(x, low.y + size.y - height), ImVec2(x + std::max(wide - 0.5f, 1.0f), low.y + size.y),
-                            chosen                          ? IM_COL32(255, 255, 255, 255)
-                            : times[i] > double(budget_ms_) ? IM_COL32(220, 110, 70, 255)
-                                                            : IM_COL32(110, 160, 110, 255));
+                            chosen              ? IM_COL32(255, 255, 255, 255)
+                            : times[i] > budget ? IM_COL32(220, 110, 70, 255)
+                                                : IM_COL32(110, 160, 110, 255));
     }
     const auto line = [&](double value, ImU32 colour, const std::string& text, float place) {
         const float y = low.y + size.y * (1.0f - float(std::min(value / top, 1.0)));
@@ -117,7 +166,7 @@ void Profile::history(const std::deque<ProfiledFrame>& frames) {
         const float room = size.x - ImGui::CalcTextSize(text.c_str()).x - 8.0f;
         list->AddText(ImVec2(low.x + 4.0f + place * room, std::max(y - ui::unit(), low.y)), colour, text.c_str());
     };
-    line(double(budget_ms_), IM_COL32(240, 200, 90, 220), "budget", 0.5f);
+    line(budget, IM_COL32(240, 200, 90, 220), "budget", 0.5f);
     line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high), 1.0f);
     if (high > 1.4 * middle)
         line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.75f);
@@ -169,13 +218,19 @@ void Profile::draw(Session& session) {
     controls(session);
     if (session.frames.empty())
         return ImGui::TextDisabled("No frame has been drawn yet");
-    history(session.frames);
+    history(session.frames, double(session.budgets.frame_ms));
     const ProfiledFrame* frame = &session.frames.back();
     for (const ProfiledFrame& one : session.frames)
         if (one.number == chosen_)
             frame = &one;
     ImGui::Text("Frame %llu: %s", static_cast<unsigned long long>(frame->number),
                 milliseconds(frame->statistics.frame_ms).c_str());
+    ImGui::SameLine();
+    if (ui::button(kept_ ? "Compare no longer" : "Compare with others",
+                   "Keeps this frame: the stages and passes of others are shown beside its own"))
+        kept_ = kept_ ? std::nullopt : std::optional(*frame);
+    if (kept_ && kept_->number != frame->number)
+        return compare(*frame);
     double whole = 1e-3;
     for (const auto* scopes : {&frame->statistics.cpu_scopes, &frame->statistics.gpu_scopes})
         for (const gpu::ScopeTime& one : *scopes)

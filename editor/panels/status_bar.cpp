@@ -36,6 +36,19 @@ std::string frame_text(const ScenePicture& picture) {
     return text;
 }
 
+// What takes more than it should; empty: nothing.
+std::string over_budget(const Session& session, const ScenePicture* picture) {
+    std::string text;
+    if (picture == nullptr)
+        return text;
+    if (picture->frame_ms > double(session.budgets.frame_ms))
+        text = "frame time";
+    for (const auto& [name, most] : session.budgets.counters)
+        if (picture->statistics.counters[name] > most)
+            text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
 } // namespace
 
 void draw_status_bar(Session& session, const ScenePicture* picture) {
@@ -57,8 +70,15 @@ void draw_status_bar(Session& session, const ScenePicture* picture) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(right);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", frame.c_str());
+    const bool slow = picture != nullptr && picture->frame_ms > double(session.budgets.frame_ms);
+    ImGui::PushStyleColor(ImGuiCol_Text,
+                          slow ? ImVec4(1.0f, 0.66f, 0.4f, 1.0f) : ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
+    ImGui::TextUnformatted(frame.c_str());
+    ImGui::PopStyleColor();
     ui::note("frame", frame);
+    const std::string over = over_budget(session, picture);
+    ui::note("budget", over.empty() ? "kept" : over);
+    ui::tooltip(over.empty() ? "All budgets are kept" : "Over the budget: " + over);
     ui::note_place("settled", settled ? "yes" : "no", ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
 }
 

@@ -1,5 +1,6 @@
 #include "editor/window/colour_box.h"
 
+#include "editor/document/lamp_flux.h"
 #include "editor/window/field_parts.h"
 #include "editor/window/widgets.h"
 #include "engine/io/gltf.h"
@@ -92,6 +93,8 @@ void amount_row(Session& session, const FieldSource& source, vec3 value, float i
     row("Intensity", std::string(source.field->unit), 1.0);
     if (const std::string unit = photometric(source.field->unit); !unit.empty())
         row("Photometric", unit, lumens);
+    if (const double flux = flux_per_unit(*source.field, source.objects[0]); flux > 0.0 && source.objects.size() == 1)
+        row("Flux", "lm", lumens * flux);
 }
 
 void temperature_row(Session& session, const FieldSource& source, float intensity) {

@@ -40,6 +40,7 @@ Commands::Commands() {
     add_show_commands(all_);
     add_overlay_commands(all_);
     add_gizmo_commands(all_);
+    add_camera_commands(all_);
     add_view_commands(all_);
 }
 
@@ -87,7 +88,8 @@ void Commands::menu(const std::string& group, Session& session) {
     for (Command& command : all_) {
         if (command.group != group)
             continue;
-        if (ui::menu_item(command.name, shortcut_text(command.shortcut), command.is_enabled(session),
+        const std::string title = command.title ? command.title(session) : command.name;
+        if (ui::menu_item(title + "##" + command.name, shortcut_text(command.shortcut), command.is_enabled(session),
                           command.is_checked(session)))
             run(command, session);
         ui::tooltip(command.tooltip);

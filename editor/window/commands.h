@@ -20,8 +20,9 @@ struct Command {
     std::string tooltip;
     Shortcut shortcut;
     std::function<void(Session&)> run;
-    std::function<bool(Session&)> enabled{}; // none: always
-    std::function<bool(Session&)> checked{}; // none: it is not a switch
+    std::function<bool(Session&)> enabled{};      // none: always
+    std::function<bool(Session&)> checked{};      // none: it is not a switch
+    std::function<std::string(Session&)> title{}; // in menus, in place of the name; none: the name
     std::uint64_t uses = 0;
 
     std::string path() const { return group + "/" + name; }
@@ -55,6 +56,7 @@ void add_show_commands(std::vector<Command>& list);
 void add_gizmo_commands(std::vector<Command>& list);
 void add_template_commands(std::vector<Command>& list);
 void add_overlay_commands(std::vector<Command>& list);
+void add_camera_commands(std::vector<Command>& list);
 void add_view_commands(std::vector<Command>& list);
 
 } // namespace sunfleck::editor

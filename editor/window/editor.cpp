@@ -75,12 +75,11 @@ private:
     std::uint64_t kept_revision_ = 0; // of the document
     bool kept_unsaved_ = false;
     std::optional<Recovered> recovered_from_; // until its edits are kept once more, or were saved
-    std::uint64_t writes_before_ = 0;
+    std::uint64_t writes_before_ = 0, events_ = 0;
     // By the GUI's serial.
     std::deque<std::pair<std::uint64_t, std::vector<std::shared_ptr<ScenePicture>>>> on_screen_;
     std::string title_;
     app::InputState still_input_;
-    std::uint64_t events_ = 0;
     int frames_due_ = frames_after_event;
     bool widgets_due_ = false; // --widgets is older than the last frame
     Clock::time_point last_frame_ = Clock::now();
@@ -132,6 +131,7 @@ Status Program::start_scene() {
     session_ = std::make_unique<Session>(*window_, *scene_);
     session_->wake = wakes;
     session_->recent_files = state_.recent_files;
+    session_->budgets = state_.budgets;
     if (!options_.shaders.empty())
         session_->shaders =
             std::make_unique<ShaderWatch>(options_.shaders, viewer::SceneRenderer::shader_paths(), wakes);
@@ -148,11 +148,10 @@ Status Program::start_scene() {
     layout_ = std::make_unique<Layout>();
     layout_->restore(state_.layout);
     session_->take(session_->document);
-    if (options_.scene.empty())
-        return {};
-    const auto path = viewer::find_scene(options_.scene);
-    if (session_->messages.check(path ? Status() : Status(path.error())))
-        session_->open_now(*path);
+    if (!options_.scene.empty())
+        if (const auto path = viewer::find_scene(options_.scene);
+            session_->messages.check(path ? Status() : Status(path.error())))
+            session_->open_now(*path);
     return {};
 }
 
@@ -363,6 +362,7 @@ Status Program::finish() {
     state_.layout = layout_->state();
     window_->size(state_.width, state_.height);
     state_.recent_files = session_->recent_files;
+    state_.budgets = session_->budgets;
     state_.keys.clear();
     Commands usual;
     for (const Command& command : session_->commands->all())

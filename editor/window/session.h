@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <deque>
 #include <imgui.h>
+#include <map>
 
 namespace sunfleck::editor {
 
@@ -85,6 +86,12 @@ struct ProfiledFrame {
     viewer::FrameStatistics statistics;
 };
 
+// What frames should stay below; shown where it is not so.
+struct Budgets {
+    float frame_ms = 33.3f;
+    std::map<std::string, double> counters; // by name
+};
+
 // Questions that stand in the way of everything else until they are answered.
 enum class Dialog { none, open, save_as, unsaved, recover };
 
@@ -108,8 +115,9 @@ public:
     std::unique_ptr<ShaderWatch> shaders; // null: none are watched
     std::unique_ptr<Opening> opening;     // a file that loads; null: none does
     std::vector<std::string> recent_files;
-    std::deque<ProfiledFrame> frames;  // newest last
-    bool profiling = true;             // further frames are kept
+    std::deque<ProfiledFrame> frames; // newest last
+    bool profiling = true;            // further frames are kept
+    Budgets budgets;
     std::unordered_set<Entity> hidden; // not shown, and not lit by; of no concern to the document
     std::unordered_set<Entity> locked; // not selected by clicks in the picture
 

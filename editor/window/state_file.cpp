@@ -2,6 +2,7 @@
 
 #include "engine/core/file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -94,6 +95,12 @@ EditorState load_state(const std::filesystem::path& path, std::string& problem) 
         for (const auto& [name, keys] : found->items())
             if (keys.is_string())
                 state.keys[name] = keys.get<std::string>();
+    read_number(json, "budget_ms", state.budgets.frame_ms);
+    state.budgets.frame_ms = std::clamp(state.budgets.frame_ms, 1.0f, 1000.0f);
+    if (const auto found = json.find("counter_budgets"); found != json.end() && found->is_object())
+        for (const auto& [name, most] : found->items())
+            if (most.is_number() && most.get<double>() >= 0.0)
+                state.budgets.counters[name] = most.get<double>();
     if (const auto found = json.find("cameras"); found != json.end() && found->is_object())
         for (const auto& [file, camera] : found->items())
             if (scene::CameraView view; read_camera(camera, view))
@@ -111,6 +118,8 @@ Status save_state(const std::filesystem::path& path, const EditorState& state) {
     json["height"] = state.height;
     json["recent"] = state.recent_files;
     json["keys"] = state.keys;
+    json["budget_ms"] = state.budgets.frame_ms;
+    json["counter_budgets"] = state.budgets.counters;
     for (const auto& [file, camera] : state.cameras)
         json["cameras"][file] = camera_json(camera);
     std::error_code code;

@@ -14,6 +14,7 @@ struct EditorState {
     std::vector<std::string> recent_files;
     std::map<std::string, std::string> keys;          // changed ones: a command's path, its shortcut
     std::map<std::string, scene::CameraView> cameras; // by file
+    Budgets budgets;
 };
 
 std::filesystem::path usual_state_file();

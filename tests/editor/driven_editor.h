@@ -28,9 +28,9 @@ public:
     DrivenEditor(const DrivenEditor&) = delete;
     DrivenEditor& operator=(const DrivenEditor&) = delete;
 
-    void start(const std::vector<std::string>& arguments) {
+    void start(const std::vector<std::string>& arguments, const std::string& program = SUNFLECK_EDITOR) {
         std::filesystem::remove(folder_ / "widgets.json");
-        std::vector<std::string> all{SUNFLECK_EDITOR,
+        std::vector<std::string> all{program,
                                      "--size",
                                      size_,
                                      "--widgets",

@@ -16,6 +16,9 @@ constexpr gi::DebugView all_views[] = {{"constant_light_surfaces", "Where the co
                                         "green: a surface that it lights", "", "constant light",
                                         shared::constant_light_shows_surfaces}};
 
+constexpr gi::Overlay all_overlays[] = {
+    {"constant_light_cube", "A cube of the scene's unit about its origin", "green: always", "constant light"}};
+
 class ConstantLight final : public gi::Technique {
 public:
     static Result<std::unique_ptr<gi::Technique>> create(gpu::Device& device, gpu::PipelineStore& pipelines) {
@@ -49,6 +52,9 @@ public:
         return {};
     }
 
+    void draw_overlay(const gi::Overlay&, const gi::Services&, gi::OverlayLines& lines) const override {
+        lines.box({vec3(-1.0f), vec3(1.0f)}, vec3(0.0f, 1.0f, 0.0f));
+    }
     void report(gi::Report& report) const override { report.set(pixels, double(pixels_)); }
 
 private:
@@ -78,6 +84,7 @@ const gi::TechniqueEntry& constant_light() {
         .settings = gi::settings_of<ConstantLightSettings>(),
         .counters = all_counters,
         .views = all_views,
+        .overlays = all_overlays,
         .shaders = gpu::constant_light_shaders,
         .create = ConstantLight::create,
     };

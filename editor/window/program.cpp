@@ -1,0 +1,58 @@
+#include "editor/window/program.h"
+
+#include "editor/window/editor.h"
+#include "engine/core/exit_status.h"
+#include "engine/core/log.h"
+#include "engine/core/output.h"
+#include "engine/core/stop_signals.h"
+#include "viewer/options.h"
+
+namespace sunfleck::editor {
+namespace {
+
+void add_options(CLI::App& program, Options& options, viewer::PictureSize& size) {
+    program.footer("Examples: sunfleck_editor\n"
+                   "          sunfleck_editor cornell\n"
+                   "          sunfleck_editor room.glb --size 1920x1080\n"
+                   "Exit status: 0 done, 1 failed, 2 the command line is wrong, 128 + N ended by signal N.");
+    viewer::add_name(program, "SCENE", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file");
+    viewer::add_size(program, "--size", size, "Size of the window");
+    viewer::add_real(program, "--scale", options.scale, 0.0, 4.0, "Size of text; 0: as the screen asks for");
+    viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
+    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
+    viewer::add_name(program, "--shaders", options.shaders,
+                     "The project's folder: shaders whose sources change are compiled and used at once", "FOLDER")
+        ->check(CLI::ExistingDirectory);
+    viewer::add_name(program, "--settings", options.state_file,
+                     "Layout, recent files and keys (default: sunfleck/editor.json in the configuration folder)",
+                     "FILE");
+    viewer::add_name(program, "--widgets", options.widgets,
+                     "For scripts: name, place and value of every visible widget, written when the window is at rest",
+                     "FILE");
+    viewer::add_name(program, "--report", options.report, "For scripts: counters, written at the end", "FILE");
+}
+
+} // namespace
+
+int run_program(int argc, char** argv) {
+    hold_standard_streams();
+    Options options;
+    viewer::PictureSize size{options.width, options.height};
+    CLI::App program("The Sunfleck editor: opens a level, lights it, and shows what each choice costs.");
+    add_options(program, options, size);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.exit(error) == 0 ? exit_done : exit_usage;
+    }
+    options.width = size.width;
+    options.height = size.height;
+    const Status status = run(options);
+    if (!status)
+        log_error(status.error().message);
+    if (stop_requested())
+        return exit_stopped_by(stop_signal());
+    return status ? exit_done : exit_failed;
+}
+
+} // namespace sunfleck::editor

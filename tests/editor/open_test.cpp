@@ -1,0 +1,86 @@
+// What comes later appears by itself: a technique that only the tests know is in the editor's panels and menus, its
+// setting can be undone and is saved.
+#include "tests/editor/driven_editor.h"
+
+#include <gtest/gtest.h>
+
+namespace sunfleck {
+namespace {
+
+namespace fs = std::filesystem;
+using tests::DrivenEditor;
+
+class EditorOpen : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!DrivenEditor::possible())
+            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+        folder = fs::path(testing::TempDir()) / ("sunfleck_open_" + std::to_string(getpid()));
+        fs::remove_all(folder);
+        editor = std::make_unique<DrivenEditor>(folder);
+        editor->start({"cornell"}, SUNFLECK_OPEN_EDITOR);
+    }
+    void TearDown() override {
+        if (HasFailure() && editor != nullptr)
+            std::printf("%s\n", editor->log().c_str());
+        editor.reset();
+        fs::remove_all(folder);
+    }
+    fs::path folder;
+    std::unique_ptr<DrivenEditor> editor;
+};
+
+TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("tab Lighting"));
+    ASSERT_TRUE(editor->click("lighting/search"));
+    editor->type("constant");
+    const std::string setting = "lighting/constant_irradiance/value";
+    ASSERT_TRUE(editor->wait_for(setting, "0.25"));
+    ASSERT_TRUE(editor->enter(setting, "2"));
+    ASSERT_TRUE(editor->wait_for(setting, "2"));
+    editor->key("ctrl+z");
+    EXPECT_TRUE(editor->wait_for(setting, "0.25"));
+    editor->key("ctrl+shift+z");
+    EXPECT_TRUE(editor->wait_for(setting, "2"));
+
+    // It lights what is reflected from now on; then its view shows.
+    ASSERT_TRUE(editor->click("lighting/search"));
+    editor->key("ctrl+a");
+    editor->type("plan");
+    ASSERT_TRUE(editor->click("lighting/plan/value"));
+    editor->type("indirect.diffuse=constant_light");
+    editor->key("Return");
+    ASSERT_TRUE(editor->wait_for("lighting/plan/value", "indirect.diffuse=constant_light"));
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("tab Views"));
+    ASSERT_TRUE(editor->click("views/Final", "5", 10)) << "the wheel: to the end of the list";
+    ASSERT_TRUE(editor->click("views/Constant light surfaces"));
+    ASSERT_TRUE(editor->wait_for("views/Constant light surfaces", "chosen"));
+    ASSERT_TRUE(editor->settles());
+    EXPECT_FALSE(editor->find("viewport/error").has_value()) << editor->value("viewport/error");
+
+    const std::string before = editor->value("viewport/picture");
+    ASSERT_TRUE(editor->click("menu/Overlays"));
+    ASSERT_TRUE(editor->click("menu/Overlays/Constant light cube"));
+    EXPECT_TRUE(editor->wait_until([&] { return editor->value("viewport/picture") != before; })) << "it is drawn";
+    ASSERT_TRUE(editor->click("tab Counters"));
+    ASSERT_TRUE(editor->click("counters/light_samples", "5", 40)) << "the wheel: to the end of the list";
+    EXPECT_TRUE(editor->wait_until([&] {
+        const std::string pixels = editor->value("counters/constant_light_pixels");
+        return !pixels.empty() && pixels[0] >= '1' && pixels[0] <= '9';
+    })) << editor->value("counters/constant_light_pixels");
+
+    editor->key("ctrl+shift+s");
+    ASSERT_TRUE(editor->click("dialog/name"));
+    editor->key("ctrl+a");
+    editor->type(editor->file("mine.scene.json"));
+    editor->key("Return");
+    ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
+    const auto saved = nlohmann::json::parse(read_file(folder / "mine.scene.json").value());
+    EXPECT_EQ(saved["settings"]["constant_irradiance"], "2") << saved["settings"].dump();
+    EXPECT_EQ(editor->end()["validation_messages"], 0);
+}
+
+} // namespace
+} // namespace sunfleck
