@@ -53,6 +53,8 @@ public:
     const std::filesystem::path& path() const { return path_; }
     // Another program has written the file since it was opened or saved here.
     bool file_changed() const;
+    // What another program has written there is known.
+    void saw_file() { stamp_ = stamp_of(path_); }
     // What the import left out or changed.
     const std::vector<std::string>& notes() const { return notes_; }
     // True if there are edits that the file lacks.

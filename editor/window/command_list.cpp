@@ -91,6 +91,11 @@ void add_file_commands(std::vector<Command>& list) {
                     }});
     list.push_back({"File", "Open...", "A .gltf, .glb or .scene.json file; files may also be dropped on the window",
                     control('O'), [](Session& session) { session.dialog = Dialog::open; }});
+    list.push_back({"File", "Reload",
+                    "Takes over what other programs have changed in the file that the scene came from; edits stay with "
+                    "the nodes of the same name, and undo takes it all back",
+                    control('R'), [](Session& session) { session.reload_file(); },
+                    [](Session& session) { return session.can_reload(); }});
     list.push_back({"File", "Save", "Writes a .scene.json file, with geometry and settings", control('S'), save});
     list.push_back({"File", "Save as...", "", control('S', with_shift),
                     [](Session& session) { session.dialog = Dialog::save_as; }});

@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::size_t most_messages = 500, most_recent = 12;
 
+bool is_gltf(const std::filesystem::path& path) {
+    const std::string ending = path.extension().string();
+    return ending == ".glb" || ending == ".gltf";
+}
+
 } // namespace
 
 void Messages::say(std::string text, Message::Kind kind) {
@@ -51,6 +56,9 @@ void Session::take(std::shared_ptr<Document> opened) {
     view.playing = false;
     hidden.clear();
     locked.clear();
+    reloading_.reset();
+    source_ = document->path();
+    source_content_ = FileContent::of(*document);
     if (inspecting)
         scene.inspect(std::nullopt);
     view.chosen_sample.reset();
@@ -114,6 +122,10 @@ bool Session::save(const std::filesystem::path& path) {
     if (!messages.check(document->save(path)))
         return false;
     messages.say("Saved " + path.string());
+    if (!is_gltf(source_)) {
+        source_ = path;
+        source_content_ = FileContent::of(*document);
+    }
     if (!same_file) {
         recent_files.insert(recent_files.begin(), std::filesystem::absolute(path, code).string());
         recent_files.resize(std::min(recent_files.size(), most_recent));
@@ -121,8 +133,29 @@ bool Session::save(const std::filesystem::path& path) {
     return true;
 }
 
+void Session::reload_file() {
+    if (can_reload())
+        reloading_ = std::make_unique<Opening>(source_, wake);
+}
+
+void Session::finish_reload() {
+    if (reloading_ == nullptr || !reloading_->finished() || document->in_gesture())
+        return;
+    auto now = reloading_->take();
+    reloading_.reset();
+    if (!messages.check(now ? Status() : Status(now.error())))
+        return;
+    const ReloadReport report = reload(*document, source_content_, **now);
+    document->saw_file();
+    messages.say(report.text(source_.filename().string()));
+    for (const std::string& name : report.lost)
+        messages.say("'" + name + "' is no longer in the file; it was edited here, and undo brings it back",
+                     Message::Kind::warning);
+}
+
 void Session::take_news() {
     watch_file();
+    finish_reload();
     if (shaders == nullptr)
         return;
     ShaderWatch::News news = shaders->take();
@@ -142,10 +175,10 @@ void Session::take_news() {
 void Session::watch_file() {
     const bool changed = document->file_changed();
     if (changed && !file_was_changed_)
-        messages.say(
-            "'" + document->path().string() +
-                "' was changed by another program; opening it again reads that, and forgets the edits made here",
-            Message::Kind::warning);
+        messages.say("'" + document->path().string() +
+                         "' was changed by another program; File, Reload takes over what is new there, and keeps the "
+                         "edits made here",
+                     Message::Kind::warning);
     file_was_changed_ = changed;
 }
 

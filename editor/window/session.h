@@ -4,7 +4,7 @@
 // On the GUI thread only.
 #pragma once
 
-#include "editor/document/edits.h"
+#include "editor/document/reload.h"
 #include "editor/window/camera.h"
 #include "editor/window/recovery.h"
 #include "editor/window/scene_thread.h"
@@ -146,6 +146,9 @@ public:
     void measure_cost(const std::string& setting);
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
     std::function<void()> wake; // from the program; from any thread: there is something new to draw
+    // Reads the file that the scene came from again, and takes over what has changed in it; edits stay.
+    void reload_file();
+    bool can_reload() const { return !source_.empty() && reloading_ == nullptr; }
     // The unsaved edits of a run that is gone.
     void recover(const Recovered& recovered);
     // False: it was not saved, which has been said.
@@ -165,7 +168,12 @@ public:
 
 private:
     void watch_file();
+    void finish_reload();
 
+    // Where the scene came from, and what was there: a glTF file, or the scene file that was read or written last.
+    std::filesystem::path source_;
+    FileContent source_content_;
+    std::unique_ptr<Opening> reloading_;
     bool file_was_changed_ = false;
     std::string bad_shader_;
     std::uint64_t size_revision_ = 0;
