@@ -261,7 +261,7 @@ void Program::keep_edits() {
     kept_revision_ = document.revision();
     kept_unsaved_ = unsaved;
     if (!unsaved)
-        return recovery_->saved();
+        return recovery_->saved(document.path().string());
     constexpr std::size_t most_names = 20;
     std::vector<std::string> names;
     const std::size_t position = document.history().position();

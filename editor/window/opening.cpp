@@ -7,7 +7,12 @@
 
 namespace sunfleck::editor {
 Opening::Opening(std::filesystem::path path, std::function<void()> wake)
-    : path_(std::move(path)), thread_([this, wake = std::move(wake)] {
+    : Opening(
+          path, [path](const std::function<bool(float)>& progress) { return Document::open(path, progress); },
+          std::move(wake)) {}
+
+Opening::Opening(std::filesystem::path path, Load load, std::function<void()> wake)
+    : path_(std::move(path)), thread_([this, load = std::move(load), wake = std::move(wake)] {
           const auto progress = [&](float share) {
               const bool tell = std::floor(share * 50.0f) > std::floor(share_ * 50.0f);
               share_ = std::max(share_.load(), share);
@@ -15,7 +20,7 @@ Opening::Opening(std::filesystem::path path, std::function<void()> wake)
                   wake();
               return !stop_;
           };
-          result_ = Document::open(path_, progress);
+          result_ = load(progress);
           finished_ = true;
           wake();
       }) {}

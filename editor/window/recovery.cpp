@@ -18,8 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using RecoveryClock = std::chrono::steady_clock;
 
-constexpr const char *scene_name = "edits.scene.json", *about_name = "about.json", *lock_name = "lock";
-constexpr double pause_share = 3.0; // of a write's time: pause after it
+constexpr const char *about_name = "about.json", *lock_name = "lock", *base_name = "base.json",
+                     *journal_name = "journal";
+// In turn: about.json says which of them is whole.
+constexpr const char* scene_names[] = {"edits.scene.json", "edits2.scene.json"};
+constexpr std::uint64_t most_bytes = std::uint64_t(1) << 30; // of a journal
+constexpr double pause_share = 3.0;                          // of a write's time: pause after it
 constexpr auto shortest_pause = std::chrono::milliseconds(150);
 
 // Of a lock that nobody else has; -1: somebody has it, or it cannot be made.
@@ -32,15 +36,60 @@ int take_lock(const fs::path& folder) {
     return -1;
 }
 
-std::optional<Recovered> read_about(const fs::path& folder) {
-    const auto text = read_file(folder / about_name, 1u << 20);
-    const auto json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
-    std::error_code code;
-    if (!json.is_object() || !fs::exists(folder / scene_name, code))
+nlohmann::json read_json(const fs::path& path) {
+    const auto text = read_file(path, most_bytes);
+    return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+}
+
+// Of a file that the user edited; null: there is none.
+nlohmann::json stamp_of(const fs::path& path) {
+    std::error_code no_time, no_size;
+    const auto time = fs::last_write_time(path, no_time).time_since_epoch().count();
+    const auto bytes = fs::file_size(path, no_size);
+    return no_time || no_size ? nlohmann::json() : nlohmann::json{time, bytes};
+}
+
+// What the journal has beyond the scene that was kept, or beyond the user's file.
+void add_journal(Recovered& result, const nlohmann::json& about) {
+    const auto names = about.value("names", nlohmann::json());
+    const auto base = JournalBase::from_text(names.is_string() ? names.get<std::string>() : std::string());
+    const auto journal = read_file(result.folder / journal_name, most_bytes);
+    if (!base || !journal)
+        return;
+    const Replayed edits = edits_of_journal(*journal, *base);
+    result.count += edits.names.size();
+    result.edits.insert(result.edits.end(), edits.names.begin(), edits.names.end());
+    constexpr std::size_t most_names = 20;
+    if (result.edits.size() > most_names)
+        result.edits.erase(result.edits.begin(), result.edits.end() - most_names);
+    result.journal = *journal;
+    result.base = *base;
+}
+
+// Nothing was kept yet but the journal: it goes on from the user's file, if that is as it was.
+std::optional<Recovered> read_base(const fs::path& folder) {
+    const nlohmann::json json = read_json(folder / base_name);
+    if (!json.is_object() || !json.value("file", nlohmann::json()).is_string())
         return std::nullopt;
     Recovered result;
     result.folder = folder;
-    result.scene = folder / scene_name;
+    result.file = json["file"].get<std::string>();
+    result.scene = result.file;
+    if (!result.file.empty() && (stamp_of(result.file).is_null() || stamp_of(result.file) != json["stamp"]))
+        return std::nullopt;
+    add_journal(result, json);
+    return result.count > 0 ? std::optional(result) : std::nullopt;
+}
+
+std::optional<Recovered> read_about(const fs::path& folder) {
+    const nlohmann::json json = read_json(folder / about_name);
+    std::error_code code;
+    const std::size_t slot = json.is_object() && json.value("slot", 0) == 1 ? 1 : 0;
+    if (!json.is_object() || !fs::exists(folder / scene_names[slot], code))
+        return read_base(folder);
+    Recovered result;
+    result.folder = folder;
+    result.scene = folder / scene_names[slot];
     if (const auto file = json.find("file"); file != json.end() && file->is_string())
         result.file = file->get<std::string>();
     if (const auto count = json.find("count"); count != json.end() && count->is_number_unsigned())
@@ -49,6 +98,7 @@ std::optional<Recovered> read_about(const fs::path& folder) {
         for (const auto& edit : *edits)
             if (edit.is_string())
                 result.edits.push_back(edit.get<std::string>());
+    add_journal(result, json);
     return result;
 }
 
@@ -73,6 +123,8 @@ Recovery::Recovery(const fs::path& folder) {
             "unsaved edits cannot be kept in '" + folder.string() + "': " + (code ? code.message() : "it is full");
         return;
     }
+    if (const Status made = journal_.create(own_ / journal_name); !made)
+        problem_ = made.error().message;
     thread_ = std::thread([this] { run(); });
 }
 
@@ -99,15 +151,47 @@ void Recovery::leave() {
 void Recovery::change(const SceneChange& change) {
     if (lock_ < 0)
         return;
+    revision_ = change.revision;
+    if (change.everything && change.source.get() != document_) {
+        document_ = change.source.get();
+        is_saved_ = false;
+        ++about_epoch_;
+        journal_.start_over(change.settings.value_or(gi::Settings()), std::uint32_t(change.meshes.size()));
+    } else if (change.everything) {
+        journal_.note_unknown(); // what of it is new is not said
+    } else {
+        journal_.note(change.updates, change.settings, change.meshes);
+        if (!change.textures.empty())
+            journal_.note_unknown();
+    }
     const std::scoped_lock lock(mutex_);
     next_.add(change);
+}
+
+void Recovery::note_edit(const std::string& name) {
+    if (!journal_.has_notes())
+        return;
+    const Status kept = journal_.append(about_epoch_, revision_, name);
+    if (!kept && !std::exchange(journal_failed_, true))
+        log_warning(kept.error().message);
 }
 
 void Recovery::unsaved(const std::string& file, std::vector<std::string> edits, std::uint64_t count) {
     if (lock_ < 0)
         return;
+    if (count > 0) {
+        is_saved_ = false;
+        note_edit(edits.empty() ? std::string() : edits.back());
+    } else {
+        if (std::exchange(is_saved_, true))
+            return; // and nothing has been noted since
+        ++about_epoch_;
+        journal_.forget();
+    }
     {
         const std::scoped_lock lock(mutex_);
+        about_.base.epoch = about_epoch_;
+        about_.base.revision = revision_;
         about_.file = file;
         about_.edits = std::move(edits);
         about_.count = count;
@@ -119,8 +203,25 @@ void Recovery::unsaved(const std::string& file, std::vector<std::string> edits, 
 void Recovery::remove_files() const {
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(own_, code))
-        if (entry.path().filename() != lock_name)
+        if (entry.path().filename() != lock_name && entry.path().filename() != journal_name)
             fs::remove(entry.path(), code);
+}
+
+// The user's file has everything: only the journal is needed from here on.
+void Recovery::write_base(Copy& copy, const Recovered& about) const {
+    remove_files();
+    if (copy_revision_ != about.base.revision)
+        return; // there are edits already, whose names the file does not have
+    JournalBase base = JournalBase::of(copy.registry);
+    base.epoch = about.base.epoch;
+    base.revision = about.base.revision;
+    if (about.file.empty() && !base.entities.empty())
+        return;
+    const nlohmann::json json = {{"file", about.file}, {"stamp", stamp_of(about.file)}, {"names", base.text()}};
+    if (const Status status =
+            write_file(own_ / base_name, json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+        !status)
+        log_warning("edits could not be kept: " + status.error().message);
 }
 
 // The scene first: about.json says that it is complete.
@@ -130,16 +231,23 @@ void Recovery::write(std::unique_ptr<Copy>& copy) {
         const std::scoped_lock lock(mutex_);
         if (next_.everything)
             copy = std::make_unique<Copy>();
-        if (next_.source != nullptr)
+        if (next_.source != nullptr) {
+            copy_revision_ = next_.revision;
             copy->apply(std::exchange(next_, {}));
+        }
         about = about_;
     }
     if (about.count == 0)
-        return remove_files();
+        return write_base(*copy, about);
+    JournalBase base = JournalBase::of(copy->registry);
+    base.epoch = about.base.epoch;
+    base.revision = copy_revision_;
     io::SaveOptions options;
     options.settings = viewer::unusual_lighting(copy->settings);
-    const nlohmann::json json = {{"file", about.file}, {"edits", about.edits}, {"count", about.count}};
-    Status status = io::save_scene(own_ / scene_name, copy->registry, copy->meshes, copy->textures, options);
+    slot_ = 1 - slot_;
+    const nlohmann::json json = {
+        {"file", about.file}, {"edits", about.edits}, {"count", about.count}, {"names", base.text()}, {"slot", slot_}};
+    Status status = io::save_scene(own_ / scene_names[slot_], copy->registry, copy->meshes, copy->textures, options);
     if (status)
         status = write_file(own_ / about_name, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (!status)
@@ -179,7 +287,7 @@ std::vector<Recovered> Recovery::left_behind(const fs::path& folder) {
         if (lock < 0)
             continue; // it lives
         if (std::optional<Recovered> about = read_about(run))
-            found.emplace_back(fs::last_write_time(about->scene, code), std::move(*about));
+            found.emplace_back(fs::last_write_time(run / journal_name, code), std::move(*about));
         else
             fs::remove_all(run, code);
         ::close(lock);
@@ -190,6 +298,17 @@ std::vector<Recovered> Recovery::left_behind(const fs::path& folder) {
     for (auto& [time, recovered] : found)
         result.push_back(std::move(recovered));
     return result;
+}
+
+Result<std::unique_ptr<Document>> Recovery::load(const Recovered& recovered,
+                                                 const std::function<bool(float)>& progress) {
+    auto document = std::make_unique<Document>();
+    if (!recovered.scene.empty()) {
+        SUNFLECK_ASSIGN(document, Document::open(recovered.scene, progress));
+    }
+    static_cast<void>(replay(*document, recovered.journal, recovered.base));
+    document->forget_file();
+    return document;
 }
 
 void Recovery::discard(const Recovered& recovered) {

@@ -2,12 +2,16 @@
 // thread of their own, and offered by the next run. The user's files are never touched.
 //
 //     FOLDER/RUN/lock              held while the program lives
-//     FOLDER/RUN/edits.scene.json  the scene with all edits, and its geometry
-//     FOLDER/RUN/about.json        which file it was, and what was done to it
+//     FOLDER/RUN/edits.scene.json  the scene with all edits, and its geometry; edits2.scene.json in turn with it
+//     FOLDER/RUN/about.json        which of the two is whole, which file it was, and what was done to it
+//     FOLDER/RUN/base.json         the user's file, while nothing else was kept yet
+//     FOLDER/RUN/journal           every edit, a line each (journal.h)
 //
-// A scene is written again a moment after each edit, but so that writing takes a quarter of the time at most.
+// An edit is in the journal before the next frame is drawn. A scene is written again a moment after each edit, but so
+// that writing takes a quarter of the time at most; the journal has what was done since.
 #pragma once
 
+#include "editor/document/journal.h"
 #include "editor/window/scene_copy.h"
 
 #include <atomic>
@@ -22,6 +26,8 @@ struct Recovered {
     std::string file;                    // that was edited; empty: it had never been saved
     std::vector<std::string> edits;      // the last ones
     std::uint64_t count = 0;             // of all
+    std::string journal;                 // what was done since, as its lines
+    JournalBase base;                    // the scene, for these
 };
 
 class Recovery {
@@ -40,19 +46,31 @@ public:
     void change(const SceneChange& change);
     // What is unsaved now; nothing: what was kept is removed.
     void unsaved(const std::string& file, std::vector<std::string> edits, std::uint64_t count);
-    void saved() { unsaved({}, {}, 0); }
+    void saved(const std::string& file) { unsaved(file, {}, 0); }
     // How often a scene was written.
     std::uint64_t writes() const { return writes_; }
 
     // What runs that are gone have left, oldest first; what nothing can be made of is removed.
     static std::vector<Recovered> left_behind(const std::filesystem::path& folder);
     static void discard(const Recovered& recovered);
+    // The scene with all edits, as a document without a file.
+    static Result<std::unique_ptr<Document>> load(const Recovered& recovered,
+                                                  const std::function<bool(float)>& progress = {});
 
 private:
     struct Copy;
     void run();
     void write(std::unique_ptr<Copy>& copy);
     void remove_files() const;
+    void write_base(Copy& copy, const Recovered& about) const;
+    void note_edit(const std::string& name);
+
+    // Of the thread that edits.
+    JournalWriter journal_;
+    const void* document_ = nullptr;
+    std::uint64_t revision_ = 0;    // of the document, noted so far
+    std::uint64_t about_epoch_ = 0; // raised by every document and every save
+    bool journal_failed_ = false, is_saved_ = false;
 
     std::filesystem::path own_;
     std::string problem_;
@@ -64,6 +82,8 @@ private:
     Recovered about_;
     bool has_work_ = false, stop_ = false, leave_ = false;
 
+    std::uint64_t copy_revision_ = 0; // of the thread's copy
+    int slot_ = 1;                    // that it was written to last
     std::atomic<std::uint64_t> writes_{0};
     std::thread thread_;
 };

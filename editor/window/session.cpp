@@ -113,7 +113,8 @@ void Session::measure_cost(const std::string& setting) {
 
 void Session::recover(const Recovered& one) {
     recovering = one;
-    opening = std::make_unique<Opening>(one.scene, wake);
+    opening = std::make_unique<Opening>(
+        one.scene, [one](const std::function<bool(float)>& progress) { return Recovery::load(one, progress); }, wake);
 }
 
 bool Session::save(const std::filesystem::path& path) {

@@ -1,0 +1,187 @@
+// What a crash leaves: all edits but the one that was being made, wherever the program was killed.
+#include "editor/window/recovery.h"
+
+#include "engine/core/file.h"
+#include "test_places.h"
+#include "tests/editor/random_edits.h"
+#include "tests/support/test_size.h"
+
+#include <csignal>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace sunfleck::editor {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EditorJournal : public testing::Test {
+protected:
+    EditorJournal() : folder_(fs::path(testing::TempDir()) / ("editor_journal_" + std::to_string(getpid()))) {
+        fs::create_directories(folder_);
+        Document document;
+        for (const scene::EntityTemplate& source : scene::entity_templates())
+            add_from(document, source, vec3(1.0f, 2.0f, 3.0f), 0.5f);
+        EXPECT_TRUE(document.save(folder_ / "room.scene.json"));
+    }
+    ~EditorJournal() override { fs::remove_all(folder_); }
+
+    std::shared_ptr<Document> open() {
+        auto opened = Document::open(folder_ / "room.scene.json");
+        EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
+        return opened ? std::shared_ptr<Document>(std::move(*opened)) : nullptr;
+    }
+    std::string saved(Document& document) {
+        const fs::path place = folder_ / "saved";
+        fs::remove_all(place);
+        fs::create_directories(place);
+        EXPECT_TRUE(document.save(place / "a.scene.json"));
+        return read_file(place / "a.scene.json").value() + read_file(place / "a.glb").value();
+    }
+    // What the document has, whatever its handles: every described value by name.
+    static std::string content(Document& document) {
+        std::map<std::string, std::string> all;
+        for (const Entity root : document.roots())
+            for (const Entity entity : document.family(root)) {
+                std::string& text = all[document.name(entity)];
+                const Entity above = document.parent(entity);
+                text = "below " + (above.is_null() ? std::string("nothing") : document.name(above)) + "\n";
+                for (const ecs::PoolBase* pool : document.registry().described_pools()) {
+                    if (!pool->contains(entity) || pool->is_derived())
+                        continue;
+                    text += std::string(pool->description()->name) + ":";
+                    const void* value = pool->address(pool->position_of(entity.index));
+                    for (const Field& field : pool->description()->fields)
+                        if (field.kind != FieldKind::entity && pool->description()->name != "MeshInstance")
+                            text += " " + field_to_text(field, value);
+                    if (pool->description()->name == "MeshInstance")
+                        text += std::to_string(
+                            document.meshes()[static_cast<const scene::MeshInstance*>(value)->mesh].positions.size());
+                    text += "\n";
+                }
+            }
+        std::string result;
+        for (const auto& [name, text] : all)
+            result += name + "\n" + text;
+        for (const std::string_view name : gi::Settings::names())
+            result += std::string(name) + " " + document.settings().get(name) + "\n";
+        return result;
+    }
+
+    // One edit, as the program makes and keeps it. `saves`: now and then the document is saved.
+    static void edit(const std::shared_ptr<Document>& document, tests::RandomEdits& edits, ChangeCollector& collector,
+                     Recovery* recovery) {
+        edits.once();
+        if (recovery == nullptr)
+            return;
+        if (const auto change = collector.collect(document))
+            recovery->change(*change);
+        const std::size_t position = document->history().position();
+        if (!document->unsaved())
+            return recovery->saved(document->path().string());
+        const std::string name = position > 0 ? document->history().entries()[position - 1].name : "";
+        recovery->unsaved(document->path().string(), {name}, std::max<std::size_t>(position, 1));
+    }
+
+    // In a process of its own, which is killed after so many edits. `pause`: microseconds between them.
+    void edit_and_die(std::uint32_t seed, int count, int pause) {
+        const pid_t child = ::fork();
+        if (child != 0) {
+            int status = 0;
+            ::waitpid(child, &status, 0);
+            ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << "seed " << seed;
+            return;
+        }
+        ::alarm(60); // whatever goes wrong, the test ends
+        const std::shared_ptr<Document> document = open();
+        ChangeCollector collector;
+        Recovery recovery(folder_ / "recovery");
+        recovery.change(*collector.collect(document));
+        recovery.saved(document->path().string());
+        while (!fs::exists(own_folder() / "base.json"))
+            ::usleep(200);
+        tests::RandomEdits edits(*document, seed);
+        for (int i = 0; i < count; ++i) {
+            edit(document, edits, collector, &recovery);
+            ::usleep(useconds_t(pause));
+        }
+        ::kill(::getpid(), SIGKILL);
+    }
+    fs::path own_folder() const {
+        for (const auto& entry : fs::directory_iterator(folder_ / "recovery"))
+            if (fs::exists(entry.path() / "journal"))
+                return entry.path();
+        return folder_;
+    }
+    fs::path folder_;
+};
+
+// Killed at counted places, some before anything but the journal was written, some while scenes are.
+TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
+    for (std::uint32_t seed = 1; seed <= tests::by_size(24u, 200u); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const int count = 1 + int(seed * 7 % 40), pause = seed % 3 == 0 ? 9000 : seed % 3 == 1 ? 0 : 1500;
+        edit_and_die(seed, count, pause);
+        const std::shared_ptr<Document> wanted = open();
+        tests::RandomEdits edits(*wanted, seed);
+        ChangeCollector collector;
+        for (int i = 0; i < count; ++i)
+            edit(wanted, edits, collector, nullptr);
+        const std::vector<Recovered> left = Recovery::left_behind(folder_ / "recovery");
+        if (!wanted->unsaved()) { // nothing was changed in the end
+            EXPECT_TRUE(left.empty());
+            fs::remove_all(folder_ / "recovery");
+            continue;
+        }
+        ASSERT_EQ(left.size(), 1u);
+        auto found = Recovery::load(left[0]);
+        ASSERT_TRUE(found) << found.error().message;
+        EXPECT_EQ(content(**found), content(*wanted));
+        EXPECT_FALSE(left[0].edits.empty()) << "it is said what would be restored";
+        EXPECT_TRUE((*found)->unsaved());
+        EXPECT_TRUE((*found)->path().empty()) << "no file is replaced";
+        Recovery::discard(left[0]);
+    }
+}
+
+// The last line is cut off anywhere: all edits before it are there.
+TEST_F(EditorJournal, ALineThatWasCutOffIsLeftOut) {
+    const std::shared_ptr<Document> document = open();
+    const JournalBase base = [&] {
+        JournalBase result = JournalBase::of(document->registry());
+        result.epoch = 1;
+        result.revision = document->revision();
+        return result;
+    }();
+    JournalWriter writer;
+    ASSERT_TRUE(writer.create(folder_ / "journal"));
+    writer.start_over(document->settings(), document->meshes().size());
+    ChangeCollector collector;
+    static_cast<void>(collector.collect(document));
+    tests::RandomEdits edits(*document, 5);
+    std::vector<std::string> contents{content(*document)};
+    std::vector<std::size_t> ends{0};
+    while (ends.size() < 12) {
+        edits.once();
+        const auto change = collector.collect(document);
+        if (!change || change->updates.empty())
+            continue;
+        writer.note(change->updates, change->settings, change->meshes);
+        ASSERT_TRUE(writer.append(1, document->revision(), "edit"));
+        contents.push_back(content(*document));
+        ends.push_back(read_file(folder_ / "journal").value().size());
+    }
+    const std::string journal = read_file(folder_ / "journal").value();
+    for (std::size_t i = 1; i < ends.size(); ++i)
+        for (const std::size_t cut : {ends[i] - 1, ends[i - 1] + 1, (ends[i] + ends[i - 1]) / 2, ends[i]}) {
+            const std::shared_ptr<Document> found = open();
+            const Replayed replayed = replay(*found, journal.substr(0, cut), base);
+            const std::size_t whole = cut == ends[i] ? i : i - 1;
+            EXPECT_EQ(replayed.names.size(), whole);
+            EXPECT_EQ(content(*found), contents[whole]) << "cut at " << cut;
+        }
+}
+
+} // namespace
+} // namespace sunfleck::editor
