@@ -18,6 +18,35 @@ std::vector<PixelReport::Value> PixelReport::material_values() const {
     return values;
 }
 
+namespace {
+
+void find_samples(gi::System& lighting, const gi::ReceiverPoint& point, PixelReport& report) {
+    const gi::VisibilityDatabase& database = lighting.visibility();
+    const auto count = std::uint32_t(lighting.samples().size());
+    report.samples.resize(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+        report.samples[i].map = lighting.shadows().state(lighting.sample_set(), i);
+    if (database.sample_count() != count)
+        return;
+    const std::uint32_t node = report.moves
+                                   ? database.mover_node(report.entity)
+                                   : database.patches().node_at(report.entity, point.position, point.geometric_normal);
+    if (node >= database.node_count())
+        return;
+    report.patch.emplace();
+    report.patch->node = node;
+    if (node < database.patches().nodes().size())
+        report.patch->level = database.patches().nodes()[node].level;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        SampleState& sample = report.samples[i];
+        sample.between = database.state(node, i);
+        sample.blockers = database.blockers(node, i);
+        ++report.patch->samples.of(sample.between);
+    }
+}
+
+} // namespace
+
 PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction) {
     const scene::SceneSpace& space = renderer.space();
     const raytrace::RayScene& rays = renderer.rays();
@@ -44,6 +73,7 @@ PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction) {
         report.distance = hit->distance * space.unit;
         report.material = surface.material;
         report.light = renderer.lighting().explain(point, rays);
+        find_samples(renderer.lighting(), point, report);
         for (gi::ExplainedLight& part : report.light)
             for (gi::LightShare& share : part.shares)
                 if (!share.parallel)

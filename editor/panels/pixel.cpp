@@ -69,6 +69,41 @@ void row(const std::string& name, const std::string& value, std::string_view tip
     ui::note(name, value);
 }
 
+// What a light's row says when it is pointed at.
+std::string sample_text(Session& session, const viewer::PixelReport& report, std::uint32_t index) {
+    if (index >= report.samples.size())
+        return {};
+    const viewer::SampleState& sample = report.samples[index];
+    std::string text =
+        "Shadow map: slot " + std::to_string(sample.map.slot) + ", " + std::to_string(sample.map.resolution) +
+        " texels along a side, " +
+        (sample.map.frames_out_of_date == 0 ? "up to date"
+                                            : std::to_string(sample.map.frames_out_of_date) + " frames old");
+    if (!sample.map.static_part_valid)
+        text += ", not drawn yet";
+    if (!report.patch)
+        return text;
+    text += "\nVisibility database: ";
+    switch (sample.between) {
+    case gi::PairState::none:
+        text += "nothing stands between";
+        break;
+    case gi::PairState::partial:
+        text += "something may stand between";
+        break;
+    case gi::PairState::full:
+        text += "hidden";
+        break;
+    case gi::PairState::unlit:
+        text += "the patch faces away";
+        break;
+    }
+    for (const auto& blocker : sample.blockers)
+        text += "\n   " + (blocker.entity.is_null() ? "what stands still" : entity_name(session, blocker.entity)) +
+                (blocker.full ? ", all of it" : ", a part");
+    return text;
+}
+
 void Pixel::gather(const InspectedPixel& pixel) {
     shares_.clear();
     total_ = std::max(luminance(pixel.report.irradiance()), 1e-30f);
@@ -113,6 +148,16 @@ void Pixel::summary(Session& session, const InspectedPixel& pixel) {
     row("sum of shares", light_text(sum), "Of all lights below, each tested by a ray");
     for (const gi::ExplainedLight& part : pixel.report.light)
         row("by " + std::string(part.technique), part.divided ? light_text(part.sum()) : "not divided by lights");
+    if (const auto& patch = pixel.report.patch) {
+        row("patch",
+            "#" + std::to_string(patch->node) +
+                (pixel.report.moves ? ", a mover" : ", level " + std::to_string(patch->level)),
+            "Of the visibility database");
+        row("light samples",
+            std::to_string(patch->samples.none) + " free, " + std::to_string(patch->samples.partial) + " in part, " +
+                std::to_string(patch->samples.full) + " hidden, " + std::to_string(patch->samples.unlit) + " behind",
+            "What the database says of the patch: they need no shadow test, need one, give nothing, or lie behind it");
+    }
     ImGui::EndTable();
     if (session.inspecting && session.inspecting->serial == pixel.serial &&
         pixel.revision != session.document->revision())
@@ -176,7 +221,9 @@ void Pixel::list(Session& session) {
         ImGui::TableNextColumn();
         const bool chosen = light.sample && session.view.chosen_sample == light.sample;
         if (ui::choice(number + " " + entity_name(session, light.emitter) + "##light " + number, chosen,
-                       "Singles it out in overlays of light samples and patches") &&
+                       light.sample
+                           ? "Click: singled out in overlays\n" + sample_text(session, shown_->report, *light.sample)
+                           : std::string()) &&
             light.sample)
             session.view.chosen_sample = chosen ? std::nullopt : light.sample;
         ui::note("light " + std::to_string(rows), percent(share.part));

@@ -66,6 +66,49 @@ TEST_F(EditorInspection, SharesAddUpWithTheUsualTechniques) {
     EXPECT_LT(at(off, 0.9), 0.15);
 }
 
+// Of each sample: what the visibility database says agrees with the ray, and its map is up to date.
+TEST_F(EditorInspection, SaysWhatStandsBetween) {
+    tests::GpuWorld world(assets::make_four_pillars, "bench_1");
+    gi::Settings settings;
+    settings.lights = 200;
+    settings.map_budget = 65536;
+    world.set(settings);
+    world.render();
+    world.render();
+    std::size_t places = 0, free = 0, hidden = 0;
+    for (int x = -4; x <= 4; ++x)
+        for (int y = -3; y <= 3; ++y) {
+            const shared::CameraRow row = scene::make_camera_row(world.request.camera, 64, 48);
+            const vec3 direction =
+                vec3(row.forward) + 0.2f * float(x) * vec3(row.right) + 0.25f * float(y) * vec3(row.down);
+            const viewer::PixelReport report =
+                viewer::report_pixel(*world.renderer, world.request.camera.position, direction);
+            if (!report.patch || report.moves)
+                continue;
+            ++places;
+            const gi::VisibilityCounters& counts = report.patch->samples;
+            EXPECT_EQ(counts.full + counts.none + counts.partial + counts.unlit, report.samples.size());
+            for (const gi::ExplainedLight& part : report.light)
+                for (const gi::LightShare& share : part.shares) {
+                    ASSERT_TRUE(share.sample);
+                    const viewer::SampleState& state = report.samples[*share.sample];
+                    EXPECT_EQ(state.map.frames_out_of_date, 0u);
+                    EXPECT_EQ(state.blockers.empty(), state.between == gi::PairState::none);
+                    if (state.between == gi::PairState::none) {
+                        ++free;
+                        EXPECT_EQ(share.irradiance, share.unshadowed) << "sample " << *share.sample;
+                    }
+                    if (state.between == gi::PairState::full) {
+                        ++hidden;
+                        EXPECT_EQ(share.irradiance, vec3(0.0f)) << "sample " << *share.sample;
+                    }
+                }
+        }
+    EXPECT_GT(places, 20u);
+    EXPECT_GT(free, 500u);
+    EXPECT_GT(hidden, 20u);
+}
+
 // Lines are in the picture, and none where an overlay is off; unknown names are an error.
 TEST_F(EditorInspection, OverlaysDrawLines) {
     tests::GpuWorld world(assets::make_four_pillars, "bench_1");
