@@ -146,7 +146,8 @@ void Profile::history(const std::deque<ProfiledFrame>& frames, double budget) {
         times.push_back(frame.statistics.frame_ms);
     const double middle = statistics::median(times), high = statistics::percentile(times, 0.95);
     const double top = std::max(1.15 * high, 1.1 * budget);
-    const ImVec2 low = ImGui::GetCursorScreenPos(), size(ImGui::GetContentRegionAvail().x, 4.0f * ui::unit());
+    const ImVec2 low = ImGui::GetCursorScreenPos(),
+                 size(std::max(ImGui::GetContentRegionAvail().x, 1.0f), 4.0f * ui::unit());
     ImGui::InvisibleButton("history", size);
     ui::note("history", milliseconds(middle) + " median, " + milliseconds(high) + " 95 %");
     ImDrawList* list = ImGui::GetWindowDrawList();

@@ -39,7 +39,7 @@ void Layout::restore(const State& state) {
 // `share` of `whole` (pixels) grows towards where the dock is.
 void Layout::border(const char* name, ImVec2 size, float& share, float whole) {
     const bool upright = size.y > size.x;
-    ImGui::InvisibleButton(name, size);
+    ImGui::InvisibleButton(name, ImVec2(std::max(size.x, 1.0f), std::max(size.y, 1.0f)));
     ui::note(name);
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
         ImGui::SetMouseCursor(upright ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);

@@ -143,7 +143,7 @@ NumberEdit number_box(const std::string& name, const NumberLook& look) {
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const ImVec2 high(low.x + look.width, low.y + ImGui::GetFrameHeight());
     ImGui::BeginDisabled(!look.enabled);
-    ImGui::InvisibleButton(name.c_str(), ImVec2(look.width, ImGui::GetFrameHeight()));
+    ImGui::InvisibleButton(name.c_str(), ImVec2(std::max(look.width, 1.0f), ImGui::GetFrameHeight()));
     const std::string text = look.mixed ? "mixed" : number_text(look.value, look.whole);
     paint(look, text, low, high);
     ImGui::EndDisabled();

@@ -30,12 +30,14 @@ viewer::FrameRequest SceneThread::frame_request() {
 
 // A picture of the right size that nobody holds.
 Result<std::shared_ptr<ScenePicture>> SceneThread::free_picture() {
-    std::erase_if(pictures_, [&](const auto& picture) {
-        const gpu::ImageDescription& has = picture->image.description();
-        return picture.use_count() == 1 && (has.width != view_.width || has.height != view_.height);
-    });
+    const auto fits = [&](const ScenePicture& picture) {
+        const gpu::ImageDescription& has = picture.image.description();
+        return has.width == view_.width && has.height == view_.height;
+    };
+    std::erase_if(pictures_, [&](const auto& picture) { return picture.use_count() == 1 && !fits(*picture); });
+    // The GUI lets go of pictures at any time: one of the old size may have become free just now.
     for (const auto& picture : pictures_)
-        if (picture.use_count() == 1)
+        if (picture.use_count() == 1 && fits(*picture))
             return picture;
     auto picture = std::make_shared<ScenePicture>();
     gpu::ImageDescription description;
