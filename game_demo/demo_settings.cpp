@@ -68,6 +68,8 @@ const TypeDescription& DemoSettings::description() {
                         viewer::PictureSettings::description().find("antialiasing")->tooltip),
          SUNFLECK_FIELD(DemoSettings, glare, "", 0, 0.5, viewer::PictureSettings::description().find("glare")->tooltip),
          SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Exposure compensation; higher is brighter"),
+         SUNFLECK_FIELD(DemoSettings, adaptation, "", 0, 1,
+                        "The exposure follows what is seen, as an eye adapts to bright and dark rooms"),
          SUNFLECK_FIELD(DemoSettings, field_of_view, "degrees", 40, 110, "Vertical field of view"),
          SUNFLECK_FIELD(DemoSettings, sensitivity, "", 0.1, 5, "Speed at which mouse and stick turn the view"),
          SUNFLECK_FIELD(DemoSettings, invert_look, "", 0, 1, "Moving the mouse or stick forward looks down"),

@@ -43,6 +43,7 @@ struct DemoSettings {
     bool antialiasing = true;
     float glare = 0.03f;
     float exposure = 0.0f;
+    bool adaptation = true;
     float field_of_view = viewer::usual_field_of_view;
     float sensitivity = 1.0f;
     bool invert_look = false;

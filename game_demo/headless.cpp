@@ -53,6 +53,7 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
             {"frames", times.frames.size()},
             {"steps", level.simulation().steps()},
             {"world_hash", hash},
+            {"ev100", level.shown_exposure()},
             {"frame_ms",
              {{"median", statistics::median(times.frames)},
               {"p95", statistics::percentile(times.frames, 0.95)},
@@ -96,6 +97,7 @@ public:
                 step(level);
             if (level.game().has_sensors())
                 times_.cpu["light sensors"].push_back(level.take_sensor_milliseconds());
+            level.adapt(settings_, simulation::step_seconds * double(stride_));
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;

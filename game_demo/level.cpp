@@ -37,7 +37,9 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
     level->renderer_->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_TRY(level->renderer_->load(path, import));
     ecs::Registry& registry = level->renderer_->registry();
-    level->ev100_ = viewer::scene_exposure(registry).value_or(viewer::default_exposure);
+    level->fixed_exposure_ = source.ev100.has_value();
+    level->usual_ev100_ = level->ev100_ =
+        source.ev100 ? *source.ev100 : viewer::scene_exposure(registry).value_or(viewer::default_exposure);
     registry.view<scene::Camera, scene::Name>().each(
         [&](ecs::Entity entity, const scene::Camera&, const scene::Name& name) {
             if (name.name.rfind("bench", 0) != 0)
@@ -148,6 +150,15 @@ std::optional<float> Level::light_share() const {
     return changes_->pending() ? std::optional(changes_->share()) : std::nullopt;
 }
 
+void Level::adapt(const DemoSettings& settings, double seconds) {
+    if (!settings.adaptation || fixed_exposure_) {
+        adaptation_.forget();
+        ev100_ = usual_ev100_;
+        return;
+    }
+    ev100_ = adaptation_.advance(usual_ev100_, renderer_->metered_exposure(), seconds);
+}
+
 viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
                                     const simulation::DrawnMoment& moment) {
     viewer::FrameRequest request;
@@ -165,6 +176,7 @@ viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t 
     request.glare = settings.glare;
     request.strength_budget = strength_changes;
     request.ev100 = ev100_ - settings.exposure;
+    request.meter = settings.adaptation && !fixed_exposure_;
     return request;
 }
 

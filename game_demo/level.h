@@ -4,6 +4,7 @@
 #include "engine/simulation/step_interpolation.h"
 #include "game_demo/demo_settings.h"
 #include "game_demo/game/game_world.h"
+#include "viewer/adaptation.h"
 #include "viewer/lighting_change.h"
 
 #include <utility>
@@ -15,6 +16,7 @@ struct LevelSource {
     std::string scene;
     bool allow_outside = false; // io::ImportOptions::allow_outside
     gi::SensorSettings sensors;
+    std::optional<float> ev100{}; // a fixed exposure, in place of the scene's and without adaptation
 };
 
 // Reads the scene of a level, without its light.
@@ -69,6 +71,9 @@ public:
     void set_map_budget(std::uint32_t maps);
     // How far a change of light is, 0 to 1; none: everything that was applied is shown.
     std::optional<float> light_share() const;
+    // Once before each request: the exposure follows what was seen. `seconds`: since the last call.
+    void adapt(const DemoSettings& settings, double seconds);
+    float shown_exposure() const { return ev100_; } // EV100, before the player's compensation
     // The frame request for a window or image of this size.
     viewer::FrameRequest request(const DemoSettings& settings, std::uint32_t width, std::uint32_t height,
                                  const simulation::DrawnMoment& moment = {});
@@ -84,7 +89,9 @@ private:
     double sensor_milliseconds_ = 0.0;
     bool sensors_failed_ = false;
     std::vector<scene::CameraView> cameras_;
-    float ev100_ = 8.0f;
+    float usual_ev100_ = 8.0f, ev100_ = 8.0f; // the scene's; what is shown
+    bool fixed_exposure_ = false;
+    viewer::ExposureAdaptation adaptation_;
 };
 
 } // namespace sunfleck::demo

@@ -6,6 +6,7 @@
 #include "engine/core/stop_signals.h"
 #include "game_demo/options.h"
 #include "game_demo/presets.h"
+#include "viewer/exposure.h"
 #include "viewer/options.h"
 
 #include <cstdio>
@@ -65,6 +66,8 @@ void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
                       "Memory that may be taken, in MiB; 0: three quarters of what is free");
     viewer::add_name(program, "--settings", options.settings_file,
                      "Settings file (default: sunfleck/demo.json in the configuration folder)", "FILE");
+    viewer::add_real(program, "--ev100", options.ev100, viewer::lowest_exposure, viewer::highest_exposure,
+                     "Exposure, in place of the scene's; it stays, wherever one looks");
     viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
                      "FOLDER")
         ->default_str("the current folder");

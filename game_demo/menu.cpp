@@ -251,6 +251,7 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
     changed |= field(settings, "antialiasing", "Anti-aliasing");
     changed |= field(settings, "glare", "Glare");
     changed |= field(settings, "exposure", "Exposure");
+    changed |= field(settings, "adaptation", "Adaptation of the eye");
     changed |= field(settings, "field_of_view", "Field of view");
 }
 

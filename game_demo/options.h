@@ -25,10 +25,11 @@ struct Options {
     std::string state;             // file for what the window's game does; see state_file.h
     std::string screenshots = "."; // folder
     bool allow_outside = false;
+    std::optional<float> ev100; // a fixed exposure
 };
 
 inline LevelSource source_of(const Options& options) {
-    return {options.scene, options.allow_outside, options.sensors};
+    return {options.scene, options.allow_outside, options.sensors, options.ev100};
 }
 
 // Whether what a run in the window reads and writes can be read and written, before it takes anybody's time.

@@ -245,6 +245,7 @@ private:
             menu_.say(message, 6.0);
         DemoSettings shown = settings_;
         shown.render_scale = quality.render_scale;
+        level_->adapt(settings_, seconds);
         viewer::FrameRequest request = level_->request(shown, extent.width, extent.height, moment);
         request.strength_budget = quality.strength_budget;
         if (!started_)

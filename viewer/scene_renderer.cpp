@@ -22,12 +22,6 @@ double milliseconds(Clock::duration duration) {
 constexpr const char* waiting = "waiting for the GPU";
 constexpr VkFormat display_format = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr VkFormat linear_format = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr VkFormat light_format = VK_FORMAT_R16G16B16A16_SFLOAT;
-
-bool is_enlarged(const FrameRequest& request) {
-    return request.tone_map && request.screen_width > 0 && request.screen_height > 0 &&
-           (request.screen_width != request.width || request.screen_height != request.height);
-}
 
 Status replace_in(gpu::ShaderLibrary& shaders, gpu::PipelineStore& pipelines, const std::string& path,
                   const std::vector<std::uint32_t>& words) {
@@ -61,6 +55,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->composition_,
                     render::CompositionPass::create(device, *renderer->pipelines_, display_format));
     renderer->sky_ = std::make_unique<render::SkyImage>(device);
+    SUNFLECK_ASSIGN(renderer->meter_, render::ExposureMeter::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->glare_, render::GlarePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->antialiasing_, render::AntialiasingPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
@@ -188,7 +183,7 @@ Status SceneRenderer::check_size(std::uint32_t width, std::uint32_t height) {
 Status SceneRenderer::make_output(const FrameRequest& request) {
     const VkFormat format = request.tone_map ? display_format : linear_format;
     const gpu::ImageDescription& has = output_.description();
-    const bool enlarged = is_enlarged(request);
+    const bool enlarged = request.is_enlarged();
     const std::uint32_t width = enlarged ? request.screen_width : request.width;
     const std::uint32_t height = enlarged ? request.screen_height : request.height;
     if (output_ && has.width == width && has.height == height && has.format == format)
@@ -205,63 +200,6 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
     SUNFLECK_ASSIGN(output_, gpu::Image::create(device_, description));
     return {};
-}
-
-void SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
-                                const gpu::UploadSlice& camera, gpu::ResourceId output) {
-    render::CompositionInput composition;
-    composition.irradiance = light.irradiance;
-    composition.specular = light.specular;
-    composition.view = request.view;
-    composition.tone_map = request.tone_map;
-    composition.ev100 = request.ev100;
-    const bool final = request.tone_map && request.view == shared::view_final;
-    const bool smoothed = request.antialiasing && final;
-    composition.alpha_is_brightness = smoothed;
-    registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
-        composition.sky += environment.radiance;
-        if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
-            composition.sky_rotation = map->rotation;
-    });
-    composition.sky_image = sky_.get();
-    if (final && request.glare > 0.0f) {
-        composition.glare_share = request.glare;
-        composition.glare = glare_.add(*graph_, *gpu_scene_, g_buffer, composition, camera);
-    }
-    const bool enlarged = is_enlarged(request);
-    const bool drawn_with_edges = smoothed && enlarged && request.screen_width == 2 * request.width &&
-                                  request.screen_height == 2 * request.height;
-    const auto picture = [&](const char* name, bool last) {
-        return last ? output : graph_->create_image(name, display_format, request.width, request.height);
-    };
-    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
-    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
-    debug_lines_->add(*graph_, g_buffer, camera, current);
-    if (smoothed) {
-        const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
-        if (drawn_with_edges)
-            antialiasing_.add_codes(*graph_, current, smooth);
-        else
-            antialiasing_.add(*graph_, current, smooth);
-        current = smooth;
-    }
-    if (drawn_with_edges)
-        upscale_.add_with_edges(*graph_, current, output);
-    else if (enlarged)
-        upscale_.add(*graph_, current, output);
-}
-
-Result<SceneRenderer::Light> SceneRenderer::add_lighting(const FrameRequest& request, const render::GBuffer& g_buffer,
-                                                         const gpu::UploadSlice& camera) {
-    const gi::GBufferInput input{g_buffer.depth, g_buffer.normals, g_buffer.surface,
-                                 g_buffer.width, g_buffer.height,  {},
-                                 g_buffer.gloss, g_buffer.albedo};
-    Light light;
-    light.irradiance = graph_->create_image("irradiance", light_format, request.width, request.height);
-    if (request.view == shared::view_final && lighting_->lights_specular() && gpu_scene_->has_glossy_surfaces())
-        light.specular = graph_->create_image("specular light", light_format, request.width, request.height);
-    SUNFLECK_TRY(lighting_->add_passes(*graph_, *gpu_scene_, input, camera, light.irradiance, light.specular));
-    return light;
 }
 
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
@@ -281,7 +219,7 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
                                                         request.height, request.view == shared::view_motion);
     SUNFLECK_ASSIGN(const Light light, add_lighting(request, g_buffer, camera_slice));
     const gpu::ResourceId output = graph_->import_image(output_);
-    add_picture(request, g_buffer, light, camera_slice, output);
+    SUNFLECK_TRY(add_picture(request, g_buffer, light, camera_slice, output));
     if (overlay)
         SUNFLECK_TRY(overlay(*graph_, output, *resources_));
     graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();

@@ -7,6 +7,7 @@
 #include "engine/render/antialiasing.h"
 #include "engine/render/composition.h"
 #include "engine/render/debug_lines.h"
+#include "engine/render/exposure_meter.h"
 #include "engine/render/glare.h"
 #include "engine/render/upscale.h"
 #include "gi_module/system.h"
@@ -28,6 +29,7 @@ struct FrameRequest {
     bool antialiasing = false;         // PictureSettings; of the final picture with tone_map
     float glare = 0.0f;                // the same
     std::string lighting_view;         // debug view of the lighting by name (gi::debug_views()), in place of irradiance
+    bool meter = false;                // measures the picture, for SceneRenderer::metered_exposure
     bool show_samples = false;         // debug lines at the light samples
     std::vector<std::string> overlays; // overlays.h, by name; of tone-mapped pictures
     std::optional<std::uint32_t> overlay_sample; // the light sample that overlays single out
@@ -40,6 +42,8 @@ struct FrameRequest {
     bool keep_samples = false;                   // gi::FrameInput::keep_samples
     // gi::FrameInput::progress
     std::function<bool(float)> progress;
+
+    bool is_enlarged() const; // the screen's size is not that of the picture
 };
 
 struct FrameStatistics {
@@ -111,6 +115,9 @@ public:
     const FrameStatistics& statistics() const { return statistics_; }
     // The last frame's graph as text.
     std::string print_graph() const { return graph_->print(); }
+    // EV100 that a light meter says of the newest finished frame with FrameRequest::meter, without waiting; none: the
+    // last call had it, or there is none.
+    std::optional<float> metered_exposure();
     // Without waiting: the statistics of the newest completed frame.
     void collect_statistics();
 
@@ -129,8 +136,8 @@ private:
     };
     Result<Light> add_lighting(const FrameRequest& request, const render::GBuffer& g_buffer,
                                const gpu::UploadSlice& camera);
-    void add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
-                     const gpu::UploadSlice& camera, gpu::ResourceId output);
+    Status add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
+                       const gpu::UploadSlice& camera, gpu::ResourceId output);
     void draw_samples();
     Status draw_lines(const FrameRequest& request);
     shared::CameraRow camera_row(const FrameRequest& request) const;
@@ -155,6 +162,7 @@ private:
     render::GBufferPass g_buffer_pass_;
     render::CompositionPass composition_;
     std::unique_ptr<render::SkyImage> sky_;
+    std::unique_ptr<render::ExposureMeter> meter_;
     render::GlarePass glare_;
     render::AntialiasingPass antialiasing_;
     render::UpscalePass upscale_;

@@ -30,6 +30,10 @@ struct CompositionConstants {
 SHARED_CONSTANT uint glare_block = 8u; // pixels, of the side
 SHARED_CONSTANT uint glare_levels = 4u;
 
+// Points at which the exposure meter measures a picture.
+SHARED_CONSTANT uint meter_columns = 48u;
+SHARED_CONSTANT uint meter_rows = 27u;
+
 // The albedo image holds square roots, which spread 8 bits about as sRGB does and cost a CPU device much less. Its
 // alpha says what the pixel is, so that the final picture need not read surface ids.
 SHARED_CONSTANT float albedo_of_nothing = 0.0f; // no surface

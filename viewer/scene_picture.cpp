@@ -1,0 +1,91 @@
+// The half of SceneRenderer that makes light, and of light a picture.
+#include "viewer/exposure.h"
+#include "viewer/scene_renderer.h"
+
+namespace sunfleck::viewer {
+namespace {
+
+constexpr VkFormat shown_format = VK_FORMAT_R8G8B8A8_UNORM, light_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+} // namespace
+
+bool FrameRequest::is_enlarged() const {
+    return tone_map && screen_width > 0 && screen_height > 0 && (screen_width != width || screen_height != height);
+}
+
+Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
+                                  const gpu::UploadSlice& camera, gpu::ResourceId output) {
+    render::CompositionInput composition;
+    composition.irradiance = light.irradiance;
+    composition.specular = light.specular;
+    composition.view = request.view;
+    composition.tone_map = request.tone_map;
+    composition.ev100 = request.ev100;
+    const bool final = request.tone_map && request.view == shared::view_final;
+    const bool smoothed = request.antialiasing && final;
+    composition.alpha_is_brightness = smoothed;
+    registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
+        composition.sky += environment.radiance;
+        if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
+            composition.sky_rotation = map->rotation;
+    });
+    composition.sky_image = sky_.get();
+    if (final && request.glare > 0.0f) {
+        composition.glare_share = request.glare;
+        composition.glare = glare_.add(*graph_, *gpu_scene_, g_buffer, composition, camera);
+    }
+    if (request.meter) {
+        SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
+        SUNFLECK_TRY(
+            meter_->add(*graph_, *gpu_scene_, g_buffer, composition, camera, {submission_->serial(), completed}));
+    }
+    const bool enlarged = request.is_enlarged();
+    const bool drawn_with_edges = smoothed && enlarged && request.screen_width == 2 * request.width &&
+                                  request.screen_height == 2 * request.height;
+    const auto picture = [&](const char* name, bool last) {
+        return last ? output : graph_->create_image(name, shown_format, request.width, request.height);
+    };
+    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
+    composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
+    debug_lines_->add(*graph_, g_buffer, camera, current);
+    if (smoothed) {
+        const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
+        if (drawn_with_edges)
+            antialiasing_.add_codes(*graph_, current, smooth);
+        else
+            antialiasing_.add(*graph_, current, smooth);
+        current = smooth;
+    }
+    if (drawn_with_edges)
+        upscale_.add_with_edges(*graph_, current, output);
+    else if (enlarged)
+        upscale_.add(*graph_, current, output);
+    return {};
+}
+
+Result<SceneRenderer::Light> SceneRenderer::add_lighting(const FrameRequest& request, const render::GBuffer& g_buffer,
+                                                         const gpu::UploadSlice& camera) {
+    const gi::GBufferInput input{g_buffer.depth, g_buffer.normals, g_buffer.surface,
+                                 g_buffer.width, g_buffer.height,  {},
+                                 g_buffer.gloss, g_buffer.albedo};
+    Light light;
+    light.irradiance = graph_->create_image("irradiance", light_format, request.width, request.height);
+    if (request.view == shared::view_final && lighting_->lights_specular() && gpu_scene_->has_glossy_surfaces())
+        light.specular = graph_->create_image("specular light", light_format, request.width, request.height);
+    SUNFLECK_TRY(lighting_->add_passes(*graph_, *gpu_scene_, input, camera, light.irradiance, light.specular));
+    return light;
+}
+
+std::optional<float> SceneRenderer::metered_exposure() {
+    const auto completed = submission_->completed();
+    const std::span<const float> points = completed ? meter_->collect(*completed) : std::span<const float>();
+    if (points.empty())
+        return std::nullopt;
+    io::Picture picture{shared::meter_columns, shared::meter_rows, {}};
+    picture.pixels.reserve(points.size());
+    for (const float point : points)
+        picture.pixels.emplace_back(point, point, point, 1.0f);
+    return automatic_exposure(picture);
+}
+
+} // namespace sunfleck::viewer
