@@ -58,7 +58,12 @@ void text_window(const char* name, const std::string& text, float y, float alpha
 GameSession::GameSession(std::string level, const std::filesystem::path& folder)
     : level_(std::move(level)), files_(folder, level_), has_folder_(!folder.empty()) {}
 
+GameSession::~GameSession() {
+    end_saving();
+}
+
 bool GameSession::begin(GameWorld& world, bool resume) {
+    end_saving();
     world_ = &world;
     const bool resumed = resume && has_folder_ && files_.load(world, message_);
     seconds_ = double(world.simulation().steps()) * simulation::step_seconds;
@@ -69,7 +74,21 @@ bool GameSession::begin(GameWorld& world, bool resume) {
     return resumed || !resume;
 }
 
+void GameSession::save_checkpoint() {
+    end_saving();
+    saving_ = std::async(std::launch::async, [files = files_, text = saved()] { return files.write(text); });
+}
+
+void GameSession::end_saving() {
+    if (!saving_.valid())
+        return;
+    if (const Status saved = saving_.get(); !saved)
+        message_ = "No checkpoint: " + saved.error().message;
+}
+
 void GameSession::update(double seconds) {
+    if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+        end_saving();
     if (!has_areas() || world_->finished())
         return;
     seconds_ = double(world_->simulation().steps()) * simulation::step_seconds;
@@ -85,10 +104,8 @@ void GameSession::update(double seconds) {
     area_ = world_->area_entity();
     title_seconds_ = title_time;
     hint_seconds_ = area_seconds_ = 0.0;
-    if (!has_folder_)
-        return;
-    if (const Status saved = files_.save(*world_); !saved)
-        message_ = "No checkpoint: " + saved.error().message;
+    if (has_folder_)
+        save_checkpoint();
 }
 
 void GameSession::show_hint() {

@@ -4,6 +4,7 @@
 #include "game_demo/demo_settings.h"
 #include "game_demo/game/checkpoint_files.h"
 
+#include <future>
 #include <utility>
 
 namespace sunfleck::demo {
@@ -20,12 +21,15 @@ class GameSession {
 public:
     // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
     GameSession(std::string level, const std::filesystem::path& folder);
+    ~GameSession(); // when the last checkpoint is written
+    GameSession(const GameSession&) = delete;
+    GameSession& operator=(const GameSession&) = delete;
 
     // Of a level that was just loaded. `resume`: goes on at the last checkpoint. False: none is good, and the level
     // must be loaded once more.
     bool begin(GameWorld& world, bool resume);
     bool can_resume() const { return has_folder_ && files_.any(); }
-    // After a frame's steps: notices new areas, saves a checkpoint there.
+    // After a frame's steps: notices new areas, saves a checkpoint there, on a thread: no frame waits for the disk.
     void update(double seconds);
     void show_hint();
     GameProgress progress() const;
@@ -41,6 +45,8 @@ public:
     std::string take_message() { return std::exchange(message_, {}); }
 
 private:
+    void save_checkpoint();
+    void end_saving(); // waits, and keeps what went wrong as a message
     void draw_title() const;
     void draw_sensor() const;
 
@@ -51,6 +57,7 @@ private:
     ecs::Entity area_;
     double seconds_ = 0.0, title_seconds_ = 0.0, hint_seconds_ = 0.0, area_seconds_ = 0.0;
     std::string message_;
+    std::future<Status> saving_; // valid: a checkpoint is being written
 };
 
 } // namespace sunfleck::demo

@@ -21,7 +21,7 @@ CheckpointFiles::CheckpointFiles(std::filesystem::path folder, std::string level
     : folder_(std::move(folder)), level_(std::move(level)), newest_(folder_ / (file_name_of(level_) + ".checkpoint")),
       older_(folder_ / (file_name_of(level_) + ".checkpoint.old")) {}
 
-Status CheckpointFiles::save(const GameWorld& world) const {
+Status CheckpointFiles::write(const std::string& text) const {
     std::error_code code;
     std::filesystem::create_directories(folder_, code);
     if (code)
@@ -29,7 +29,7 @@ Status CheckpointFiles::save(const GameWorld& world) const {
     // The last one is kept as a copy: at every moment, one file under either name is whole.
     if (auto last = read_file(newest_, size_limit))
         SUNFLECK_TRY(write_file(older_, *last));
-    return write_file(newest_, save_game(world, level_));
+    return write_file(newest_, text);
 }
 
 bool CheckpointFiles::any() const {

@@ -13,7 +13,9 @@ public:
     // The folder is made when something is written.
     CheckpointFiles(std::filesystem::path folder, std::string level);
 
-    Status save(const GameWorld& world) const;
+    Status save(const GameWorld& world) const { return write(save_game(world, level_)); }
+    // The same for a game that was made into text before (save_game); for any thread, one at a time.
+    Status write(const std::string& text) const;
     // Loads the newest that is good; false if there is none. What is not good is renamed to end in ".damaged", and
     // `message` says so, in one line.
     bool load(GameWorld& world, std::string& message) const;
