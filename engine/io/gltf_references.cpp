@@ -1,5 +1,6 @@
 #include "engine/io/gltf_references.h"
 
+#include <algorithm>
 #include <span>
 
 namespace sunfleck::io {
@@ -123,6 +124,27 @@ json empty_element(std::string_view section) {
     return json::object();
 }
 
+// The parser ends at the first accessor of a type that glTF does not know, used or not.
+Status check_types(const json& accessor, const std::string& place) {
+    constexpr std::string_view types[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+    const auto type = accessor.is_object() ? accessor.find("type") : accessor.end();
+    if (!accessor.is_object() || type == accessor.end() || !type->is_string() ||
+        std::ranges::find(types, type->get<std::string>()) == std::end(types))
+        return Error{place + ".type is none of glTF's"};
+    return {};
+}
+
+// Leaves out accessors of unknown type that nothing uses; those that are used are left to the parser, which names them.
+void leave_out_unknown_types(json& file, const GltfUsage& usage, std::vector<std::string>& notes) {
+    for (std::size_t i = 0; i < section_size(file, "accessors"); ++i) {
+        const Status status = check_types(file["accessors"][i], "accessors[" + std::to_string(i) + "]");
+        if (status || usage.uses("accessors", i))
+            continue;
+        file["accessors"][i] = empty_element("accessors");
+        notes.push_back(status.error().message + "; nothing uses it, so it is left out");
+    }
+}
+
 } // namespace
 
 GltfUsage::GltfUsage(const json& file) {
@@ -161,6 +183,7 @@ bool GltfUsage::uses(std::string_view section, std::size_t index) const {
 
 Status check_references(json& file, std::vector<std::string>& notes) {
     const GltfUsage usage(file);
+    leave_out_unknown_types(file, usage, notes);
     for (const Reference& reference : references()) {
         const auto section = file.find(std::string(reference.section));
         if (section == file.end())

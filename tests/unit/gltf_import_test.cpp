@@ -293,6 +293,8 @@ TEST(GltfImport, BrokenPartsMatterWhereTheyAreUsed) {
          R"({"primitives":[{"attributes":{"POSITION":2}}]})", "bufferView is 55"},
         {"accessors", R"({"bufferView":0,"componentType":5126,"count":400,"type":"VEC3"})", "meshes",
          R"({"primitives":[{"attributes":{"POSITION":2}}]})", "primitive 0"},
+        {"accessors", R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC9"})", "meshes",
+         R"({"primitives":[{"attributes":{"POSITION":2}}]})", "type"},
         {"skins", R"({"joints":[99]})", "nodes", R"({"skin":0})", "joints[0] is 99"},
         {"nodes", R"({"mesh":77})", "scenes", R"({"nodes":[0,1]})", "nodes[1].mesh is 77"},
         {"buffers", R"({"byteLength":4,"uri":"missing.bin"})", "bufferViews", R"({"buffer":1})", "buffer 1"},
