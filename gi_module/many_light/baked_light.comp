@@ -18,9 +18,9 @@ const uint stale_maps = 0, simplified_movers = 0;
 const uint lanes = 8u, texels_per_invocation = 8u;
 
 layout(local_size_x = 8) in;
-layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer jobs; // LightMapJobs
 layout(set = 0, binding = 1) readonly buffer Changes { uint changes[]; };
-layout(set = 0, binding = 2) readonly buffer Lights { LightRow lights[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer lights; // LightRows
 layout(set = 0, binding = 3) uniform usamplerBuffer static_map_words;
 layout(set = 0, binding = 4) buffer Sums { ivec4 sums[]; };
 layout(set = 0, binding = 5) readonly buffer Points { CurvedPoint points[]; };
@@ -35,6 +35,15 @@ float map_value(uint slot, ivec2 texel) {
     return value_in_word(texelFetch(static_map_words, map_word(place)).r, place);
 }
 #include "gi_module/shadows/shadowed_light.glsl"
+
+#include "gi_module/many_light/light_map_job.glsl"
+
+LightRow light_at(uint number) {
+    const int first = int(number) * 5;
+    return LightRow(uintBitsToFloat(texelFetch(lights, first)), uintBitsToFloat(texelFetch(lights, first + 1)),
+                    uintBitsToFloat(texelFetch(lights, first + 2)), uintBitsToFloat(texelFetch(lights, first + 3)),
+                    uintBitsToFloat(texelFetch(lights, first + 4)));
+}
 
 Pixel pixel_at(LightMapJob job, uint i) {
     Pixel pixel;
@@ -75,7 +84,7 @@ void sum_many(LightMapJob job, uint begin, uint end) {
     }
     for (uint c = 0; c < job.change_count; ++c) {
         const uint change = changes[job.first_change + c];
-        const LightRow light = lights[change & light_map_sample_mask];
+        const LightRow light = light_at(change & light_map_sample_mask);
         [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k)
             sum[k] += change_of(change, light, texel[k]);
     }
@@ -93,7 +102,7 @@ void sum_few(LightMapJob job, uint begin, uint end) {
     ivec3 sum = sum_before(job, i);
     for (uint c = 0; c < job.change_count; ++c) {
         const uint change = changes[job.first_change + c];
-        sum += change_of(change, lights[change & light_map_sample_mask], texel);
+        sum += change_of(change, light_at(change & light_map_sample_mask), texel);
     }
     if (begin + gl_LocalInvocationID.x < end)
         sums[job.first_texel + i] = ivec4(sum, 0);
@@ -103,7 +112,7 @@ void main() {
     const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
     if (number >= constants.jobs)
         return;
-    const LightMapJob job = jobs[number];
+    const LightMapJob job = job_at(number);
     const uint end = job.first + job.count;
     uint begin = job.first;
     if (begin + lanes < end) do { // tested at its end: see light.comp

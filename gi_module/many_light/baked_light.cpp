@@ -116,10 +116,11 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
         return {};
     resources.retire(std::move(sums_));
     resources.retire(std::move(texels_));
-    SUNFLECK_ASSIGN(sums_,
-                    gpu::Buffer::create(device_, {"baked light sums", texels * sizeof(glm::ivec4),
-                                                  VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    SUNFLECK_ASSIGN(
+        sums_, gpu::Buffer::create(device_, {"baked light sums", texels * sizeof(glm::ivec4),
+                                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                                             gpu::MemoryUse::device, VK_FORMAT_R32G32B32A32_SINT}));
     SUNFLECK_ASSIGN(
         texels_,
         gpu::Buffer::create(device_, {"baked light", texels * texel_bytes,
@@ -259,6 +260,18 @@ void BakedLight::add_wipe(gpu::FrameGraph& graph) {
         });
 }
 
+Status BakedLight::upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
+    const auto upload = [&](gpu::UploadedBuffer& buffer, const char* name, std::span<const std::byte> bytes) -> Status {
+        SUNFLECK_TRY(buffer.reserve(device_, resources, name, bytes.size(), VK_FORMAT_R32G32B32A32_UINT));
+        SUNFLECK_TRY(buffer.write(resources, 0, bytes));
+        buffer.add_pass(graph);
+        return {};
+    };
+    SUNFLECK_TRY(upload(job_texels_, "baked light jobs", std::as_bytes(jobs_.jobs())));
+    SUNFLECK_TRY(upload(finish_texels_, "baked light cell jobs", std::as_bytes(finish_.jobs())));
+    return upload(row_texels_, "baked light rows", std::as_bytes(std::span<const shared::LightRow>(job_rows_)));
+}
+
 Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter,
                               gpu::FrameResources& resources) {
     points_.add_pass(graph);
@@ -275,10 +288,8 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     description.specialization = {};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const finish, pipelines_.compute(description));
 
-    SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(jobs_.jobs()));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice finish_jobs, resources.upload(finish_.jobs()));
+    SUNFLECK_TRY(upload_jobs(graph, resources));
     SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
     shared::LightMapConstants constants{};
     constants.fixed_point = fixed_point_;
     constants.map_resolution = maps.resolution();
@@ -290,15 +301,15 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
                                       (constants.jobs + constants.row_length - 1) / constants.row_length);
     };
     gpu::ComputePass bake_pass(graph, "baked light", *bake);
-    bake_pass.storage_read(jobs)
+    bake_pass.texels(job_texels_.buffer())
         .storage_read(changes)
-        .storage_read(rows)
+        .texels(row_texels_.buffer())
         .texels(maps.static_texels())
         .storage_read_write(sums_)
         .storage_read(points_.buffer());
     dispatch(bake_pass, jobs_.jobs().size());
     gpu::ComputePass finish_pass(graph, "baked light cells", *finish);
-    finish_pass.storage_read(finish_jobs).storage_read(sums_).storage_write(texels_).storage_read(points_.buffer());
+    finish_pass.texels(finish_texels_.buffer()).texels(sums_).storage_write(texels_).storage_read(points_.buffer());
     dispatch(finish_pass, finish_.jobs().size());
     return {};
 }

@@ -75,6 +75,7 @@ private:
                           std::span<const std::uint32_t> changed);
     void bake_later(std::uint32_t piece);
     void add_wipe(gpu::FrameGraph& graph);
+    Status upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources);
     std::uint32_t take_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
                                std::uint64_t most);
     void bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples, std::uint64_t most);
@@ -84,6 +85,7 @@ private:
     gpu::Buffer sums_;   // fixed point, as in light maps
     gpu::Buffer texels_; // what is shown
     gpu::UploadedBuffer points_, curved_rows_;
+    gpu::UploadedBuffer job_texels_, finish_texels_, row_texels_; // of the frame
     std::vector<Piece> pieces_;
     bool in_use_ = false;
     bool wipe_ = false;                // all texels become rough in this frame

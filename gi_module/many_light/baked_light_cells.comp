@@ -1,21 +1,26 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Converts baked light to the format that pixels read, and marks rough cells: those between four texels that cannot be
 // interpolated.
 #include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 0) readonly buffer Jobs { LightMapJob jobs[]; };
-layout(set = 0, binding = 1) readonly buffer Sums { ivec4 sums[]; };
+layout(set = 0, binding = 0) uniform usamplerBuffer jobs; // LightMapJobs
+layout(set = 0, binding = 1) uniform isamplerBuffer sums;
 layout(set = 0, binding = 2) writeonly buffer Texels { uvec2 texels[]; };
 layout(set = 0, binding = 3) readonly buffer Points { CurvedPoint points[]; };
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
+#include "gi_module/many_light/light_map_job.glsl"
+
 const float largest_half = 65504.0;
 
+// Of places beside the map, something that is not looked at.
 vec3 light_at(LightMapJob job, ivec2 texel) {
-    return vec3(sums[job.first_texel + uint(texel.y) * job.columns + uint(texel.x)].xyz);
+    const int place = clamp(texel.y * int(job.columns) + texel.x, 0, int(job.columns * job.rows) - 1);
+    return vec3(texelFetch(sums, int(job.first_texel) + place).xyz);
 }
 
 // Whether a texel is too far off the line between its neighbours, relative to the brightest of the three.
@@ -35,20 +40,26 @@ bool exists(LightMapJob job, ivec2 texel) {
     return job.first_point == no_points || points[job.first_point + uint(texel.y) * job.columns + uint(texel.x)].exists != 0u;
 }
 
+// From the twelve texels that its corners and their neighbours are: of a square of sixteen, all but its corners.
 bool is_rough(LightMapJob job, ivec2 cell) {
+    vec3 light[16];
+    bool there[16];
+    [[unroll]] for (int i = 0; i < 16; ++i) {
+        const bool is_corner = (i & 3) % 3 == 0 && (i >> 2) % 3 == 0;
+        const ivec2 texel = cell - 1 + ivec2(i & 3, i >> 2);
+        light[i] = is_corner ? vec3(0.0) : light_at(job, texel);
+        there[i] = !is_corner && exists(job, texel);
+    }
     bool rough = false;
-    for (int i = 0; i < 4; ++i) {
-        const ivec2 texel = cell + ivec2(i & 1, i >> 1);
-        const vec3 here = light_at(job, texel);
-        for (int axis = 0; axis < 2; ++axis) {
-            const ivec2 step = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
-            const bool before = exists(job, texel - step), after = exists(job, texel + step);
-            if (before && after) {
-                rough = rough || bends(light_at(job, texel - step), here, light_at(job, texel + step));
-            } else if (job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u) {
-                // The rim of a curved surface, or the only cell of a patch along this axis.
-                rough = rough || differ(light_at(job, before ? texel - step : texel + step), here);
-            }
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const int here = 5 + (i & 1) + 4 * (i >> 1);
+        [[unroll]] for (int axis = 0; axis < 2; ++axis) {
+            const int step = axis == 0 ? 1 : 4;
+            const bool before = there[here - step], after = there[here + step];
+            // The rim of a curved surface, or the only cell of a patch along this axis.
+            const bool rim = job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u;
+            rough = rough || (before && after ? bends(light[here - step], light[here], light[here + step])
+                                              : rim && differ(before ? light[here - step] : light[here + step], light[here]));
         }
     }
     return rough;
@@ -78,7 +89,7 @@ void main() {
     const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
     if (number >= constants.jobs)
         return;
-    const LightMapJob job = jobs[number];
+    const LightMapJob job = job_at(number);
     const uint end = job.first + job.count;
     uint i = job.first + gl_LocalInvocationID.x;
     if (i < end) do { // tested at its end: see light.comp
