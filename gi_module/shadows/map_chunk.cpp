@@ -21,8 +21,9 @@ void ShadowMaps::add_item(const scene::DrawItem& item, std::span<const ShadowReq
         if (occluders == Occluders::movers)
             part.areas.emplace_back(layer, covered.area);
         std::size_t level = 0;
-        if (detail && !has_holes)
-            level = detail_level(requests[layer], item) * 2 + (shows_front_faces_only(requests[layer], item) ? 1u : 0u);
+        if (!has_holes)
+            level = (detail ? detail_level(requests[layer], item) * 2 : 0) +
+                    (shows_front_faces_only(requests[layer], item) ? 1 : 0);
         for (std::uint32_t face = 0; covered.faces >> face; ++face)
             if ((covered.faces >> face) & 1u)
                 by_level[level].push_back(make_shadow_job(requests[layer].light, requests[layer].light_class,

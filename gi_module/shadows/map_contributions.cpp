@@ -1,5 +1,6 @@
 #include "gi_module/shadows/map_contributions.h"
 
+#include "engine/core/jobs.h"
 #include "gi_module/transport/arrival.h"
 #include "gi_module/visibility/view_bounds.h"
 
@@ -32,15 +33,17 @@ float largest_side_area(const Bounds& bounds) {
 std::vector<SeenNode> seen_nodes(const VisibilityDatabase& database, const mat4& view_projection) {
     const auto& patches = database.patches().nodes();
     std::vector<SeenNode> nodes(database.node_count());
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        const SurfacePatch& patch = patches[i];
-        if (!patch.is_leaf())
-            continue;
-        const float area = patch.planar ? float(glm::length(glm::cross(patch.corners[1] - patch.corners[0],
-                                                                       patch.corners[3] - patch.corners[0])))
-                                        : largest_side_area(patch.bounds);
-        nodes[i] = seen_node(patch.bounds, patch.planar ? vec3(patch.normal) : vec3(0.0f), area, view_projection);
-    }
+    parallel_for_chunks(patches.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const SurfacePatch& patch = patches[i];
+            if (!patch.is_leaf())
+                continue;
+            const float area = patch.planar ? float(glm::length(glm::cross(patch.corners[1] - patch.corners[0],
+                                                                           patch.corners[3] - patch.corners[0])))
+                                            : largest_side_area(patch.bounds);
+            nodes[i] = seen_node(patch.bounds, patch.planar ? vec3(patch.normal) : vec3(0.0f), area, view_projection);
+        }
+    });
     return nodes;
 }
 
@@ -71,16 +74,18 @@ std::vector<float> map_contributions(const VisibilityDatabase& database, std::sp
         mover_nodes.push_back(node);
     }
     std::vector<float> result(samples.size(), 0.0f);
-    for (std::uint32_t i = 0; i < samples.size(); ++i) {
-        if (requested[i] == 0)
-            continue;
-        const std::uint32_t kind = light_class(samples[i].kind);
-        float sum = 0.0f;
-        database.visit_shadowed(i, [&](std::uint32_t node) { sum += light_on(nodes[node], rows[i], kind); });
-        for (const std::uint32_t node : mover_nodes)
-            sum += light_on(nodes[node], rows[i], kind);
-        result[i] = sum;
-    }
+    parallel_for_chunks(samples.size(), 8, [&](std::size_t begin, std::size_t end) {
+        for (std::uint32_t i = std::uint32_t(begin); i < end; ++i) {
+            if (requested[i] == 0)
+                continue;
+            const std::uint32_t kind = light_class(samples[i].kind);
+            float sum = 0.0f;
+            database.visit_shadowed(i, [&](std::uint32_t node) { sum += light_on(nodes[node], rows[i], kind); });
+            for (const std::uint32_t node : mover_nodes)
+                sum += light_on(nodes[node], rows[i], kind);
+            result[i] = sum;
+        }
+    });
     return result;
 }
 

@@ -49,8 +49,8 @@ std::vector<std::uint8_t> VisibilityDatabase::hidden_entities(std::uint32_t samp
         // A face that looks away may still be what stands in the light's way.
         hidden[entity.index] &= static_state(node, sample) == PairState::full;
     };
-    for (std::uint32_t root = 0; root < patches_.roots(); ++root)
-        note(patches_.nodes()[root].entity, root);
+    for (std::uint32_t root = 0; root < root_entities_.size(); ++root)
+        note(root_entities_[root], root);
     for (const auto& [bits, mover] : movers_)
         note(mover.entity, mover_node(mover.entity));
     for (std::size_t i = 0; i < hidden.size(); ++i)

@@ -266,7 +266,8 @@ private:
     std::vector<Cluster> clusters_;
     std::vector<std::uint32_t> cluster_of_; // by sample
     std::vector<Group> groups_;
-    std::vector<Outline> outlines_;         // by node of the patches
+    std::vector<Outline> outlines_; // by node of the patches
+    std::vector<ecs::Entity> root_entities_;
     std::vector<std::uint8_t> is_exact_;    // by root; empty: all are
     std::map<EntityBits, Mover> movers_;    // ordered: results never depend on insertion
     std::vector<ecs::Entity> mover_slots_;  // node = static nodes + slot; null entity: free

@@ -151,6 +151,10 @@ void VisibilityDatabase::make_clusters() {
 }
 
 void VisibilityDatabase::make_outlines() {
+    root_entities_.clear();
+    root_entities_.reserve(patches_.roots());
+    for (std::uint32_t root = 0; root < patches_.roots(); ++root)
+        root_entities_.push_back(patches_.nodes()[root].entity);
     outlines_.clear();
     outlines_.reserve(patches_.nodes().size());
     for (const SurfacePatch& patch : patches_.nodes()) {
