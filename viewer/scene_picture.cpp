@@ -45,8 +45,14 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     const auto picture = [&](const char* name, bool last) {
         return last ? output : graph_->create_image(name, shown_format, request.width, request.height);
     };
-    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
+    const bool stippled = final && gpu_scene_->has_stippled_surfaces();
+    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged && !stippled);
     composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
+    if (stippled) {
+        const gpu::ResourceId blended = picture("blended picture", !smoothed && !enlarged);
+        stipple_.add(*graph_, g_buffer, current, blended);
+        current = blended;
+    }
     debug_lines_->add(*graph_, g_buffer, camera, current);
     if (smoothed) {
         const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);

@@ -56,6 +56,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
                     render::CompositionPass::create(device, *renderer->pipelines_, display_format));
     renderer->sky_ = std::make_unique<render::SkyImage>(device);
     SUNFLECK_ASSIGN(renderer->meter_, render::ExposureMeter::create(device, *renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->stipple_, render::StipplePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->glare_, render::GlarePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->antialiasing_, render::AntialiasingPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
@@ -69,6 +70,7 @@ SceneRenderer::~SceneRenderer() {
         static_cast<void>(submission_->wait(submission_->serial() - 1));
     composition_.destroy(device_);
     glare_.destroy(device_);
+    stipple_.destroy(device_);
 }
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,

@@ -9,6 +9,7 @@
 #include "engine/render/debug_lines.h"
 #include "engine/render/exposure_meter.h"
 #include "engine/render/glare.h"
+#include "engine/render/stipple.h"
 #include "engine/render/upscale.h"
 #include "gi_module/system.h"
 
@@ -164,6 +165,7 @@ private:
     std::unique_ptr<render::SkyImage> sky_;
     std::unique_ptr<render::ExposureMeter> meter_;
     render::GlarePass glare_;
+    render::StipplePass stipple_;
     render::AntialiasingPass antialiasing_;
     render::UpscalePass upscale_;
     std::unique_ptr<render::DebugLines> debug_lines_;

@@ -92,6 +92,8 @@ public:
     // Some surface reflects by microfacets (surface_glossy); and the metallic or roughness of some has a texture.
     bool has_glossy_surfaces() const { return has_glossy_surfaces_; }
     bool has_gloss_textures() const { return has_gloss_textures_; }
+    // Some surface is blended (surface_stippled).
+    bool has_stippled_surfaces() const { return has_stippled_surfaces_; }
     // Rows of this frame, by DrawItem::row; a storage buffer slice.
     const gpu::UploadSlice& rows() const { return rows_; }
     // Box around all static geometry, and around everything.
@@ -157,7 +159,8 @@ private:
     GpuTextures textures_;
     gpu::Buffer positions_, normals_, indices_, texture_coordinates_, tangents_, colours_;
     gpu::UploadSlice materials_;
-    bool has_emission_textures_ = false, has_glossy_surfaces_ = false, has_gloss_textures_ = false;
+    bool has_emission_textures_ = false, has_glossy_surfaces_ = false, has_gloss_textures_ = false,
+         has_stippled_surfaces_ = false;
     std::vector<VertexCopy> copies_; // until they were recorded
     std::vector<Staged> staged_;
     std::vector<MeshRange> ranges_;

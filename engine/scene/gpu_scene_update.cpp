@@ -42,7 +42,8 @@ shared::DrawConstants draw_constants(const shared::InstanceRow& row, std::uint32
     constants.surface = (number + 1) | (row.emission.w > 0.0f ? shared::surface_area_light : 0) |
                         (emission.r + emission.g + emission.b > 0.0f ? shared::surface_emits : 0) |
                         ((row.material.y & shared::material_unlit) != 0 ? shared::surface_unlit : 0) |
-                        (is_glossy(row) ? shared::surface_glossy : 0);
+                        (is_glossy(row) ? shared::surface_glossy : 0) |
+                        ((row.material.y & shared::material_stippled) != 0 ? shared::surface_stippled : 0);
     constants.gloss = row.material.z;
     return constants;
 }
@@ -83,7 +84,8 @@ void describe_surface(const Drawable& drawable, DrawItem& item, shared::Instance
         row.inverse_model = glm::inverse(drawable.matrix);
     }
     row.emission = vec4(material.emission, drawable.is_lamp ? 1.0f : 0.0f);
-    row.material.y = (material.unlit ? shared::material_unlit : 0) | (drawable.is_static ? 0 : shared::material_moves);
+    row.material.y = (material.unlit ? shared::material_unlit : 0) | (drawable.is_static ? 0 : shared::material_moves) |
+                     (material.alpha_mode == AlphaMode::blend ? shared::material_stippled : 0);
     row.material.z = glm::packUnorm2x16(vec2(material.metallic, material.roughness));
     row.material.w = material.specular ? std::bit_cast<std::uint32_t>(material.index_of_refraction) : 0;
 }
@@ -231,6 +233,8 @@ void GpuScene::find_surface_kinds() {
         return item.textures[2] >= 0 && vec3(instance_rows_[item.row].emission) != vec3(0.0f);
     });
     has_glossy_surfaces_ = any(is_glossy);
+    has_stippled_surfaces_ =
+        any([](const DrawItem& item) { return (item.constants.surface & shared::surface_stippled) != 0; });
     has_gloss_textures_ = any([&](const DrawItem& item) { return item.textures[3] >= 0 && is_glossy(item); });
 }
 

@@ -12,19 +12,21 @@ struct InstanceRow {
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
     vec4 pattern;        // 224: rgb of the second colour; w: scale, m
     mat4 inverse_model;  // 240: world to object, for patterns
-    uvec4 material; // 304: x: row of the material buffer, for textured surfaces; y: material_unlit, material_moves;
-                    // z: metallic and roughness, 16 bits each; w: bits of the coat's index of refraction, 0: none
+    uvec4 material;      // 304: x: row of the material buffer, for textured surfaces; y: material_unlit and the like;
+                         // z: metallic and roughness, 16 bits each; w: bits of the coat's index of refraction, 0: none
 };
 
 SHARED_CONSTANT uint material_unlit = 1u;
-SHARED_CONSTANT uint material_moves = 2u; // the instance is a mover
+SHARED_CONSTANT uint material_moves = 2u;    // the instance is a mover
+SHARED_CONSTANT uint material_stippled = 4u; // alpha mode blend
 
 // A surface id in the G-buffer: instance row + 1 in the low bits; 0 for the background.
-SHARED_CONSTANT uint surface_row_mask = 0x0fffffffu;
+SHARED_CONSTANT uint surface_row_mask = 0x07ffffffu;
 SHARED_CONSTANT uint surface_area_light = 0x80000000u; // the surface of an AreaLight
 SHARED_CONSTANT uint surface_emits = 0x40000000u;      // its material emits
 SHARED_CONSTANT uint surface_unlit = 0x20000000u;      // shows its base colour, unaffected by light
 SHARED_CONSTANT uint surface_glossy = 0x10000000u;     // reflects by microfacets, as metal or under a coat
+SHARED_CONSTANT uint surface_stippled = 0x08000000u;   // lets light through, and is drawn at a share of its pixels
 
 // What drawing one instance into the G-buffer needs of its row, as push constants: a CPU device reads those once per
 // draw, but a buffer once per vertex or pixel.

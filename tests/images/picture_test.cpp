@@ -57,6 +57,41 @@ TEST(PictureMeasures, CrawlIsWhatChangesDoNotFollow) {
     EXPECT_NEAR(crawl(still, frames), 1.0, 1e-6);
 }
 
+class Stippled : public GpuTest {};
+
+// A sheet that lets half of the light through, in front of a wall; both show their own colours, whatever the light.
+void make_sheet(assets::SceneBuilder& scene) {
+    scene::Material sheet = assets::diffuse(vec3(1.0f)), wall = assets::diffuse(vec3(0.25f));
+    sheet.unlit = wall.unlit = true;
+    sheet.alpha_mode = scene::AlphaMode::blend;
+    sheet.alpha = 0.5f;
+    scene.quad("wall", vec3(-4, -4, -1), vec3(8, 0, 0), vec3(0, 8, 0), wall);
+    scene.quad("sheet", vec3(-1, -1, 0), vec3(2, 0, 0), vec3(0, 2, 0), sheet);
+    scene.point_light("lamp", vec3(0, 0, 3), vec3(1.0f));
+    scene.camera("view", vec3(0, 0, 4), vec3(0.0f), 60.0f);
+}
+
+// Its pixels are all alike, and as bright as half of each: 0.625 of linear light is 0.812 on the display, and the mean
+// of squares of display values is within 0.02 of that. The wall beside it is untouched.
+TEST_F(Stippled, SurfacesAreBlendedInThePicture) {
+    GpuWorld world(make_sheet, "view");
+    gi::Settings settings;
+    settings.lights = 4;
+    settings.shadow_map_resolution = 32;
+    world.set(settings);
+    world.request.view = shared::view_final;
+    world.request.tone_map = true;
+    const io::Picture picture = world.picture();
+    const auto at = [&](int x, int y) { return picture.pixels[std::size_t(y) * picture.width + std::size_t(x)].x; };
+    const int width = int(picture.width), height = int(picture.height);
+    for (int y = height / 2 - 4; y < height / 2 + 4; ++y)
+        for (int x = width / 2 - 4; x < width / 2 + 4; ++x) {
+            EXPECT_NEAR(at(x, y), 0.812f, 0.02f);
+            EXPECT_NEAR(at(x, y), at(width / 2, height / 2), 1.01f / 255.0f) << x << ", " << y;
+        }
+    EXPECT_NEAR(at(2, 2), shared::srgb_from_linear(0.25f), 1.5f / 255.0f);
+}
+
 class Antialiasing : public GpuTest {};
 
 struct SmoothedScene {
