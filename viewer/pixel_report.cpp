@@ -33,7 +33,7 @@ void find_samples(gi::System& lighting, const gi::ReceiverPoint& point, PixelRep
                                    : database.patches().node_at(report.entity, point.position, point.geometric_normal);
     if (node >= database.node_count())
         return;
-    report.patch.emplace();
+    report.patch = PixelReport::Patch();
     report.patch->node = node;
     if (node < database.patches().nodes().size())
         report.patch->level = database.patches().nodes()[node].level;

@@ -220,7 +220,9 @@ void Pixel::list(Session& session) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         const bool chosen = light.sample && session.view.chosen_sample == light.sample;
-        if (ui::choice(number + " " + entity_name(session, light.emitter) + "##light " + number, chosen,
+        std::string title = number;
+        title.append(" ").append(entity_name(session, light.emitter)).append("##light ").append(number);
+        if (ui::choice(title, chosen,
                        light.sample
                            ? "Click: singled out in overlays\n" + sample_text(session, shown_->report, *light.sample)
                            : std::string()) &&

@@ -63,9 +63,9 @@ protected:
             }
         std::string result;
         for (const auto& [name, text] : all)
-            result += name + "\n" + text;
+            result.append(name).append("\n").append(text);
         for (const std::string_view name : gi::Settings::names())
-            result += std::string(name) + " " + document.settings().get(name) + "\n";
+            result.append(name).append(" ").append(document.settings().get(name)).append("\n");
         return result;
     }
 
