@@ -24,6 +24,28 @@ std::string amount(double value, std::string_view unit) {
     return text;
 }
 
+// Names within the popup end before it does.
+void budget_box(Session& session, const gi::Counter& counter, double count) {
+    const ui::Scope scope("budget");
+    const std::string name(counter.name);
+    const auto budget = session.budgets.counters.find(name);
+    const bool has = budget != session.budgets.counters.end();
+    ui::NumberLook look;
+    look.value = has ? budget->second : count;
+    look.maximum = 1e12;
+    look.unit = std::string(counter.unit);
+    look.width = 10.0f * ui::unit();
+    const ui::NumberEdit edit = ui::number_box("most", look);
+    if (edit.phase == ui::NumberEdit::Phase::dragged)
+        session.budgets.counters[name] = edit.value;
+    if (edit.phase == ui::NumberEdit::Phase::typed)
+        session.budgets.counters[name] = std::max(std::atof(edit.text.c_str()), 0.0);
+    if (ui::button("No budget", {}, has)) {
+        session.budgets.counters.erase(name);
+        ImGui::CloseCurrentPopup();
+    }
+}
+
 // Click it to give it a budget; what is over its own is amber.
 void value(Session& session, const gi::Counter& counter, double count) {
     const std::string name(counter.name);
@@ -33,28 +55,14 @@ void value(Session& session, const gi::Counter& counter, double count) {
     ImGui::PushID(name.c_str());
     if (over)
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.66f, 0.4f, 1.0f));
-    if (ImGui::Selectable(text.c_str()))
+    if (ImGui::Selectable(text.c_str(), false, 0, ImVec2(ImGui::CalcTextSize(text.c_str()).x, 0.0f)))
         ImGui::OpenPopup("budget");
     if (over)
         ImGui::PopStyleColor();
     ui::note(name, text);
     ui::tooltip(std::string(counter.tooltip) + "\n\nClick: a budget for it");
     if (ImGui::BeginPopup("budget")) {
-        const ui::Scope scope("budget");
-        ui::NumberLook look;
-        look.value = has ? budget->second : count;
-        look.maximum = 1e12;
-        look.unit = std::string(counter.unit);
-        look.width = 10.0f * ui::unit();
-        const ui::NumberEdit edit = ui::number_box("most", look);
-        if (edit.phase == ui::NumberEdit::Phase::dragged)
-            session.budgets.counters[name] = edit.value;
-        if (edit.phase == ui::NumberEdit::Phase::typed)
-            session.budgets.counters[name] = std::max(std::atof(edit.text.c_str()), 0.0);
-        if (ui::button("No budget", {}, has)) {
-            session.budgets.counters.erase(name);
-            ImGui::CloseCurrentPopup();
-        }
+        budget_box(session, counter, count);
         ImGui::EndPopup();
     }
     ImGui::PopID();

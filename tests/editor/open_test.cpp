@@ -79,6 +79,13 @@ TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
     const auto saved = nlohmann::json::parse(read_file(folder / "mine.scene.json").value());
     EXPECT_EQ(saved["settings"]["constant_irradiance"], "2") << saved["settings"].dump();
+
+    // A budget for a counter, which the status bar watches.
+    ASSERT_TRUE(editor->click("counters/constant_light_pixels"));
+    ASSERT_TRUE(editor->enter("counters/budget/most", "10"));
+    EXPECT_TRUE(editor->wait_until([&] {
+        return editor->value("status/budget").find("constant_light_pixels") != std::string::npos;
+    })) << editor->value("status/budget");
     EXPECT_EQ(editor->end()["validation_messages"], 0);
 }
 
