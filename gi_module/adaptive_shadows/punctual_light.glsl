@@ -130,7 +130,8 @@ void main() {
             sum[k] = sums[pixel.y * int(constants.width) + pixel.x].rgb;
     }
     uint i = 0u;
-    do { // there is a light; see light.comp
+    // None where a plan leaves the technique no light: then the picture is set to zero. Tested at its end: see light.comp.
+    if (constants.light_count > 0u) do {
         const TileLight light = lights[i];
         [[unroll]] for (uint k = 0; k < pixels; ++k) {
             const float unshadowed = unshadowed_factor(light.row, surface[k]).unshadowed;
