@@ -223,8 +223,6 @@ Status Context::Implementation::record_passes(VkCommandBuffer commands, const gp
     const gpu::ResourceId output = import_output(graph, "host irradiance", images.irradiance, images);
     const gpu::ResourceId specular =
         import_optional(graph, "host specular light", images.specular, VK_FORMAT_R16G16B16A16_SFLOAT, images);
-    if (specular.valid())
-        SUNFLECK_TRY(follower->conversion->add_clear(graph, specular));
     SUNFLECK_TRY(follower->system->add_passes(graph, *follower->gpu_scene, g_buffer, row, output, specular));
     SUNFLECK_TRY(graph.compile());
     return graph.execute(commands, *resources, timers.get());

@@ -102,9 +102,14 @@ Status LightComposer::add_passes(gpu::FrameGraph& graph, std::span<const std::un
     return add_specular(graph, all, plan, services, target);
 }
 
+// Its techniques write only where they find something glossy: the rest, which is all when it lies beside the picture or
+// behind the camera, has none.
 Status LightComposer::add_specular(gpu::FrameGraph& graph, std::span<const std::unique_ptr<Technique>> all,
                                    const LightPlan& plan, Services& services, LightTarget& target) {
-    for (std::size_t i = 0; i < techniques().size() && target.specular.valid() && target.view == nullptr; ++i)
+    if (!target.specular.valid())
+        return {};
+    light_sum_->set_to_zero(graph, target.specular);
+    for (std::size_t i = 0; i < techniques().size() && target.view == nullptr; ++i)
         if (techniques()[i].lights_specular && plan.uses(std::int32_t(i)))
             SUNFLECK_TRY(all[i]->add_passes(graph, services, target));
     return {};

@@ -47,7 +47,7 @@ public:
                                        VkFormat output_format = VK_FORMAT_R16G16B16A16_SFLOAT);
 
     // The same into images of the caller's: four channels of float, storage write. `specular`: not valid where it is
-    // not wanted; glossy pixels are written where lights_specular().
+    // not wanted; with it, every pixel is written, zero where nothing is glossy.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
                       const gpu::UploadSlice& camera, gpu::ResourceId output, gpu::ResourceId specular = {});
     // Whether a technique owns specular light.

@@ -95,15 +95,4 @@ Result<gpu::ResourceId> GBufferConversion::convert_normals(gpu::FrameGraph& grap
     return target;
 }
 
-Status GBufferConversion::add_clear(gpu::FrameGraph& graph, gpu::ResourceId target) {
-    gpu::ComputeDescription description;
-    description.shader = "gi_module/g_buffer/clear.comp";
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline(description));
-    const gpu::ImageDescription& size = graph.description(target);
-    gpu::ComputePass(graph, "clear specular", *kernel)
-        .storage_write(target)
-        .dispatch(groups(size.width), groups(size.height));
-    return {};
-}
-
 } // namespace sunfleck::gi

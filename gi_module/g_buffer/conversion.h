@@ -34,8 +34,6 @@ public:
 
     // `camera` holds a CameraRow.
     Result<GBufferInput> add_passes(gpu::FrameGraph& graph, const HostGBuffer& host, const gpu::UploadSlice& camera);
-    // Sets an image of the host's to zero, by storage writes.
-    Status add_clear(gpu::FrameGraph& graph, gpu::ResourceId target);
 
 private:
     GBufferConversion(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}

@@ -3,6 +3,13 @@
 #include "engine/gpu/compute_pass.h"
 
 namespace sunfleck::gi {
+namespace {
+
+std::uint32_t groups(std::uint32_t pixels) {
+    return (pixels + shared::light_sum_side - 1) / shared::light_sum_side;
+}
+
+} // namespace
 
 Result<std::unique_ptr<LightSum>> LightSum::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<LightSum> sum(new LightSum(device));
@@ -13,6 +20,8 @@ Result<std::unique_ptr<LightSum>> LightSum::create(gpu::Device& device, gpu::Pip
     SUNFLECK_ASSIGN(sum->halves_, pipelines.compute(description));
     description.shader = "gi_module/light_sum/light_sum_32.comp";
     SUNFLECK_ASSIGN(sum->floats_, pipelines.compute(description));
+    description.shader = "gi_module/light_sum/set_to_zero.comp";
+    SUNFLECK_ASSIGN(sum->zeros_, pipelines.compute(description));
     return sum;
 }
 
@@ -25,6 +34,13 @@ Status LightSum::clear(gpu::FrameGraph& graph, const GBufferInput& g_buffer, gpu
     SUNFLECK_ASSIGN(const gpu::UploadSlice unused, resources.upload_value(0u));
     return add_pass(graph, g_buffer, g_buffer.depth, picture, unused,
                     {0, 0, g_buffer.width, g_buffer.height, shared::light_sum_clear, 0});
+}
+
+void LightSum::set_to_zero(gpu::FrameGraph& graph, gpu::ResourceId image) {
+    const gpu::ImageDescription& size = graph.description(image);
+    gpu::ComputePass(graph, "specular light clear", *zeros_)
+        .storage_write(image)
+        .dispatch(groups(size.width), groups(size.height));
 }
 
 Status LightSum::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBufferInput& g_buffer,
@@ -46,9 +62,6 @@ Status LightSum::add_pass(gpu::FrameGraph& graph, const GBufferInput& g_buffer, 
     const bool clears = constants.mode == shared::light_sum_clear;
     const gpu::Pipeline* kernel =
         graph.description(picture).format == VK_FORMAT_R32G32B32A32_SFLOAT ? floats_ : halves_;
-    const auto groups = [](std::uint32_t pixels) {
-        return (pixels + shared::light_sum_side - 1) / shared::light_sum_side;
-    };
     gpu::ComputePass(graph, clears ? "light clear" : "light sum", *kernel)
         .sampled(g_buffer.depth, sampler_)
         .sampled(g_buffer.surface, sampler_)

@@ -19,6 +19,9 @@ public:
     Status clear(gpu::FrameGraph& graph, const GBufferInput& g_buffer, gpu::ResourceId picture,
                  gpu::FrameResources& resources);
 
+    // Zero everywhere, by storage writes. `image`: any storage format of floats.
+    void set_to_zero(gpu::FrameGraph& graph, gpu::ResourceId image);
+
     struct Layer {
         gpu::ResourceId image; // W/m2; alpha 0 where it has nothing
         PixelArea area;        // outside it has nothing, whatever it holds
@@ -38,6 +41,7 @@ private:
     VkSampler sampler_ = VK_NULL_HANDLE;
     const gpu::Pipeline* halves_ = nullptr; // for pictures of 16-bit floats
     const gpu::Pipeline* floats_ = nullptr;
+    const gpu::Pipeline* zeros_ = nullptr;
 };
 
 } // namespace sunfleck::gi

@@ -123,15 +123,16 @@ void make_ball(assets::SceneBuilder& scene, Light light, const scene::Material& 
         registry.emplace<scene::DirectionalLight>(far, {vec3(3.0f)});
     }
     scene.camera("view", vec3(1.6f, 1.5f, 2.6f), vec3(-0.2f, 0.5f, -0.1f), 50.0f);
+    scene.camera("beside", vec3(1.9f, 2.4f, 1.9f), vec3(-1.9f, 2.4f, 4.0f), 30.0f);
 }
 
 class GlossTruth : public GpuTest {
 protected:
-    void open(Light light, const scene::Material& material) {
+    void open(Light light, const scene::Material& material, const char* camera = "view") {
         world = std::make_unique<GpuWorld>();
         assets::SceneBuilder scene(world->renderer->registry(), world->renderer->meshes());
         make_ball(scene, light, material);
-        world->finish("view");
+        world->finish(camera);
         world->request.width = 72;
         world->request.height = 54;
         gi::Settings settings = gi::Settings().all_light_by("brute_force");
@@ -196,6 +197,16 @@ TEST_F(GlossTruth, BallsAreThePathTracers) {
                 expect_gloss_is_true(what.c_str(), matt, error(ReferenceView::radiance, samples));
             }
     }
+}
+
+// Glossy surfaces that lie beside the picture leave it as it is without gloss.
+TEST_F(GlossTruth, GlossThatNobodySeesIsNoError) {
+    open(Light::point, glossy_material(1.0f, 0.3f), "beside");
+    world->request.view = shared::view_final;
+    const io::Picture with = world->picture();
+    gi::Settings without = world->renderer->lighting().settings();
+    world->set(without.with("specular", "none"));
+    EXPECT_EQ(with.pixels, world->picture().pixels);
 }
 
 } // namespace

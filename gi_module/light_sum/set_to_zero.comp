@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Clears an output that no technique writes.
+// An image of light before anything is added.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) writeonly uniform image2D target;
 
