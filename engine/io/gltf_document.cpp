@@ -68,7 +68,18 @@ struct FileSource {
     }
 };
 
-// Bytes of a buffer: from its URI or the binary chunk; none for the fallback buffer of compressed views.
+// For programs that cannot decompress.
+bool is_meshopt_fallback(const json& buffer) {
+    return buffer.contains("extensions") && buffer["extensions"].contains("EXT_meshopt_compression");
+}
+
+// A buffer without URI that isn't the binary chunk is valid, but what it holds is left undefined (glTF 2.0,
+// sec. 3.6.1.2).
+bool has_undefined_bytes(const json& buffer, std::size_t index, const Chunks& chunks) {
+    return !buffer.contains("uri") && !is_meshopt_fallback(buffer) && !(index == 0 && chunks.is_binary);
+}
+
+// Bytes of a buffer: from its URI or the binary chunk; none where there are none.
 Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& chunks, const FileSource& files) {
     const std::string place = "buffer " + std::to_string(index);
     const auto length_entry = buffer.find("byteLength");
@@ -84,12 +95,12 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
         if (!read)
             return Error{place + ": " + read.error().message};
         bytes = std::move(*read);
-    } else if (buffer.contains("extensions") && buffer["extensions"].contains("EXT_meshopt_compression")) {
-        return std::string(); // the fallback for programs that cannot decompress
+    } else if (is_meshopt_fallback(buffer)) {
+        return std::string();
     } else if (index == 0 && chunks.is_binary) {
         bytes = std::move(chunks.binary);
     } else {
-        return Error{place + " has no URI"};
+        return std::string(); // has_undefined_bytes
     }
     if (bytes.size() < length)
         return Error{place + " has " + std::to_string(bytes.size()) + " bytes; " + std::to_string(length) +
@@ -225,6 +236,22 @@ Status noted_if_unused(const Status& status, const char* section, std::size_t in
     return {};
 }
 
+// Accessors of a buffer of undefined bytes are read like those without a buffer view.
+void read_as_zeros(std::size_t buffer, GltfDocument& document) {
+    std::size_t count = 0;
+    for (tinygltf::Accessor& accessor : document.model.accessors) {
+        if (!in_range(accessor.bufferView, document.model.bufferViews) ||
+            document.model.bufferViews[std::size_t(accessor.bufferView)].buffer != int(buffer))
+            continue;
+        accessor.bufferView = -1;
+        accessor.byteOffset = 0;
+        ++count;
+    }
+    if (count > 0)
+        document.notes.push_back("buffer " + std::to_string(buffer) + " has no URI, so accessors that read it (" +
+                                 std::to_string(count) + ") are taken as zeros");
+}
+
 Status read_buffers(const json& file, Chunks& chunks, const FileSource& files, GltfDocument& document) {
     tinygltf::Model& model = document.model;
     for (std::size_t i = 0; i < model.buffers.size(); ++i) {
@@ -233,6 +260,8 @@ Status read_buffers(const json& file, Chunks& chunks, const FileSource& files, G
         SUNFLECK_TRY(noted_if_unused(content ? Status() : Status(content.error()), "buffers", i, document));
         if (content)
             model.buffers[i].data.assign(content->begin(), content->end());
+        if (has_undefined_bytes(file["buffers"][i], i, chunks))
+            read_as_zeros(i, document);
     }
     for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
         if (model.bufferViews[i].extensions.count("EXT_meshopt_compression"))

@@ -55,6 +55,21 @@ TEST(GltfImport, AccessorsWithoutDataAreZero) {
     EXPECT_EQ(world.meshes[0].bounds().minimum, vec3(0.0f));
 }
 
+// Valid, and undefined by glTF 2.0 (sec. 3.6.1.2).
+TEST(GltfImport, BuffersWithoutBytesAreZero) {
+    GltfBuilder file;
+    file.add_square();
+    file.file["buffers"][1] = {{"byteLength", 48}};
+    file.file["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 48}});
+    file.file["accessors"][0]["bufferView"] = file.file["bufferViews"].size() - 1;
+    World world;
+    const auto report = world.import(file.glb());
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_TRUE(std::any_of(report->notes.begin(), report->notes.end(), [](const std::string& note) {
+        return note.find("buffer 1 has no URI") != std::string::npos;
+    }));
+}
+
 TEST(GltfImport, InterleavedAttributesAndEveryIndexType) {
     for (const int type : {5121, 5123, 5125}) {
         GltfBuilder file;
