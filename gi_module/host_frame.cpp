@@ -78,7 +78,7 @@ Status Context::update(const Frame& frame) {
     if (self.follower != nullptr)
         self.follower->updated = false;
     bool begun = false;
-    const Status status = guarded(self.engine_log, [&]() -> Status {
+    Status status = guarded(self.engine_log, [&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(self.serials.check(frame));
         begun = true;
