@@ -20,6 +20,7 @@ std::int32_t percent(float value) {
 void Controls::take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing) {
     pad_before_ = pad_now_;
     pad_now_ = input.gamepad.buttons;
+    watch_gamepad(input);
     held_ = {};
     if (!playing) {
         look_ = vec2(0.0f);
@@ -47,6 +48,15 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     look_ += settings.sensitivity * pointer_speed * vec2(-input.mouse_motion.x, upwards * input.mouse_motion.y);
     look_ += settings.sensitivity * stick_speed * float(seconds) * bent *
              vec2(-input.gamepad.right.x, upwards * input.gamepad.right.y);
+}
+
+void Controls::watch_gamepad(const app::InputState& input) {
+    const app::Gamepad& pad = input.gamepad;
+    lost_pad_ = plays_with_pad_ && !pad.present;
+    if (!pad.present || !input.went_down.empty() || input.mouse_motion != vec2(0.0f))
+        plays_with_pad_ = false;
+    else if (pad.buttons != 0 || pad.left != vec2(0.0f) || pad.right != vec2(0.0f))
+        plays_with_pad_ = true;
 }
 
 simulation::StepInput Controls::next_step() {

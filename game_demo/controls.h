@@ -16,12 +16,17 @@ public:
     vec2 pending_look() const;
     // True once per press of the gamepad's button for indirect light.
     bool pad_pressed_indirect_light() const;
+    // True once when the gamepad is gone with which the person played last. What it held is released.
+    bool lost_gamepad() const { return lost_pad_; }
 
 private:
     vec2 look_{0.0f}; // 1e-4 rad not yet consumed: left, up
     simulation::StepInput held_;
     std::uint32_t taps_ = 0; // buttons pressed and released between steps
     std::uint32_t pad_before_ = 0, pad_now_ = 0;
+    bool plays_with_pad_ = false, lost_pad_ = false;
+
+    void watch_gamepad(const app::InputState& input);
 };
 
 } // namespace sunfleck::demo

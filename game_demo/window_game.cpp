@@ -177,8 +177,11 @@ private:
         for (const app::Key key : input.went_down)
             handle_key(key);
         const bool start_button = input.gamepad.pressed(pad_start);
-        if ((start_button && !start_before_) || (!input.focused && menu_.screen() == Screen::playing))
+        const bool away = !input.focused || controls_.lost_gamepad();
+        if ((start_button && !start_before_) || (away && menu_.screen() == Screen::playing))
             menu_.back();
+        if (controls_.lost_gamepad())
+            menu_.say("The gamepad is gone: plug it in, or go on with the keyboard", 6.0);
         start_before_ = start_button;
         if (menu_.screen() == Screen::playing && controls_.pad_pressed_indirect_light())
             toggle_indirect_light();
@@ -257,8 +260,10 @@ private:
         hitches_.log(seconds, renderer.statistics());
         app::Gui& gui = display_->screen().gui();
         gui.begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
-        if (menu_.screen() == Screen::playing)
-            draw_game();
+        if (menu_.screen() == Screen::playing) {
+            session_.draw();
+            sounds_.draw();
+        }
         bool changed = false;
         const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
         gui.end_frame();
@@ -276,11 +281,6 @@ private:
         }
         decide(decision);
         return state_.write(state());
-    }
-
-    void draw_game() const {
-        session_.draw();
-        sounds_.draw();
     }
 
     GameState state() const {

@@ -222,5 +222,33 @@ TEST(Controls, MissNoKeyAndKeepStillWhilePaused) {
     EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_run));
 }
 
+TEST(Controls, LetGoOfWhatAVanishedGamepadHeld) {
+    const DemoSettings settings;
+    Controls controls;
+    app::InputState with_pad, without;
+    with_pad.gamepad.present = true;
+    controls.take(with_pad, settings, 0.016, true);
+    controls.take(without, settings, 0.016, true);
+    EXPECT_FALSE(controls.lost_gamepad()) << "nobody played with it";
+    with_pad.gamepad.left = vec2(0.0f, -1.0f);
+    with_pad.gamepad.buttons = 1u << 4;
+    controls.take(with_pad, settings, 0.016, true);
+    EXPECT_EQ(controls.next_step().forward, 100);
+    controls.take(without, settings, 0.016, true);
+    EXPECT_TRUE(controls.lost_gamepad());
+    EXPECT_EQ(controls.next_step(), simulation::StepInput{});
+    controls.take(without, settings, 0.016, true);
+    EXPECT_FALSE(controls.lost_gamepad()) << "it is said once";
+    // Who has gone on with the keyboard meanwhile misses nothing.
+    controls.take(with_pad, settings, 0.016, true);
+    app::InputState keys = with_pad;
+    keys.gamepad.left = vec2(0.0f);
+    keys.gamepad.buttons = 0;
+    keys.went_down = {'W'};
+    controls.take(keys, settings, 0.016, true);
+    controls.take(without, settings, 0.016, true);
+    EXPECT_FALSE(controls.lost_gamepad());
+}
+
 } // namespace
 } // namespace sunfleck::demo
