@@ -2,6 +2,7 @@
 #include "tests/editor/random_edits.h"
 
 #include "engine/core/file.h"
+#include "tests/support/folder.h"
 #include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
@@ -14,11 +15,6 @@ namespace fs = std::filesystem;
 // A folder of the test's own, which goes with it.
 class EditorDocument : public testing::Test {
 protected:
-    EditorDocument() : folder_(fs::path(testing::TempDir()) / ("editor_document_" + std::to_string(getpid()))) {
-        fs::create_directories(folder_);
-    }
-    ~EditorDocument() override { fs::remove_all(folder_); }
-
     // The bytes of all that a save writes.
     std::string saved(Document& document) {
         const fs::path place = folder_ / "saved";
@@ -46,7 +42,7 @@ protected:
         for (const scene::EntityTemplate& source : scene::entity_templates())
             add_from(document, source, vec3(1.0f, 2.0f, 3.0f), 0.5f);
     }
-    fs::path folder_;
+    const tests::Folder folder_{"editor_document"};
 };
 
 TEST_F(EditorDocument, HandlesOutliveDeletion) {

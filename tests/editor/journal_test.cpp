@@ -4,6 +4,7 @@
 #include "engine/core/file.h"
 #include "test_places.h"
 #include "tests/editor/random_edits.h"
+#include "tests/support/folder.h"
 #include "tests/support/test_size.h"
 
 #include <csignal>
@@ -18,15 +19,12 @@ namespace fs = std::filesystem;
 
 class EditorJournal : public testing::Test {
 protected:
-    EditorJournal() : folder_(fs::path(testing::TempDir()) / ("editor_journal_" + std::to_string(getpid()))) {
-        fs::create_directories(folder_);
+    EditorJournal() {
         Document document;
         for (const scene::EntityTemplate& source : scene::entity_templates())
             add_from(document, source, vec3(1.0f, 2.0f, 3.0f), 0.5f);
         EXPECT_TRUE(document.save(folder_ / "room.scene.json"));
     }
-    ~EditorJournal() override { fs::remove_all(folder_); }
-
     std::shared_ptr<Document> open() {
         auto opened = Document::open(folder_ / "room.scene.json");
         EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
@@ -112,9 +110,9 @@ protected:
         for (const auto& entry : fs::directory_iterator(folder_ / "recovery"))
             if (fs::exists(entry.path() / "journal"))
                 return entry.path();
-        return folder_;
+        return folder_.path();
     }
-    fs::path folder_;
+    const tests::Folder folder_{"editor_journal"};
 };
 
 // Killed at counted places, some before anything but the journal was written, some while scenes are.

@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "tests/editor/random_edits.h"
+#include "tests/support/folder.h"
 #include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
@@ -15,14 +16,11 @@ namespace fs = std::filesystem;
 
 class EditorReload : public testing::Test {
 protected:
-    EditorReload() : folder_(fs::path(testing::TempDir()) / ("editor_reload_" + std::to_string(getpid()))) {
-        fs::create_directories(folder_);
+    EditorReload() {
         for (const scene::EntityTemplate& source : scene::entity_templates())
             add_from(theirs_, source, vec3(1.0f, 2.0f, 3.0f), 0.5f);
         export_again();
     }
-    ~EditorReload() override { fs::remove_all(folder_); }
-
     // What another program writes: a glTF file.
     void export_again() {
         for (const char* file : {"room.scene.json", "room.glb"})
@@ -57,7 +55,7 @@ protected:
     static const T& get(Document& document, const std::string& name) {
         return document.registry().get<T>(document.find(name));
     }
-    fs::path folder_;
+    const tests::Folder folder_{"editor_reload"};
     Document theirs_;
 };
 

@@ -6,6 +6,7 @@
 #include "engine/io/image.h"
 #include "test_places.h"
 #include "tests/editor/random_edits.h"
+#include "tests/support/folder.h"
 #include "tests/support/gpu_world.h"
 #include "tests/support/run_tool.h"
 #include "tests/support/test_size.h"
@@ -25,11 +26,6 @@ constexpr const char* camera_text = "2.75,2.75,13.25,2.75,2.75,2.75,39"; // of t
 
 class EditorScene : public tests::GpuTest {
 protected:
-    EditorScene() : folder_(fs::path(testing::TempDir()) / ("editor_scene_" + std::to_string(getpid()))) {
-        fs::create_directories(folder_);
-    }
-    ~EditorScene() override { fs::remove_all(folder_); }
-
     // A room with two blocks under a lamp.
     static std::shared_ptr<Document> open_scene() {
         auto opened = Document::open(fs::path(SUNFLECK_TOOL).parent_path() / "../scenes/cornell.scene.json");
@@ -76,7 +72,7 @@ protected:
             count += vec3(a.pixels[i]) != vec3(b.pixels[i]) ? 1 : 0;
         return count;
     }
-    fs::path folder_;
+    const tests::Folder folder_{"editor_scene"};
 };
 
 TEST_F(EditorScene, ShowsWhatRenderDraws) {
@@ -147,7 +143,7 @@ TEST_F(EditorScene, EditedShadersShow) {
     const std::shared_ptr<Document> document = open_scene();
     ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
-    ShaderWatch watch(folder_, viewer::SceneRenderer::shader_paths(), [] {});
+    ShaderWatch watch(folder_.path(), viewer::SceneRenderer::shader_paths(), [] {});
     scene.change(ChangeCollector::everything(document));
     ViewRequest colours = view(*document);
     colours.view = shared::view_albedo; // which this shader draws
