@@ -1,5 +1,6 @@
 #include "engine/scene/entity_templates.h"
 
+#include "engine/scene/game_templates.h"
 #include "engine/scene/procedural.h"
 
 namespace sunfleck::scene {
@@ -126,6 +127,14 @@ constexpr EntityTemplate templates[] = {
     {"Ball", "A grey ball", "Shapes", make_ball},
     {"Cylinder", "A grey upright cylinder", "Shapes", make_cylinder_entity},
     {"Floor", "A grey horizontal square", "Shapes", make_floor},
+    {"Player start", "Where a person begins, feet at its origin, looking along -Z", "Game", make_player_start},
+    {"Sliding door", "Slides aside while the light sensors that name it are open", "Game", make_sliding_door},
+    {"Sliding panel", "A person slides it aside, and back", "Game", make_sliding_panel},
+    {"Light sensor", "Measures the light that arrives along +Z, direct and reflected; opens what it names", "Game",
+     make_light_sensor},
+    {"Game area", "A room of the game: its title and hint, where a reset of it puts the person", "Game",
+     make_game_area},
+    {"Goal", "Ends the game for who enters it", "Game", make_goal},
     {"Group", "A place that other entities can be put under", "Other", make_group},
     {"Camera", "A view that can be chosen by name", "Other", make_camera}};
 
