@@ -37,12 +37,21 @@ Result<Truth> trace_truth(Bench& bench) {
     return truth;
 }
 
-gi::Settings convergence_settings(std::uint32_t lights, std::uint32_t seed) {
+// What converges: the samples as random walks leave them, where none is clamped; or the default ones, everywhere.
+struct Convergence {
+    const char* name;
+    bool defaults;
+};
+const Convergence convergences[] = {{"walks, clear pixels", false}, {"default sampler, all pixels", true}};
+
+gi::Settings convergence_settings(const Convergence& what, std::uint32_t lights, std::uint32_t seed) {
     gi::Settings settings = gi::Settings().all_light_by("brute_force");
-    settings.candidates = 1; // samples as the random walks generate them
     settings.lights = lights;
-    settings.direct_share = 0.5f;
     settings.seed = seed;
+    if (!what.defaults) {
+        settings.candidates = 1;
+        settings.direct_share = 0.5f;
+    }
     settings.with("movers", "static").with("kernel_pixels", "4"); // tiles fit the image
     settings.shadow_map_resolution = 128;
     return settings;
@@ -62,12 +71,13 @@ double rmse(const io::Picture& picture, const Truth& truth, float clear) {
     return std::sqrt(squares / values);
 }
 
-// Errors of five seeds. `clear` is set by the first call and then stays the same, so that all counts of samples are
-// compared over the same pixels.
-Result<std::vector<double>> errors_of(Bench& bench, const Truth& truth, std::uint32_t lights, float& clear) {
+// Errors of five seeds. Where `clear` is 0, it is set by this call and then stays the same, so that all counts of
+// samples are compared over the same pixels; below 0, those are all.
+Result<std::vector<double>> errors_of(Bench& bench, const Truth& truth, const Convergence& what, std::uint32_t lights,
+                                      float& clear) {
     std::vector<double> errors;
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
-        SUNFLECK_TRY(bench.measure(convergence_settings(lights, seed), 0, 1, false));
+        SUNFLECK_TRY(bench.measure(convergence_settings(what, lights, seed), 0, 1, false));
         SUNFLECK_ASSIGN(const io::Picture picture, bench.renderer->read_back());
         if (clear == 0.0f)
             clear = 1.0f / std::sqrt(bench.renderer->lighting().sample_set().geometry_bound());
@@ -78,18 +88,16 @@ Result<std::vector<double>> errors_of(Bench& bench, const Truth& truth, std::uin
     return errors;
 }
 
-Result<PlotSeries> scene_convergence(const BenchOptions& options, const std::string& scene, BenchTable& table) {
-    SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "view", convergence_size));
-    bench->request.view = shared::view_irradiance;
-    bench->request.tone_map = false;
-    SUNFLECK_ASSIGN(const Truth truth, trace_truth(*bench));
-    float clear = 0.0f;
+Result<PlotSeries> scene_convergence(Bench& bench, const Truth& truth, const Convergence& what,
+                                     const std::string& scene, BenchTable& table) {
+    float clear = what.defaults ? -1.0f : 0.0f;
     PlotSeries series{scene, {}};
-    Progress progress("convergence " + scene);
+    Progress progress("convergence " + scene + ", " + what.name);
     for (std::uint32_t lights = 256; lights <= 16384; lights *= 2) {
-        SUNFLECK_ASSIGN(const std::vector<double> errors, errors_of(*bench, truth, lights, clear));
+        SUNFLECK_ASSIGN(const std::vector<double> errors, errors_of(bench, truth, what, lights, clear));
         series.points.emplace_back(lights, median(errors));
         table.rows.push_back({{"scene", scene},
+                              {"samples", what.name},
                               {"lights", lights},
                               {"rmse", median(errors)},
                               {"rmse_min", percentile(errors, 0)},
@@ -99,15 +107,27 @@ Result<PlotSeries> scene_convergence(const BenchOptions& options, const std::str
     return series;
 }
 
+Status converge(const BenchOptions& options, const std::string& scene, BenchTable& table,
+                std::vector<PlotSeries>& plot) {
+    SUNFLECK_ASSIGN(const auto bench, Bench::create(options, scene, "view", convergence_size));
+    bench->request.view = shared::view_irradiance;
+    bench->request.tone_map = false;
+    SUNFLECK_ASSIGN(const Truth truth, trace_truth(*bench));
+    for (const Convergence& what : convergences) {
+        SUNFLECK_ASSIGN(const PlotSeries series, scene_convergence(*bench, truth, what, scene, table));
+        table.notes["slope_" + scene + (what.defaults ? "_default" : "")] = log_log_slope(series.points);
+        if (!what.defaults)
+            plot.push_back(series);
+    }
+    return {};
+}
+
 } // namespace
 
 Result<BenchTable> bench_convergence(const BenchOptions& options, std::vector<PlotSeries>& plot) {
     BenchTable table{"convergence", {}, {}};
-    for (const char* scene : {"cornell", "area_room", "four_pillars"}) {
-        SUNFLECK_ASSIGN(const PlotSeries series, scene_convergence(options, scene, table));
-        table.notes[std::string("slope_") + scene] = log_log_slope(series.points);
-        plot.push_back(series);
-    }
+    for (const char* scene : {"cornell", "area_room", "four_pillars"})
+        SUNFLECK_TRY(converge(options, scene, table, plot));
     return table;
 }
 

@@ -1,5 +1,6 @@
 #include "engine/core/log.h"
 #include "gi_module/light_sampling/emitters.h"
+#include "gi_module/transport/scene_sphere.h"
 
 #include <algorithm>
 #include <mutex>
@@ -82,8 +83,7 @@ class Collector {
 public:
     Collector(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
               const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space)
-        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark), space_(space),
-          radius_(std::max(0.5f * glm::length(scene.extent()), 1e-3f)),
+        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark), space_(space), radius_(bounding_radius(scene)),
           centre_(scene.empty() ? vec3(0.0f) : scene.centre()) {}
 
     void add_area_lights() {

@@ -1,5 +1,7 @@
 #include "gi_module/transport/light_row.h"
 
+#include "gi_module/transport/scene_sphere.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -65,7 +67,7 @@ shared::LightRow make_light_row(const LightSample& sample, std::uint32_t slot, f
         break;
     case SampleKind::directional: {
         intensity = sample.flux;
-        const float radius = std::max(0.5f * glm::length(scene.extent()), 1e-3f) * 1.001f;
+        const float radius = bounding_radius(scene) * 1.001f;
         row.position_bound = vec4(scene.centre() - radius * sample.normal, 0.0f);
         row.normal_offset.w = 0.5f / radius;
         row.tangent_scale.w = 1.0f / radius;
