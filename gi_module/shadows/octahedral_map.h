@@ -178,6 +178,30 @@ SHARED_FUNCTION float count_votes(vec4 lit, vec4 vote, vec2 place) {
     return sum > 0.0f ? dot(weight, lit) / sum : 1.0f;
 }
 
+// A receiver that is not behind the surface which the four texels show together is lit, whatever they vote one by one.
+// Where two surfaces meet, or a strip is narrower than a texel, texels show the other surface, nearer to the light than
+// the receiver's plane although it blocks nothing: dark fringes along edges of rooms. Stored values are linear on
+// planes, so their blend at the receiver's own place is that surface. Across a concave edge it is a chord: before the
+// receiver by at most w (1 - w) times the bend, with a share of w of the blend on the receiver's surface, whose texels
+// vote for it. The bend is that of a surface as steep as the slope limit. In head-on texel reaches, the receiver is lit
+// where the blend is before it by less than `shadow_surface_near` and what w allows, and left to the votes from
+// `shadow_surface_far` and that on. What texels show far behind counts as a few reaches behind: it is no part of the
+// surface.
+SHARED_CONSTANT float shadow_surface_near = 0.75f;
+SHARED_CONSTANT float shadow_surface_far = 1.5f;
+SHARED_CONSTANT float shadow_surface_bend = 8.0f;
+SHARED_CONSTANT float shadow_surface_depth = 4.0f;
+// `votes`: count_votes of the same texels.
+SHARED_FUNCTION float surface_votes(vec4 stored, vec2 place, float receiver, float reach, float step, float votes) {
+    float furthest = receiver - shadow_surface_depth * reach;
+    vec4 kept = max(stored, vec4(furthest, furthest, furthest, furthest));
+    vec2 across = vec2(kept.x + (kept.y - kept.x) * place.x, kept.z + (kept.w - kept.z) * place.x);
+    float before = across.x + (across.y - across.x) * place.y - receiver - step;
+    float allowed = shadow_surface_far + shadow_surface_bend * votes * (1.0f - votes);
+    float lit = (allowed * reach - before) / max((shadow_surface_far - shadow_surface_near) * reach, 1e-12f);
+    return max(votes, min(lit, 1.0f));
+}
+
 // Directions with w = 1 through map coordinates.
 SHARED_FUNCTION vec3 hemisphere_direction(vec2 uv) {
     vec2 p = vec2(uv.x + uv.y, uv.x - uv.y) * 0.5f;

@@ -67,14 +67,16 @@ float filtered_hemisphere_visibility(uint slot, vec3 place, vec3 normal, float p
     const HemisphereTolerance tolerance =
         HemisphereTolerance(shadow_filter_window * bias, shadow_filter_slack * reach, step,
                             place.z + shadow_head_on_slack * reach + step, simplified * bias);
-    vec4 lit, dark;
+    vec4 lit, dark, values;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const float stored = map_value(slot, ivec2(corner) + ivec2(i & 1, i >> 1));
         const vec2 votes = hemisphere_texel_vote(on_plane[i], place.z, tolerance, stored);
         lit[i] = votes.x;
         dark[i] = votes.y;
+        values[i] = stored;
     }
-    return count_votes(lit, lit + dark, clamp(position - corner, 0.0, 1.0));
+    const vec2 inside = clamp(position - corner, 0.0, 1.0);
+    return surface_votes(values, inside, place.z, reach, step, count_votes(lit, lit + dark, inside));
 }
 
 // Extra bias for a receiver on a mover in a stale map: the mover's old image in the map may be nearer to the light by

@@ -40,10 +40,11 @@ TEST_F(Corners, FilteredLookUpsFindNoShadowsInAnEmptyRoom) {
     }
     std::printf("%.4f of the light is lost, %.4f of %.0f pixels are dark\n", lost / pixels, dark / pixels, pixels);
     EXPECT_GT(pixels, 2000.0);
-    // Twice what was measured, 0.0036 and 0.021: a texel cannot tell the other wall from a blocker in all places.
-    // Without the tolerance for corners it was 0.017 and 0.082.
-    EXPECT_LE(lost / pixels, 0.007);
-    EXPECT_LE(dark / pixels, 0.04);
+    // Some three times what was measured, 0.0002 and 0.0003. Where each texel votes by itself, which cannot tell the
+    // other wall from a blocker in all places, it was 0.0036 and 0.021; without their tolerance for corners, 0.017 and
+    // 0.082.
+    EXPECT_LE(lost / pixels, 0.0007);
+    EXPECT_LE(dark / pixels, 0.001);
 }
 
 } // namespace

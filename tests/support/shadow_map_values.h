@@ -64,7 +64,7 @@ struct ShadowMapValues {
         }
         result.lit = result.receiver + result.bias >= value(light, result.texel);
         const vec2 corner = glm::floor(at - 0.5f);
-        vec4 filter_lit(0.0f), vote(0.0f);
+        vec4 filter_lit(0.0f), vote(0.0f), stored(0.0f);
         for (int i = 0; i < 4; ++i) {
             const ivec2 t = glm::clamp(ivec2(corner) + ivec2(i & 1, i >> 1), ivec2(0), ivec2(int(resolution) - 1));
             const float receiver = shadow_near * result.place.z;
@@ -78,8 +78,13 @@ struct ShadowMapValues {
                                                              step, value(light, t));
             filter_lit[i] = said.x;
             vote[i] = hemisphere[light] ? said.x + said.y : said.y;
+            stored[i] = value(light, t);
         }
         result.filtered = count_votes(filter_lit, vote, at - 0.5f - corner);
+        const float receiver = shadow_near * result.place.z;
+        if (hemisphere[light])
+            result.filtered = surface_votes(stored, at - 0.5f - corner, receiver, reach * receiver, depth_step(bits),
+                                            result.filtered);
         return result;
     }
     float value(std::size_t light, ivec2 texel) const {
