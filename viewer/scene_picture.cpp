@@ -45,14 +45,11 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     const auto picture = [&](const char* name, bool last) {
         return last ? output : graph_->create_image(name, shown_format, request.width, request.height);
     };
-    const bool stippled = final && gpu_scene_->has_stippled_surfaces();
-    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged && !stippled);
+    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
     composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
-    if (stippled) {
-        const gpu::ResourceId blended = picture("blended picture", !smoothed && !enlarged);
-        stipple_.add(*graph_, g_buffer, current, blended);
-        current = blended;
-    }
+    if (final && gpu_scene_->has_stippled_surfaces())
+        stipple_.add(*graph_, g_buffer, render::stippled_rectangle(*gpu_scene_, camera_row(request)), current,
+                     shown_format);
     debug_lines_->add(*graph_, g_buffer, camera, current);
     if (smoothed) {
         const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);

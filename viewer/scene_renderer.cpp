@@ -199,7 +199,7 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
     description.width = width;
     description.height = height;
     description.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT |
-                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
     SUNFLECK_ASSIGN(output_, gpu::Image::create(device_, description));
     return {};
 }

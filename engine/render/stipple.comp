@@ -8,17 +8,21 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2D picture;
 layout(set = 0, binding = 1) uniform usampler2D surface_image;
 layout(set = 0, binding = 2) uniform sampler2D depth_image;
-layout(set = 0, binding = 3) writeonly uniform image2D target;
+layout(set = 0, binding = 3) writeonly uniform image2D target; // the rectangle, at its corner
+layout(push_constant) uniform Constants {
+    ivec2 corner, size; // of the rectangle
+} constants;
 
 const int side = 4;
 
 bool is_stippled(ivec2 pixel) { return (texelFetch(surface_image, pixel, 0).r & surface_stippled) != 0u; }
 
 void main() {
-    const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(picture, 0);
-    if (any(greaterThanEqual(pixel, size)))
+    const ivec2 inside = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(inside, constants.size)))
         return;
-    const ivec2 first = pixel - side / 2 + 1, last = size - 1;
+    const ivec2 pixel = constants.corner + inside;
+    const ivec2 first = pixel - side / 2 + 1, last = textureSize(picture, 0) - 1;
     float nearest = 0.0; // of the stippled surface; depth is reversed
     for (int i = 0; i < side * side; ++i) {
         const ivec2 place = clamp(first + ivec2(i % side, i / side), ivec2(0), last);
@@ -43,5 +47,5 @@ void main() {
         if (behind > 0.0)
             result = sqrt(sum / count);
     }
-    imageStore(target, pixel, result);
+    imageStore(target, inside, result);
 }

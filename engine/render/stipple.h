@@ -6,12 +6,22 @@
 
 namespace sunfleck::render {
 
+// Of a picture, in pixels; empty if `width` is 0.
+struct PixelRectangle {
+    std::int32_t x = 0, y = 0;
+    std::uint32_t width = 0, height = 0;
+};
+
+// What StipplePass may change in the picture of this camera, whose row must be that of the scene's last update.
+PixelRectangle stippled_rectangle(const scene::GpuScene& scene, const shared::CameraRow& camera);
+
 class StipplePass {
 public:
     static Result<StipplePass> create(gpu::Device& device, gpu::PipelineStore& pipelines);
-    // Both are pictures of 8 bits a channel and of the G-buffer's size; `target`, a storage image, is written whole.
-    // Pixels that show neither a stippled surface nor, beside one, what lies behind it are copied.
-    void add(gpu::FrameGraph& graph, const GBuffer& g_buffer, gpu::ResourceId picture, gpu::ResourceId target) const;
+    // `picture`: of `format`, with 8 bits a channel, and of the G-buffer's size. Only the rectangle is looked at, and
+    // in it pixels that show neither a stippled surface nor, beside one, what lies behind it stay as they are.
+    void add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const PixelRectangle& rectangle, gpu::ResourceId picture,
+             VkFormat format) const;
     void destroy(gpu::Device& device);
 
 private:

@@ -1,5 +1,7 @@
 // The displayed picture: measures of stairs and stains on made-up pictures, and anti-aliasing against supersampling.
 #include "editor/command_line/picture_measures.h"
+#include "engine/core/random.h"
+#include "engine/render/stipple.h"
 #include "engine/render/tone_map.h"
 #include "tests/support/gpu_world.h"
 
@@ -90,6 +92,74 @@ TEST_F(Stippled, SurfacesAreBlendedInThePicture) {
             EXPECT_NEAR(at(x, y), at(width / 2, height / 2), 1.01f / 255.0f) << x << ", " << y;
         }
     EXPECT_NEAR(at(2, 2), shared::srgb_from_linear(0.25f), 1.5f / 255.0f);
+}
+
+// The picture of the sheet as `camera` sees it, with the rectangle of what may be blended in it.
+struct BlendedPicture {
+    io::Picture picture;
+    render::PixelRectangle rectangle;
+};
+
+BlendedPicture blended_picture(GpuWorld& world, const scene::CameraView& camera) {
+    world.request.camera = camera;
+    world.request.width = 160;
+    world.request.height = 90;
+    BlendedPicture result{world.picture(), {}};
+    const shared::CameraRow row =
+        scene::make_camera_row(world.renderer->space().view(camera), world.request.width, world.request.height);
+    result.rectangle = render::stippled_rectangle(world.renderer->gpu_scene(), row);
+    return result;
+}
+
+// Dots of the sheet itself would be white. Cameras look at it from all sides, along it, and from within its box.
+TEST_F(Stippled, NothingIsLeftInDotsFromAnywhere) {
+    GpuWorld world(make_sheet, "view");
+    gi::Settings settings;
+    settings.lights = 4;
+    settings.shadow_map_resolution = 32;
+    world.set(settings);
+    world.request.view = shared::view_final;
+    world.request.tone_map = true;
+    std::uint32_t drawn_numbers = 0;
+    const auto random = [&] { return to_unit_float(hash_combine(20, drawn_numbers++)); };
+    std::size_t blended = 0, outside = 0;
+    for (int i = 0; i < 24; ++i) {
+        scene::CameraView camera;
+        const float range = i % 3 == 0 ? 0.3f : 2.0f;
+        camera.position = range * vec3(random() - 0.5f, random() - 0.5f, 0.02f + random());
+        camera.target = vec3(2.0f * random() - 1.0f, 2.0f * random() - 1.0f, -0.5f);
+        const BlendedPicture shown = blended_picture(world, camera);
+        for (std::uint32_t y = 0; y < shown.picture.height; ++y)
+            for (std::uint32_t x = 0; x < shown.picture.width; ++x) {
+                const float value = shown.picture.pixels[y * shown.picture.width + x].x;
+                EXPECT_LT(value, 0.95f) << "camera " << i << ", " << x << ", " << y;
+                const bool inside = x - std::uint32_t(shown.rectangle.x) < shown.rectangle.width &&
+                                    y - std::uint32_t(shown.rectangle.y) < shown.rectangle.height;
+                const bool differs = std::abs(value - shared::srgb_from_linear(0.25f)) > 1.5f / 255.0f && value > 0.0f;
+                blended += differs;
+                outside += differs && !inside;
+            }
+    }
+    EXPECT_GT(blended, 24u * 160u * 90u / 20u);
+    EXPECT_EQ(outside, 0u);
+}
+
+// The sheet's edges are 1 m from the middle of what is 4 tan(30 degrees) = 2.31 m to each side at its distance.
+TEST_F(Stippled, OnlyTheirPartOfThePictureIsLookedAt) {
+    GpuWorld world(make_sheet, "view");
+    gi::Settings settings;
+    settings.lights = 4;
+    world.set(settings);
+    const scene::CameraView ahead = world.request.camera;
+    const render::PixelRectangle rectangle = blended_picture(world, ahead).rectangle;
+    const float half = 45.0f / (4.0f * std::tan(glm::radians(30.0f)));
+    EXPECT_NEAR(float(rectangle.x), 80.0f - half, 4.0f);
+    EXPECT_NEAR(float(rectangle.y), 45.0f - half, 4.0f);
+    EXPECT_NEAR(float(rectangle.width), 2.0f * half, 8.0f);
+    EXPECT_NEAR(float(rectangle.height), 2.0f * half, 8.0f);
+    scene::CameraView away = ahead;
+    away.target = ahead.position + (ahead.position - ahead.target);
+    EXPECT_EQ(blended_picture(world, away).rectangle.width, 0u);
 }
 
 class Antialiasing : public GpuTest {};
