@@ -20,6 +20,11 @@ const int walk_steps = 8;
 const int walk_lengths[walk_steps] = int[](1, 2, 3, 4, 6, 8, 11, 15);
 // Of its difference from its surroundings, what a pixel that stands alone loses at most.
 const float most_blur = 0.5;
+// A speck is one pixel wide, between pixels that are both brighter or both darker, and ends within so many pixels to
+// either side: what is thinner than a pixel and shows where it happens to meet the middle of one. It keeps the share of
+// its contrast that such things cover in the mean.
+const int longest_speck = 8;
+const float speck_share = 0.35;
 // Shorter lines are those of slopes, which an enlargement draws well by itself.
 const float shortest_coded_run = 2.0;
 
@@ -81,6 +86,27 @@ float code_of(ivec2 along, ivec2 over, Cover cover) {
     return edge_code(over.x + over.y > 0, along.x == 0, quarters);
 }
 
+// Whether what a pixel shows ends within a speck's length, and does not go on beside its end, as a slanted line does.
+bool ends(ivec2 pixel, ivec2 along, ivec2 over, float centre, float limit) {
+    bool inside = true, alone = false;
+    int i = 1;
+    do { // tested at its end, as above
+        const ivec2 place = pixel + along * i;
+        inside = abs(at(place) - centre) < limit;
+        if (!inside)
+            alone = min(abs(at(place + over) - centre), abs(at(place - over) - centre)) >= limit;
+    } while (++i <= longest_speck && inside);
+    return alone;
+}
+
+bool is_speck(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond, float behind) {
+    const float one = centre - beyond, other = centre - behind, limit = 0.5 * min(abs(one), abs(other));
+    bool speck = one * other > 0.0 && limit > 0.5 * least_contrast;
+    if (speck)
+        speck = ends(pixel, along, over, centre, limit) && ends(pixel, -along, over, centre, limit);
+    return speck;
+}
+
 // A pixel at which there is an edge.
 void smooth_edge(ivec2 pixel) {
     const vec4 centre = load(pixel);
@@ -104,10 +130,14 @@ void smooth_edge(ivec2 pixel) {
     const float low = min(n.centre, min(min(n.up, n.down), min(n.left, n.right)));
     const float mean = (2.0 * (n.up + n.down + n.left + n.right) + n.up_left + n.up_right + n.down_left + n.down_right) / 12.0;
     const float alone = smoothstep(0.0, 1.0, min(abs(mean - n.centre) / (high - low), 1.0));
-    const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run;
+    const bool speck = is_speck(pixel, along, over, n.centre, first ? one : other, first ? other : one);
+    const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run && !speck;
     const float share = coded ? 0.0 : max(cover.share, most_blur * alone * alone);
     const float alpha = writes_codes == 0 ? 1.0 : coded ? code_of(along, over, cover) : 0.0;
-    imageStore(target, pixel, vec4(mix(centre.rgb, load(pixel + over).rgb, share), alpha));
+    const vec3 beyond = load(pixel + over).rgb;
+    const vec3 colour = speck ? mix(0.5 * (beyond + load(pixel - over).rgb), centre.rgb, speck_share)
+                              : mix(centre.rgb, beyond, share);
+    imageStore(target, pixel, vec4(colour, alpha));
 }
 
 void main() {
