@@ -69,8 +69,14 @@ Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& pl
 
 Status bench(const BenchOptions& options) {
     SUNFLECK_TRY(check_techniques(options.suite));
-    if (!options.part.empty() && options.suite != "thesis")
-        return Error{"--part: only the suite 'thesis' has parts"};
+    const std::vector<std::string> parts = options.suite == "thesis"    ? thesis_parts()
+                                           : options.suite == "picture" ? picture_parts()
+                                                                        : std::vector<std::string>();
+    if (!options.part.empty() && std::find(parts.begin(), parts.end(), options.part) == parts.end())
+        return Error{"--part: the suite '" + options.suite + "' has no part '" + options.part +
+                     "' (only thesis and picture have parts)"};
+    if (!options.folder.empty() && options.suite != "picture")
+        return Error{"--folder: only the suite 'picture' keeps its work"};
     if (!options.scene.empty())
         SUNFLECK_TRY(check_scene(options));
     if (!options.plot.empty() && options.suite != "convergence" && options.suite != "thesis")

@@ -197,8 +197,9 @@ Command make_bench_command(CLI::App& program) {
                 "brute_force  frame and pass times for 64, 300 and 1,024 samples at 640x360 and 1024x768\n"
                 "shadow_maps  microseconds per map and per thousand vertices\n"
                 "convergence  error against the path tracer over the number of samples (--plot)\n"
-                "picture      edges, stains, crawl and FLIP of the quality presets' pictures, against brute force\n"
-                "             with 1,024 samples at four times the size\n"
+                "picture      edges, stains and crawl of the quality presets' pictures against brute force with 1,024\n"
+                "             samples at four times the size, and P, their FLIP against the path tracer; about two\n"
+                "             minutes a view (--views 4 --part software --folder kept)\n"
                 "reference    rays per second of the path tracer\n"
                 "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
                 "             (--part movers runs one of its experiments)");
@@ -213,7 +214,15 @@ Command make_bench_command(CLI::App& program) {
     viewer::add_whole(*app, "--turns", options->turns, 1, 1000, "Turns of those whose ratios are taken (thesis)");
     viewer::add_name(*app, "--scene", options->scene,
                      "Scene, where the suite takes one (kernel, convergence, picture, thesis)");
-    viewer::add_choice(*app, "--part", options->part, thesis_parts(), "One experiment of the thesis");
+    std::vector<std::string> parts = thesis_parts(), pictures = picture_parts();
+    parts.insert(parts.end(), pictures.begin(), pictures.end());
+    viewer::add_choice(*app, "--part", options->part, parts,
+                       "One experiment of the thesis, or one preset of the suite picture");
+    viewer::add_whole(*app, "--views", options->views, 1, 8, "Of the suite picture: how many views are measured");
+    viewer::add_whole(*app, "--spp", options->samples, 1, 1 << 20,
+                      "Of the suite picture: samples per pixel of the path tracer");
+    viewer::add_name(*app, "--folder", options->folder,
+                     "Of the suite picture: keeps there what is finished, and goes on with what is not", "FOLDER");
     viewer::add_name(*app, "--device", options->device, "Vulkan device by number or part of its name");
     return {app, [options, run_gate] {
                 if (int gate_status = 0; run_gate(gate_status))
