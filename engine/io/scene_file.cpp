@@ -7,6 +7,7 @@
 #include "engine/io/image.h"
 #include "engine/io/scene_components.h"
 #include "engine/scene/deformation.h"
+#include "engine/scene/summer_sky.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,12 @@ Status load_environment_maps(const std::filesystem::path& folder, const FileAcce
         [&](ecs::Entity entity, const scene::EnvironmentMap&) { entities.push_back(entity); });
     for (const ecs::Entity entity : entities) {
         const std::string file = registry.get<scene::EnvironmentMap>(entity).file;
-        SUNFLECK_ASSIGN(auto image, load_environment_image(folder / file, access));
+        std::shared_ptr<const scene::EnvironmentImage> image;
+        if (file == scene::summer_sky_name)
+            image = scene::summer_sky();
+        else {
+            SUNFLECK_ASSIGN(image, load_environment_image(folder / file, access));
+        }
         registry.patch<scene::EnvironmentMap>(entity,
                                               [&](scene::EnvironmentMap& map) { map.image = std::move(image); });
     }

@@ -136,8 +136,9 @@ const TypeDescription& EnvironmentMap::description() {
         "EnvironmentMap",
         1,
         "Environment map that scales the Environment's radiance by direction.",
-        {SUNFLECK_FIELD(EnvironmentMap, file, "", 0, 0,
-                        "Equirectangular PNG, JPEG, EXR or HDR, relative to the scene file"),
+        {SUNFLECK_FIELD(
+             EnvironmentMap, file, "", 0, 0,
+             "Equirectangular PNG, JPEG, EXR or HDR, relative to the scene file; or summer_sky, which is made by code"),
          SUNFLECK_FIELD(EnvironmentMap, rotation, "rad", -7, 7, "Rotation about the vertical")}};
     return type;
 }

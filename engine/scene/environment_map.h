@@ -46,8 +46,8 @@ private:
 
 // On the same entity as an Environment.
 struct EnvironmentMap {
-    std::string file;                              // PNG, JPEG, EXR or HDR, relative to the scene file
-    float rotation = 0.0f;                         // rad, of the surroundings about +Y
+    std::string file;      // PNG, JPEG, EXR or HDR, relative to the scene file; or summer_sky_name
+    float rotation = 0.0f; // rad, of the surroundings about +Y
     std::shared_ptr<const EnvironmentImage> image; // set when the scene is loaded
     bool operator==(const EnvironmentMap&) const = default;
     static const TypeDescription& description();

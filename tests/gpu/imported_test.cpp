@@ -3,6 +3,7 @@
 #include "engine/core/random.h"
 #include "engine/scene/deformation.h"
 #include "engine/scene/environment_map.h"
+#include "engine/scene/summer_sky.h"
 #include "gi_module/reference/path_tracer.h"
 #include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
@@ -284,6 +285,45 @@ TEST_F(Imported, SurroundingsLightAsTheirIntegralSays) {
         EXPECT_NEAR(double(middle[c]), expected[c], 0.02 * expected[c]);
         EXPECT_NEAR(double(truth[c]), expected[c], 0.02 * expected[c]);
     }
+}
+
+// The eye and rays see one sky, that which is made by code: as a texture between whose texels is interpolated, and
+// texel by texel. It has hills below and clouds above, and nothing brighter than a cloud.
+TEST_F(Imported, ASkyMadeByCodeIsTheSameInPictureAndReference) {
+    GpuWorld world;
+    assets::SceneBuilder builder(world.renderer->registry(), world.renderer->meshes());
+    builder.quad("floor", vec3(-1, 0, 1), vec3(2, 0, 0), vec3(0, 0, -2), assets::diffuse(vec3(0.5f)));
+    builder.camera("view", vec3(0.0f, 1.0f, 0.0f), vec3(0.4f, 1.15f, -1.0f), 60.0f);
+    builder.point_light("lamp", vec3(0.0f, 2.0f, 0.0f), vec3(1.0f));
+    const ecs::Entity sky = world.renderer->registry().create();
+    const vec3 radiance(2.0f, 3.0f, 4.0f);
+    world.renderer->registry().emplace<scene::Environment>(sky, {radiance, false});
+    world.renderer->registry().emplace<scene::EnvironmentMap>(
+        sky, {std::string(scene::summer_sky_name), 0.0f, scene::summer_sky()});
+    world.finish("view");
+    world.request.view = shared::view_final;
+    world.set(plain_light());
+    const io::Picture picture = world.picture();
+    EXPECT_TRUE(world.renderer->rays().update(world.renderer->registry(), world.renderer->meshes()));
+    const gi::reference::PathTracer tracer(world.renderer->rays(), {},
+                                           gi::collect_backgrounds(world.renderer->registry()));
+    gi::reference::Accumulation traced;
+    gi::reference::ReferenceSettings settings;
+    settings.width = picture.width;
+    settings.height = picture.height;
+    tracer.accumulate(traced, world.request.camera, settings, 1);
+    double difference = 0.0, sum = 0.0, least = 1e30, most = 0.0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const double value = double(picture.pixels[i].y);
+        difference += std::abs(value - traced.sums[3 * i + 1]);
+        sum += value;
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    EXPECT_LT(difference, 0.03 * sum); // texels at the edges of hills and clouds
+    EXPECT_LT(least, 0.15 * double(radiance.y));
+    EXPECT_GT(most, 0.45 * double(radiance.y));
+    EXPECT_LT(most, 0.7 * double(radiance.y));
 }
 
 } // namespace
