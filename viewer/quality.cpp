@@ -50,9 +50,9 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     result.map_budget = preset.map_budget;
     result.bounces = quality <= Quality::low ? 3 : 5;
     result.shadow_map_resolution = quality <= Quality::low ? 128 : 256;
-    // A picture of 640x360, too, is as near to the path tracer with a quarter as with half of its pixels in each
-    // direction; it is the repair that draws what is fine.
-    result.low_resolution = quality == Quality::ultra ? 1 : quality == Quality::software ? 4 : 2;
+    // A picture is as near to the path tracer with a quarter as with half of its pixels in each direction, at any size;
+    // it is the repair that draws what is fine.
+    result.low_resolution = quality == Quality::ultra ? 1 : 4;
     result.patch_levels = 2; // houses have many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
