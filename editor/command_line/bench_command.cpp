@@ -23,19 +23,23 @@ Result<BenchTable> run_suite(const BenchOptions& options, std::vector<PlotSeries
         return bench_picture(options);
     if (options.suite == "thesis")
         return bench_thesis(options, plot);
+    if (options.suite == "splatting")
+        return bench_splatting(options);
     return bench_reference(options);
 }
 
 // Techniques can be left out of a build.
 Status check_techniques(const std::string& suite) {
     std::vector<std::string_view> needed;
-    if (suite != "reference")
+    if (suite != "reference" && suite != "splatting")
         needed.push_back("brute_force");
     if (suite == "thesis" || suite == "picture")
         needed.push_back("light_samples");
-    const std::vector<std::string_view>& there = gi::Settings::find("direct")->choices;
+    if (suite == "splatting")
+        needed.push_back("splatting");
+    const auto there = gi::techniques();
     for (const std::string_view name : needed)
-        if (std::find(there.begin(), there.end(), name) == there.end())
+        if (std::none_of(there.begin(), there.end(), [&](const auto& entry) { return entry.name == name; }))
             return Error{"the suite '" + suite + "' measures the technique '" + std::string(name) +
                          "', which this build does not have"};
     return {};
@@ -49,10 +53,22 @@ Status check_scene(const BenchOptions& options) {
     if (options.suite == "thesis" && thesis_cameras.count(options.scene) == 0)
         return Error{"--scene: '" + options.scene +
                      "' is none of the thesis's scenes (area_room, table_room, four_pillars)"};
-    if (options.suite == "brute_force" || options.suite == "shadow_maps" || options.suite == "reference")
+    if (options.suite == "brute_force" || options.suite == "shadow_maps" || options.suite == "reference" ||
+        options.suite == "splatting")
         return Error{"--scene: the suite '" + options.suite +
                      "' has scenes of its own (only kernel, convergence, picture and thesis take one)"};
     SUNFLECK_TRY(find_scene(options.scene));
+    return {};
+}
+
+Status check_part(const BenchOptions& options) {
+    const std::vector<std::string> parts = options.suite == "thesis"      ? thesis_parts()
+                                           : options.suite == "picture"   ? picture_parts()
+                                           : options.suite == "splatting" ? splatting_parts()
+                                                                          : std::vector<std::string>();
+    if (!options.part.empty() && std::find(parts.begin(), parts.end(), options.part) == parts.end())
+        return Error{"--part: the suite '" + options.suite + "' has no part '" + options.part +
+                     "' (only thesis, picture and splatting have parts)"};
     return {};
 }
 
@@ -69,12 +85,7 @@ Status write_plot(const BenchOptions& options, const std::vector<PlotSeries>& pl
 
 Status bench(const BenchOptions& options) {
     SUNFLECK_TRY(check_techniques(options.suite));
-    const std::vector<std::string> parts = options.suite == "thesis"    ? thesis_parts()
-                                           : options.suite == "picture" ? picture_parts()
-                                                                        : std::vector<std::string>();
-    if (!options.part.empty() && std::find(parts.begin(), parts.end(), options.part) == parts.end())
-        return Error{"--part: the suite '" + options.suite + "' has no part '" + options.part +
-                     "' (only thesis and picture have parts)"};
+    SUNFLECK_TRY(check_part(options));
     if (!options.folder.empty() && options.suite != "picture")
         return Error{"--folder: only the suite 'picture' keeps its work"};
     if (!options.scene.empty())

@@ -38,4 +38,7 @@ Result<BenchTable> bench_picture(const BenchOptions& options);
 // The experiments of chapter 5 of the thesis and of its fig. 4-11 and 4-12.
 Result<BenchTable> bench_thesis(const BenchOptions& options, std::vector<PlotSeries>& plot);
 
+// The experiments of the paper on splatting, its figures beside ours.
+Result<BenchTable> bench_splatting(const BenchOptions& options);
+
 } // namespace sunfleck::command_line

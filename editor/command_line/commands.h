@@ -41,7 +41,7 @@ Status compare(const CompareOptions& options);
 
 struct BenchOptions {
     std::string suite, csv, plot, device, scene;
-    std::string part;                      // of the thesis, or preset of the suite picture; empty: all
+    std::string part;                      // of thesis and splatting, or preset of the suite picture; empty: all
     std::string folder;                    // of the suite picture: keeps what is finished
     std::uint32_t views = 8, samples = 64; // of the suite picture: views, and samples a pixel of the path tracer
     bool as_json = false;
@@ -51,6 +51,7 @@ struct BenchOptions {
 // Names of the thesis's experiments, for BenchOptions::part.
 std::vector<std::string> thesis_parts();
 std::vector<std::string> picture_parts();
+std::vector<std::string> splatting_parts();
 Status bench(const BenchOptions& options);
 
 Status describe_device(const std::string& wanted, bool as_json);

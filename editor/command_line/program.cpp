@@ -189,6 +189,16 @@ Command make_compare_command(CLI::App& program) {
     return {app, [options] { return exit_status(compare(*options)); }};
 }
 
+// Parts of all suites that have some.
+std::vector<std::string> all_parts() {
+    std::vector<std::string> parts = thesis_parts();
+    for (const std::vector<std::string>& others : {picture_parts(), splatting_parts()})
+        for (const std::string& part : others)
+            if (std::find(parts.begin(), parts.end(), part) == parts.end())
+                parts.push_back(part);
+    return parts;
+}
+
 Command make_bench_command(CLI::App& program) {
     auto options = std::make_shared<BenchOptions>();
     CLI::App* app = program.add_subcommand("bench", "Runs a named experiment and prints its table");
@@ -202,11 +212,13 @@ Command make_bench_command(CLI::App& program) {
                 "             minutes a view (--views 4 --part software --folder kept)\n"
                 "reference    rays per second of the path tracer\n"
                 "thesis       frame times, ablation, map updates, passes and quality, as the thesis's chapter 5\n"
-                "             (--part movers runs one of its experiments)");
+                "             (--part movers runs one of its experiments)\n"
+                "splatting    errors, flicker and cost of splatted indirect light, the paper's figures beside ours");
     const auto run_gate = add_gate_commands(*app);
-    viewer::add_choice(*app, "SUITE", options->suite,
-                       {"kernel", "brute_force", "shadow_maps", "convergence", "picture", "reference", "thesis"},
-                       "Name of the experiment");
+    viewer::add_choice(
+        *app, "SUITE", options->suite,
+        {"kernel", "brute_force", "shadow_maps", "convergence", "picture", "reference", "thesis", "splatting"},
+        "Name of the experiment");
     app->add_flag("--json", options->as_json, "Print one JSON object");
     viewer::add_name(*app, "--csv", options->csv, "Write the rows as CSV", "FILE");
     viewer::add_name(*app, "--plot", options->plot, "Write a plot as SVG", "FILE");
@@ -214,10 +226,8 @@ Command make_bench_command(CLI::App& program) {
     viewer::add_whole(*app, "--turns", options->turns, 1, 1000, "Turns of those whose ratios are taken (thesis)");
     viewer::add_name(*app, "--scene", options->scene,
                      "Scene, where the suite takes one (kernel, convergence, picture, thesis)");
-    std::vector<std::string> parts = thesis_parts(), pictures = picture_parts();
-    parts.insert(parts.end(), pictures.begin(), pictures.end());
-    viewer::add_choice(*app, "--part", options->part, parts,
-                       "One experiment of the thesis, or one preset of the suite picture");
+    viewer::add_choice(*app, "--part", options->part, all_parts(),
+                       "One experiment of the suite (thesis, splatting), or one preset of the suite picture");
     viewer::add_whole(*app, "--views", options->views, 1, 8, "Of the suite picture: how many views are measured");
     viewer::add_whole(*app, "--spp", options->samples, 1, 1 << 20,
                       "Of the suite picture: samples per pixel of the path tracer");

@@ -46,12 +46,16 @@ struct Tracer {
     std::uint32_t side;
 
     // Light passes movers that cast no shadow, such as the glass of a lantern.
-    std::optional<raytrace::SurfacePoint> lit_surface(const raytrace::Ray& emitted) const {
+    struct LitSurface {
+        raytrace::Hit hit;
+        raytrace::SurfacePoint point;
+    };
+    std::optional<LitSurface> lit_surface(const raytrace::Ray& emitted) const {
         raytrace::Ray ray = emitted;
         while (const auto hit = rays.closest_hit(ray)) {
             const raytrace::SurfacePoint point = rays.surface(ray, *hit);
             if (point.casts_shadow)
-                return point;
+                return LitSurface{*hit, point};
             ray.minimum = hit->distance * (1.0f + 0x1p-17f);
         }
         return std::nullopt;
@@ -62,16 +66,20 @@ struct Tracer {
         const EmittedRay emitted = ray_of(emitter, x, y, side);
         const float offset = emitted.normal == vec3(0.0f) ? 0.0f : rays.ray_offset_anywhere();
         const raytrace::Ray ray{emitted.origin + offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
-        const std::optional<raytrace::SurfacePoint> met = lit_surface(ray);
+        const std::optional<LitSurface> met = lit_surface(ray);
         if (!met)
             return texel;
-        const raytrace::SurfacePoint& point = *met;
+        const raytrace::SurfacePoint& point = met->point;
         texel.on_mover = !scene::is_static(registry, point.entity);
         if (point.entity == emitter.entity || !(texel.on_mover ? surfaces.movers : surfaces.fixed))
             return texel;
         const float lit_side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
         texel.lit = true;
         texel.entity = point.entity;
+        texel.primitive = met->hit.primitive;
+        texel.u = met->hit.u;
+        texel.v = met->hit.v;
+        texel.on_front = lit_side > 0.0f;
         texel.position =
             offset_from_surface(point.position, lit_side * point.geometric_normal, rays, raytrace::Scope::everything);
         texel.normal = lit_side * point.shading_normal;

@@ -21,6 +21,10 @@ struct ReflectiveTexel {
     bool lit = false;  // there is a surface
     bool on_mover = false;
     ecs::Entity entity; // that the surface belongs to
+    // Where on the entity: triangle, weights of its second and third corner, and whether its front is lit.
+    std::uint32_t primitive = 0;
+    float u = 0.0f, v = 0.0f;
+    bool on_front = true;
 };
 
 struct ReflectiveShadowMap {

@@ -35,6 +35,14 @@ float map_value(uint slot, ivec2 texel) {
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 
+// Eq. 1 and 2, as a factor of the intensity, of a light that is softened: see softened_term.
+float softened_factor(PixelLightRow light, Pixel pixel) {
+    const vec3 v = pixel.position - light.row.position_bound.xyz;
+    const float along = dot(light.row.normal_offset.xyz, v);
+    const bool faces = along > 0.0 && dot(pixel.geometric_normal, v) < 0.0;
+    return softened_term(along, faces ? max(-dot(pixel.normal, v), 0.0) : 0.0, dot(v, v), light.extent.x);
+}
+
 // Eq. 3, as a factor of the intensity on the lobe's axis, with the lobe wider near the light, and clamped as diffuse ones.
 float lobe_factor(PixelLightRow light, Pixel pixel) {
     const vec3 v = pixel.position - light.row.position_bound.xyz, normal = light.row.normal_offset.xyz;
@@ -42,6 +50,8 @@ float lobe_factor(PixelLightRow light, Pixel pixel) {
     const vec3 direction = v / distance;
     const bool faces = dot(pixel.geometric_normal, v) < 0.0 && dot(normal, v) > 0.0;
     const float cosine = faces ? max(-dot(pixel.normal, direction), 0.0) : 0.0;
+    if (light.beam0.w > 0.0)
+        return beam_density(light.lobe.xyz, light.beam0, light.beam1, light.beam2, v) * cosine * light.beam0.w;
     const float exponent = light.lobe.w, widened = widened_exponent(exponent, distance, light.extent.x);
     float factor = power_of_cosine(light.lobe.xyz, direction, widened) * cosine / squared;
     if (widened != exponent) {
@@ -59,9 +69,10 @@ vec3 contribution(LightRow light, LightFactor factor, Pixel pixel) {
         return vec3(1.0);
     if (show == show_splat_occlusion)
         return brightness * factor.unshadowed * vec3(factor.visibility, 1.0, 0.0);
-    if (show == show_splat_places) {
-        const float radius = 0.01 * distance(pixel.position, camera.position.xyz);
-        return distance(pixel.position, light.position_bound.xyz) < radius ? intensity / max(brightness, 1e-30) : vec3(0.0);
+    if (shows_places(show)) {
+        const float radius = (show == show_splat_places ? 0.01 : 0.006) * distance(pixel.position, camera.position.xyz);
+        const vec3 colour = show == show_splat_places ? intensity / max(brightness, 1e-30) : intensity;
+        return distance(pixel.position, light.position_bound.xyz) < radius ? colour : vec3(0.0);
     }
     return intensity * (factor.unshadowed * factor.visibility);
 }
@@ -71,7 +82,7 @@ vec3 shown(vec3 total) {
         return total / most_overdraw;
     if (show == show_splat_occlusion)
         return vec3(total.g > 0.0 ? total.r / total.g : 0.0);
-    return max(total, vec3(show == show_splat_places ? 0.04 : 0.0));
+    return max(total, vec3(shows_places(show) ? 0.04 : 0.0));
 }
 
 void main() {
@@ -102,8 +113,7 @@ void main() {
             mask &= mask - 1u;
             [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
                 LightFactor factor = light_factor(light.row, surface[k], true);
-                if (glossy != 0)
-                    factor.unshadowed = lobe_factor(light, surface[k]);
+                factor.unshadowed = glossy != 0 ? lobe_factor(light, surface[k]) : softened_factor(light, surface[k]);
                 sum[k] += contribution(light.row, factor, surface[k]);
             }
         }

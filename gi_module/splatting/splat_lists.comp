@@ -77,7 +77,7 @@ void main() {
         uint mask = 0u;
         const uint first = word * 32u, end = any ? min(first + 32u, constants.light_count) : first;
         for (uint i = first; i < end; ++i)
-            mask |= show == show_splat_places || may_reach(lights[i], bounds) ? 1u << (i - first) : 0u;
+            mask |= shows_places(show) || may_reach(lights[i], bounds) ? 1u << (i - first) : 0u;
         masks[group * splat_mask_words + word] = mask;
     }
 }

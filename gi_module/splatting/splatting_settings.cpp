@@ -17,10 +17,20 @@ const TypeDescription& SplattingSettings::description() {
              S, glossy_splats, "", 0, 65536,
              "Pixel lights beside those for what glossy surfaces reflect in a lobe about the mirror direction, "
              "such as caustics; 0: they reflect diffusely"),
+         SUNFLECK_FIELD(S, splat_footprints, "", 0, 1,
+                        "Glossy pixel lights have the shape of the beam that their piece of surface reflects, so that "
+                        "caustics have no spots; off: round lobes about the mirror direction"),
          SUNFLECK_FIELD(S, splat_rays, "rays", 16, 1048576,
                         "Texels of all reflective shadow maps together, each a ray"),
-         SUNFLECK_CHOICE(S, splat_importance, "What decides where pixel lights are: chance, or reflected flux", "none",
-                         "flux"),
+         SUNFLECK_CHOICE(S, splat_pattern,
+                         "Where pixel lights are: on surfaces, where they stay while their emitter moves, each with "
+                         "the light of the texels around it; or in a pattern that is fixed in the emitter's view, "
+                         "which flickers more. Glossy ones are always in a pattern",
+                         "followed", "fixed"),
+         SUNFLECK_CHOICE(S, splat_importance,
+                         "What decides where pixel lights are: chance, reflected flux, or what that does for the "
+                         "picture: of the light at some points that the camera sees, how much is theirs",
+                         "none", "flux", "contribution"),
          SUNFLECK_CHOICE(S, splat_warp,
                          "Importance warping: with rows weighed on their own, or all alike, which is faster", "a", "b"),
          SUNFLECK_FIELD(S, splat_warp_levels, "levels", 0, 10,

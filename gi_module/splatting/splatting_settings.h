@@ -10,7 +10,11 @@ namespace sunfleck::gi {
 // what movers reflect (first_bounce.dynamic); all: every first bounce.
 enum class SplatChoice : std::uint32_t { none, moving, all };
 // What pixel lights are chosen by.
-enum class SplatImportance : std::uint32_t { none, flux };
+enum class SplatImportance : std::uint32_t { none, flux, contribution };
+
+// Where pixel lights are: on surfaces, where they stay while their emitter moves; or in a pattern that is fixed in the
+// emitter's view.
+enum class SplatPattern : std::uint32_t { followed, fixed };
 
 // What blocks the light of pixel lights: nothing; ambient occlusion, as a factor of their flux; a shadow map of each.
 enum class SplatOcclusion : std::uint32_t { none, ambient, maps };
@@ -19,7 +23,9 @@ struct SplattingSettings {
     SplatChoice splat_lights = SplatChoice::none;
     std::uint32_t splats = 256;
     std::uint32_t glossy_splats = 0;
+    bool splat_footprints = true;
     std::uint32_t splat_rays = 4096;
+    SplatPattern splat_pattern = SplatPattern::followed;
     SplatImportance splat_importance = SplatImportance::flux;
     WarpMethod splat_warp = WarpMethod::a;
     std::uint32_t splat_warp_levels = 6;

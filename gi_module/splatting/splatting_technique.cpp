@@ -1,7 +1,5 @@
 #include "gi_module/splatting/splatting_technique.h"
 
-#include "gi_module/splatting/splat_occlusion.h"
-
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_gi_splatting_shaders();
 }
@@ -15,7 +13,7 @@ constexpr Counter reflective_maps{"reflective_maps", "maps", "splatting",
 constexpr Counter reflective_rays{"reflective_map_rays", "rays", "splatting",
                                   "Texels of reflective shadow maps that were made in this frame"};
 constexpr Counter occlusion_rays{"splat_occlusion_rays", "rays", "splatting",
-                                 "Texels of shadow maps of pixel lights that were made in this frame"};
+                                 "Texels of shadow maps of pixel lights that were traced in this frame"};
 constexpr Counter memory{"splatting", "B", memory_group, "Reflective shadow maps, pixel lights and lists of tiles"};
 constexpr Counter technique_counters[] = {pixel_lights, reflective_maps, reflective_rays, occlusion_rays, memory};
 
@@ -25,7 +23,12 @@ constexpr DebugView technique_views[] = {
     {"overdraw", "Pixel lights that are evaluated for a pixel", "white: 256", "", "splatting", shared::show_overdraw,
      true},
     {"splat_occlusion", "Share of the pixel lights' light that their shadows let through", "white: all, black: nothing",
-     "", "splatting", shared::show_splat_occlusion, true}};
+     "", "splatting", shared::show_splat_occlusion, true},
+    {"rsm", "Texels of the reflective shadow maps, where they lie, by the flux that they reflect",
+     "dots: texels; white: the brightest", "", "splatting", shared::show_map_flux, true},
+    {"importance", "The same texels by importance: where it is great, pixel lights are dense",
+     "dots: texels; white: the greatest, black: none", "", "splatting", shared::show_importance, true}};
+constexpr std::size_t most_texels_shown = 8192;
 
 CellSet first_bounces(bool fixed, bool dynamic) {
     CellSet cells;
@@ -41,8 +44,9 @@ CellSet cells_taken(const Settings& settings) {
     return first_bounces(choice == SplatChoice::all, choice != SplatChoice::none);
 }
 
-SplatRequest request_of(const Settings& settings, CellSet cells) {
+SplatRequest request_of(const Settings& settings, CellSet cells, const std::optional<mat4>& view_projection) {
     SplatRequest request;
+    request.view_projection = view_projection;
     request.lit = {(cells & first_bounces(true, false)).any(), (cells & first_bounces(false, true)).any()};
     request.sampled = settings.sampled_light == SampledLight::all ? SplatParts{true, true} : request.lit;
     request.movers_are_static = settings.movers == movers_static;
@@ -81,12 +85,13 @@ Status SplattingTechnique::update(const SceneView& scene, Services& services, Ce
     const StageTimer timer(services.cpu_times, "pixel lights");
     const Settings& settings = services.settings;
     rows_.clear();
-    map_texels_.clear();
     // Reflected light is switched off, or there is none.
     const bool dark = services.input.indirect_scale <= 0.0f || settings.bounces == 0;
-    if (dark)
+    if (dark) {
+        maps_.clear();
         return {};
-    const SplatRequest request = request_of(settings, cells);
+    }
+    const SplatRequest request = request_of(settings, cells, services.input.view_projection);
     lights_.update(scene, services.samples, request);
     const float least = request.settings.splat_cutoff * lights_.mean_irradiance();
     const float clamp_scale = splat_clamp_scale * settings.clamp_scale;
@@ -95,40 +100,60 @@ Status SplattingTechnique::update(const SceneView& scene, Services& services, Ce
         rows_.push_back(make_pixel_light_row(light, std::uint32_t(rows_.size()), clamp_scale, least));
         rows_.back().row.intensity_slot *= vec4(vec3(services.input.indirect_scale), 1.0f);
     }
-    if (settings.shadows)
-        find_occlusion(scene, request.settings);
+    find_occlusion(scene, request.settings, settings.shadows);
     return {};
 }
 
-void SplattingTechnique::find_occlusion(const SceneView& scene, const SplattingSettings& settings) {
-    if (settings.splat_occlusion == SplatOcclusion::ambient)
+void SplattingTechnique::find_occlusion(const SceneView& scene, const SplattingSettings& settings, bool shadows) {
+    if (!shadows || settings.splat_occlusion != SplatOcclusion::maps)
+        maps_.clear();
+    if (shadows && settings.splat_occlusion == SplatOcclusion::ambient)
         for (shared::PixelLightRow& row : rows_)
             row.row.intensity_slot *=
                 vec4(vec3(1.0f - ambient_occlusion(row, settings.splat_ambient_reach, scene.rays)), 1.0f);
-    if (settings.splat_occlusion != SplatOcclusion::maps)
-        return;
-    map_side_ = side_of_pixel_light_maps(settings.splat_map_side, rows_.size());
-    trace_pixel_light_maps(rows_, map_side_, scene.rays, map_texels_);
+    if (shadows && settings.splat_occlusion == SplatOcclusion::maps)
+        maps_.update(rows_, side_of_pixel_light_maps(settings.splat_map_side, rows_.size()), scene.rays,
+                     moving_spheres(scene.changes));
 }
 
 Status SplattingTechnique::add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) {
     target.bytes_per_group = std::max(target.bytes_per_group, SplatKernel::bytes_per_group);
     kernel_->set_show(target.view != nullptr ? target.view->code : shared::show_no_splats);
+    view_rows_.clear();
+    if (target.view != nullptr &&
+        (target.view->code == shared::show_map_flux || target.view->code == shared::show_importance))
+        show_texels(target.view->code == shared::show_importance);
     const bool filtered = services.settings.of<SplattingSettings>().splat_map_filter;
-    return kernel_->set_maps(graph, map_texels_, map_side_, filtered, services.resources);
+    return kernel_->set_maps(graph, maps_.texels(), maps_.side(), filtered, services.resources);
+}
+
+// On a scale from 0 to 1. Square roots, as most texels are far from the greatest.
+void SplattingTechnique::show_texels(bool importance) {
+    const std::vector<SplatLights::SeenTexel> texels = lights_.texels(most_texels_shown);
+    float most = 0.0f;
+    for (const SplatLights::SeenTexel& texel : texels)
+        most = std::max({most, texel.flux.x, texel.flux.y, texel.flux.z});
+    for (const SplatLights::SeenTexel& texel : texels) {
+        shared::PixelLightRow row{};
+        row.row.position_bound = vec4(texel.position, 0.0f);
+        row.row.intensity_slot =
+            vec4(importance ? vec3(std::sqrt(texel.importance)) : glm::sqrt(texel.flux / most), 0.0f);
+        row.lobe.w = 1.0f;
+        row.extent.y = -1.0f;
+        view_rows_.push_back(row);
+    }
 }
 
 Status SplattingTechnique::light_pixels(const PixelStage& stage, Services& services) {
-    return kernel_->add_passes(stage, rows_, services.resources);
+    return kernel_->add_passes(stage, view_rows_.empty() ? rows_ : view_rows_, services.resources);
 }
 
 void SplattingTechnique::report(Report& report) const {
     report.set(pixel_lights, double(rows_.size()));
     report.set(reflective_maps, double(lights_.maps()));
     report.set(reflective_rays, double(lights_.rays()));
-    report.set(occlusion_rays, double(map_texels_.size()));
-    report.set(memory, double(lights_.memory_bytes() + kernel_->memory_bytes() +
-                              map_texels_.capacity() * sizeof(std::uint16_t)));
+    report.set(occlusion_rays, double(maps_.rays()));
+    report.set(memory, double(lights_.memory_bytes() + kernel_->memory_bytes() + maps_.memory_bytes()));
 }
 
 } // namespace sunfleck::gi

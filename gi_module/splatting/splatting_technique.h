@@ -3,6 +3,7 @@
 
 #include "gi_module/splatting/splat_kernel.h"
 #include "gi_module/splatting/splat_lights.h"
+#include "gi_module/splatting/splat_occlusion.h"
 #include "gi_module/technique.h"
 
 namespace sunfleck::gi {
@@ -24,13 +25,13 @@ public:
     const SplatLights& lights() const { return lights_; }
 
 private:
-    void find_occlusion(const SceneView& scene, const SplattingSettings& settings);
+    void find_occlusion(const SceneView& scene, const SplattingSettings& settings, bool shadows);
+    void show_texels(bool importance);
 
     std::unique_ptr<SplatKernel> kernel_;
     SplatLights lights_;
-    std::vector<shared::PixelLightRow> rows_;
-    std::vector<std::uint16_t> map_texels_; // of their shadow maps; empty: they have none
-    std::uint32_t map_side_ = 0;
+    std::vector<shared::PixelLightRow> rows_, view_rows_; // view_rows_: of a debug view, in place of the lights
+    PixelLightMaps maps_;                                 // their shadow maps; none: they have none
 };
 
 } // namespace sunfleck::gi

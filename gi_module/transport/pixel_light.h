@@ -13,7 +13,10 @@ struct PixelLight {
     float exponent = 1.0f;         // 1: diffuse
     vec3 flux{0.0f};               // W
     float area = 0.0f;             // of the surface that it stands for, m2
-    bool dynamic = false;          // its emitter, or the surface that it lies on, moves or varies
+    // Of the surface that it stands for: how place and axis change from edge to edge in two directions, m and rad.
+    // All zero: not known, the lobe is that of eq. 3.
+    vec3 wide[2]{vec3(0.0f), vec3(0.0f)}, turned[2]{vec3(0.0f), vec3(0.0f)};
+    bool dynamic = false; // its emitter, or the surface that it lies on, moves or varies
 };
 
 // What a material reflects of light from one direction, as shares of its flux.
@@ -29,6 +32,9 @@ LobeReflectance lobe_reflectance(const scene::Material& material, float cosine);
 // The exponent of the lobe that a GGX distribution of this width reflects at normal incidence: near the mirror
 // direction both fall as a Gaussian of the same width.
 float lobe_exponent(float alpha);
+
+// By how much a diffuse light of that area is softened (softened_term), m; best for a `clamp_scale` of 2.
+float pixel_light_softness(float area, float clamp_scale);
 
 // Rows of lights whose flux is not finite or not positive are dark. `clamp_scale`: see transport/clamping.h, with the
 // light's own area. `least`: irradiance, W/m2, below which light may be cut; 0: nowhere.

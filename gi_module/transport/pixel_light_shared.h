@@ -73,6 +73,47 @@ SHARED_FUNCTION float pixel_light_intensity(vec3 axis, vec3 normal, float expone
     return lobe_norm(widened, dot(axis, normal)) * power_of_cosine(axis, direction, widened);
 }
 
+// What a diffuse light of intensity 1 gives a receiver, 1/m2. `along`: of the way to the receiver, along the light's
+// normal, m, positive; `facing`: the same along the receiver's, towards the light; `squared`: its squared length.
+//
+// Eq. 1 and 2 are the case `softness` 0. A light stands for a piece of surface: near it, they give a receiver on an
+// adjoining wall nothing, or far too much, where the surface gives it light as evenly as from afar. Softened by about
+// the distance between lights, a grid of them does so, too: nearer than that distance, the squared error falls to a
+// tenth and less of that of lights that are clamped.
+SHARED_FUNCTION float softened_term(float along, float facing, float squared, float softness) {
+    float soft = softness * softness;
+    float inverse = 1.0f / max(squared + soft, 1e-12f);
+    return sqrt(along * along + soft) * facing * inverse * inverse;
+}
+
+// Across a lobe's axis.
+SHARED_FUNCTION vec3 lobe_tangent(vec3 axis) {
+    return normalize(cross(axis, abs(axis.y) < 0.9f ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f)));
+}
+
+// A narrow lobe as the beam that a piece of curved surface reflects: what crosses a plane at a distance along the axis
+// is a Gaussian, whose covariance (xx, xy, yy, m2) is a polynomial of that distance: how wide the piece is, how its
+// mirror directions turn from edge to edge, and how wide the lobe of each is. `way`: from the light. 1/m2: of a flux of
+// 1, what crosses the plane at its end, which falls to zero nearer than the piece is wide. So lights join without gaps
+// where eq. 3 draws a spot for each.
+SHARED_FUNCTION float beam_density(vec3 axis, vec4 constant, vec4 linear, vec4 square, vec3 way) {
+    float along = dot(axis, way);
+    if (along <= 0.0f)
+        return 0.0f;
+    vec3 tangent = lobe_tangent(axis);
+    float x = dot(tangent, way), y = dot(cross(axis, tangent), way);
+    float xx = constant.x + along * (linear.x + along * square.x);
+    float xy = constant.y + along * (linear.y + along * square.y);
+    float yy = constant.z + along * (linear.z + along * square.z);
+    float determinant = xx * yy - xy * xy;
+    if (determinant <= 0.0f)
+        return 0.0f;
+    float exponent = (yy * x * x - 2.0f * xy * x * y + xx * y * y) / determinant;
+    // The piece does not light itself.
+    float outside = along * along / (along * along + 4.0f * (constant.x + constant.z));
+    return outside * exp(-0.5f * exponent) / (2.0f * pixel_light_pi * sqrt(determinant));
+}
+
 // --- Bounds (appendix of the paper) ---------------------------------------------------------------------------------
 // Irradiance is at most intensity / distance^2. Where that is a threshold E, in units of sqrt(I0 / E) with I0 the
 // intensity on the axis, is a surface of revolution whose profile is eq. 7. An ellipsoid about the profile's widest
@@ -103,12 +144,15 @@ SHARED_FUNCTION LobeBound lobe_bound(float exponent) {
 struct PixelLightRow {
     LightRow row;
     vec4 lobe;   // 80: xyz: axis; w: exponent
-    vec4 extent; // 96: x: widening reach, m; y, z, w: of the bound, m: centre on the axis, half axes along and across;
-                 //     centre < 0: unbounded
+    vec4 extent; // 96: x: of a lobe its widening reach, of a diffuse light its softness, m; y, z, w: of the
+                 //     bound, m: centre on the axis, half axes along and across; centre < 0: unbounded
+    vec4 beam0;  // 112: xyz: beam_density's constant; w: 1 / lobe_norm, 0: no beam
+    vec4 beam1;  // 128: linear
+    vec4 beam2;  // 144: square
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::PixelLightRow) == 112);
+static_assert(sizeof(sunfleck::shared::PixelLightRow) == 160);
 #endif
 #endif

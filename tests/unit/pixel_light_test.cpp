@@ -105,10 +105,15 @@ TEST(SplatPixelLights, BoundsHoldAllLightAboveTheThreshold) {
                 const float angle = 1.57f * std::pow(uniform(random), exponent > 10.0f ? 4.0f : 1.0f);
                 const float distance = far * uniform(random);
                 const vec3 direction = std::cos(angle) * light.axis + std::sin(angle) * side;
-                const float irradiance = light.flux.x *
-                                         shared::pixel_light_intensity(light.axis, light.normal, exponent, row.extent.x,
-                                                                       direction, distance) /
-                                         (distance * distance);
+                const float soft = exponent > 1.0f ? 0.0f : row.extent.x;
+                const float irradiance = exponent > 1.0f
+                                             ? light.flux.x *
+                                                   shared::pixel_light_intensity(light.axis, light.normal, exponent,
+                                                                                 row.extent.x, direction, distance) /
+                                                   (distance * distance)
+                                             : light.flux.x / pi * distance *
+                                                   std::sqrt(std::pow(distance * std::cos(angle), 2.0f) + soft * soft) /
+                                                   std::pow(distance * distance + soft * soft, 2.0f);
                 if (irradiance < least)
                     continue;
                 ++inside_threshold;
@@ -119,6 +124,43 @@ TEST(SplatPixelLights, BoundsHoldAllLightAboveTheThreshold) {
             }
             EXPECT_GT(inside_threshold, 20) << exponent;
         }
+}
+
+// All that a beam reflects crosses any plane that is farther from it than the piece of surface is wide.
+TEST(SplatPixelLights, BeamsKeepTheirFlux) {
+    PixelLight light;
+    light.normal = glm::normalize(vec3(0.1f, 1.0f, 0.2f));
+    light.axis = glm::normalize(vec3(0.5f, 0.8f, -0.1f));
+    light.flux = vec3(3.0f, 2.0f, 1.0f);
+    light.area = 4e-4f;
+    light.wide[0] = vec3(0.02f, 0.0f, 0.004f);
+    light.wide[1] = vec3(0.003f, -0.001f, 0.015f);
+    light.turned[0] = vec3(0.1f, -0.06f, 0.2f);
+    light.turned[1] = vec3(-0.02f, 0.03f, 0.01f);
+    for (const float exponent : {30.0f, 1000.0f, 1e5f}) {
+        light.exponent = exponent;
+        const shared::PixelLightRow row = make_pixel_light_row(light, 0, 1.0f, 0.1f);
+        ASSERT_GT(row.beam0.w, 0.0f);
+        for (const float along : {0.05f, 0.7f, 3.0f}) {
+            // Over six standard deviations of the widest direction, in steps that the narrowest one allows.
+            const vec4 covariance = row.beam0 + along * (row.beam1 + along * row.beam2);
+            const float reach = 6.0f * std::sqrt(covariance.x + covariance.z);
+            const vec3 x = shared::lobe_tangent(light.axis), y = glm::cross(light.axis, x);
+            double sum = 0.0;
+            const int steps = 800;
+            for (int i = 0; i < steps * steps; ++i) {
+                const vec2 place = (vec2(float(i % steps), float(i / steps)) + 0.5f) * (2.0f / float(steps)) - 1.0f;
+                const vec3 way = along * light.axis + reach * (place.x * x + place.y * y);
+                sum += double(shared::beam_density(light.axis, row.beam0, row.beam1, row.beam2, way));
+            }
+            const float wide = 4.0f * (row.beam0.x + row.beam0.z), outside = along * along / (along * along + wide);
+            EXPECT_NEAR(sum * std::pow(2.0 * double(reach) / steps, 2.0), outside, 1e-3) << exponent << ", " << along;
+            EXPECT_GT(outside, along > 0.5f ? 0.99f : 0.5f);
+        }
+        EXPECT_NEAR(row.row.intensity_slot.x * row.beam0.w, light.flux.x, 1e-4f * light.flux.x);
+    }
+    light.exponent = 5.0f; // too wide to be a Gaussian
+    EXPECT_EQ(make_pixel_light_row(light, 0, 1.0f, 0.1f).beam0.w, 0.0f);
 }
 
 TEST(SplatPixelLights, DefectiveOnesAreDarkOrFinite) {

@@ -78,9 +78,10 @@ TEST_F(SplatTruth, ShadowsLeaveAFifthOfTheError) {
         const auto with = command_line::compare_pictures(shadowed, expected, true),
                    without = command_line::compare_pictures(plain, expected, true),
                    modulated = command_line::compare_pictures(ambient, expected, true);
-        std::printf("truth error: none %.4f, ambient %.4f, maps %.4f; mean %+.2f %%\n",
+        std::printf("truth error: none %.4f, ambient %.4f, maps %.4f; mean %+.2f %%, none %+.2f %%\n",
                     without.relative_mean_square_error, modulated.relative_mean_square_error,
-                    with.relative_mean_square_error, 100.0 * (with.mean_a / with.mean_b - 1.0));
+                    with.relative_mean_square_error, 100.0 * (with.mean_a / with.mean_b - 1.0),
+                    100.0 * (without.mean_a / without.mean_b - 1.0));
         EXPECT_LE(with.relative_mean_square_error, 0.2 * without.relative_mean_square_error);
         EXPECT_LT(modulated.relative_mean_square_error, without.relative_mean_square_error);
         EXPECT_NEAR(with.mean_a / with.mean_b, 1.0, 0.04);

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace sunfleck::tests {
 namespace {
@@ -80,6 +81,13 @@ std::vector<vec3> summed_light(GpuWorld& world, std::span<const gi::PixelLight> 
             const float arriving = glm::dot(side * point.shading_normal, way) / distance;
             if (arriving <= 0.0f || side * glm::dot(point.geometric_normal, way) <= 0.0f)
                 continue;
+            if (light.exponent <= 1.0f) { // softened by 0.6 of the width of a square of its area
+                const float soft = 0.36f * light.area * 2.0f / clamp_scale, along = -glm::dot(light.normal, way);
+                if (along > 0.0f)
+                    sums[i] += light.flux / pi * std::sqrt(along * along + soft) * arriving * distance /
+                               ((squared + soft) * (squared + soft));
+                continue;
+            }
             // A lobe widens where it is no wider than the surface that it stands for.
             const float reach =
                 light.exponent > 1.0f ? std::sqrt(0.5f * (light.exponent + 1.0f) * light.area / pi) : 0.0f;
@@ -130,7 +138,7 @@ TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllPixelLights) {
 // A ring of polished metal: lobes of thousands, and a curved surface whose lights shine past each other.
 TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllLobes) {
     GpuWorld world(assets::make_ring, "view");
-    gi::Settings settings = alone(100).with("glossy_splats", "500");
+    gi::Settings settings = alone(100).with("glossy_splats", "500").with("splat_footprints", "off");
     world.set(settings);
     const io::Picture picture = world.picture();
     const auto all = lights(world).lights();
@@ -181,10 +189,11 @@ TEST_F(SplatTechnique, InAnEmptyRoomTheFirstBounceHasItsClosedFormMean) {
 
 // Each pair of path and motion alone, with the samples of the whole.
 TEST_F(SplatTechnique, CellsAddUpToThePicture) {
-    GpuWorld world(assets::make_arena, "view");
-    world.request.width = 96;
-    world.request.height = 72;
+    // Pixel lights that are followed depend on the frames before: each picture has a world of its own.
     const auto picture = [&](const gi::Settings& settings) {
+        GpuWorld world(assets::make_arena, "view");
+        world.request.width = 96;
+        world.request.height = 72;
         world.set(settings);
         world.request.step = 74;
         world.render();
@@ -279,6 +288,41 @@ TEST_F(SplatTechnique, AThousandLampsShareOneBudget) {
         flux += double(light.flux.x) * std::pow(double(world.renderer->space().unit), 2.0);
     const double expected = 4.0 * 4.0 * 3.14159265 * 0.6;
     EXPECT_NEAR(flux, expected, 0.02 * expected);
+}
+
+// 56 lamps are shut up in the boxes of the gallery, 8 are in the hall. Whoever is seen gets the lights.
+TEST_F(SplatTechnique, LampsInShutRoomsGetHardlyAnyLights) {
+    GpuWorld world;
+    assets::SceneBuilder scene(world.renderer->registry(), world.renderer->meshes());
+    assets::make_arena(scene);
+    const auto lamp = [&](vec3 place) { scene.mover(scene.point_light("one of many", place, vec3(5.0f)), {}); };
+    for (int i = 0; i < 56; ++i)
+        lamp(i < 40 ? vec3(-7.4f + 0.37f * float(i), 0.8f, -6.7f) : vec3(-6.7f, 0.8f, -5.0f + 0.5f * float(i - 40)));
+    for (int i = 0; i < 8; ++i)
+        lamp(vec3(-3.5f + float(i), 3.0f, 4.0f));
+    world.finish("bench_1");
+    gi::Settings settings = alone(512);
+    settings.lights = 256;
+    settings.with("splat_rays", "65536"); // so that each lamp sees enough texels
+    std::map<std::string, double> shut_share;
+    for (const char* importance : {"flux", "contribution"}) {
+        world.set(gi::Settings(settings).with("splat_importance", importance));
+        expect_finite(world.picture());
+        double shut = 0.0;
+        const auto all = lights(world).lights();
+        for (const gi::PixelLight& light : all) {
+            const vec3 at = light.position * world.renderer->space().unit + world.renderer->space().origin;
+            shut += at.y < 1.599f && ((at.z < -5.401f && std::abs(at.x) < 7.999f) ||
+                                      (at.x < -5.401f && at.x > -7.999f && at.z < 3.999f))
+                        ? 1.0
+                        : 0.0;
+        }
+        EXPECT_GT(all.size(), 400u);
+        shut_share[importance] = shut / double(all.size());
+        std::printf("%s: %.3f of the lights in shut rooms\n", importance, shut_share[importance]);
+    }
+    EXPECT_LT(shut_share["contribution"], 0.02);
+    EXPECT_GT(shut_share["flux"], 0.2);
 }
 
 } // namespace
