@@ -106,6 +106,21 @@ std::string overlays_section() {
     return text;
 }
 
+std::string listings_section() {
+    std::string text = heading("Listings", "Tables of what the lighting keeps, in the editor's Browser panel.",
+                               {"listing", "what it is", "columns", "what can be done to a row"});
+    const auto names = [](const auto& parts) {
+        std::string joined;
+        for (const auto& part : parts)
+            joined += (joined.empty() ? "" : ", ") + std::string(part.name);
+        return joined;
+    };
+    for (const Listing* listing : all_listings())
+        text += row({"`" + std::string(listing->name) + "`", std::string(listing->tooltip), names(listing->columns),
+                     names(listing->actions)});
+    return text;
+}
+
 } // namespace
 
 std::string settings_reference() {
@@ -116,7 +131,8 @@ std::string settings_reference() {
     // Not among the Settings of a System: sensors follow the fixed step, not frames.
     const SensorSettings sensors;
     text += settings_section({&SensorSettings::description(), &sensors});
-    return text + techniques_section() + sources_section() + counters_section() + views_section() + overlays_section();
+    return text + techniques_section() + sources_section() + counters_section() + views_section() + overlays_section() +
+           listings_section();
 }
 
 } // namespace sunfleck::gi

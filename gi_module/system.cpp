@@ -1,5 +1,8 @@
 #include "gi_module/system.h"
 
+#include "gi_module/inspection/visibility_listing.h"
+#include "gi_module/light_part_views.h"
+
 #include <string>
 #include <utility>
 
@@ -31,6 +34,7 @@ Result<std::unique_ptr<System>> System::create(gpu::Device& device, gpu::Pipelin
     }
     system->restarts_.resize(system->techniques_.size());
     SUNFLECK_ASSIGN(system->plan_, system->settings_.light_plan());
+    system->shown_ = system->plan_;
     return system;
 }
 
@@ -39,6 +43,7 @@ System::~System() = default;
 Status System::set_settings(const Settings& settings) {
     SUNFLECK_TRY(settings.validate());
     SUNFLECK_ASSIGN(plan_, settings.light_plan());
+    shown_ = plan_;
     Settings known = settings_; // the budget of a frame asks for nothing to be made again
     known.map_budget = settings.map_budget;
     if (known != settings)
@@ -115,8 +120,14 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
 // A view is its owner's while that lights something.
 Status System::find_view() {
     view_ = nullptr;
+    shown_ = plan_;
     if (input_.view.empty())
         return {};
+    for (const DebugView& view : light_part_views())
+        if (view.name == input_.view) {
+            shown_ = plan_.part(cells_of(view));
+            return {};
+        }
     for (std::size_t i = 0; i < techniques_.size(); ++i)
         for (const DebugView& view : techniques()[i].views)
             if (view.name == input_.view) {
@@ -164,6 +175,44 @@ Status System::draw_overlay(std::string_view name, OverlayLines& lines) {
     return Error{"there is no overlay '" + std::string(name) + "'"};
 }
 
+Result<ListingContent> System::fill_listing(std::string_view name, const ListedPlace* place) {
+    const auto named = [&](const Listing& listing) { return listing.name == name; };
+    const auto lacks_place = [&](const Listing& listing) { return listing.of_place && place == nullptr; };
+    const ListingContent no_place{"Choose a place in the picture", {}};
+    for (const Listing& listing : ShadowService::listings())
+        if (named(listing))
+            return shadows_->list_maps(samples_);
+    for (const Listing& listing : visibility_listings())
+        if (named(listing))
+            return lacks_place(listing)
+                       ? no_place
+                       : list_visibility(services().visibility, samples_, place->entity, place->point.on_mover,
+                                         place->point.position, place->point.geometric_normal);
+    for (std::size_t i = 0; i < techniques_.size(); ++i)
+        for (const Listing& listing : techniques()[i].listings)
+            if (named(listing)) {
+                if (!plan_.uses(std::int32_t(i)))
+                    return ListingContent{std::string(techniques()[i].name) + " lights nothing here", {}};
+                return lacks_place(listing) ? no_place : techniques_[i]->fill_listing(listing, services(), place);
+            }
+    return Error{"there is no listing '" + std::string(name) + "'"};
+}
+
+Status System::act(std::string_view name, std::uint32_t action, std::uint32_t key, bool on) {
+    for (const Listing& listing : ShadowService::listings())
+        if (listing.name == name) {
+            shadows_->act(action, key, on);
+            return {};
+        }
+    for (std::size_t i = 0; i < techniques_.size(); ++i)
+        for (const Listing& listing : techniques()[i].listings)
+            if (listing.name == name) {
+                techniques_[i]->act(listing, action, key, on);
+                return {};
+            }
+    return Error{"nothing can be done to rows of '" + std::string(name) + "'"};
+}
+
 void System::update_samples(const SceneView& scene) {
     const StageTimer timer(cpu_times_, "light samples");
     samples_.update(scene, settings_.sample_request(plan_), settings_, restart_, input_.keep_samples);
@@ -202,7 +251,7 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
 Status System::update_techniques(const SceneView& scene) {
     Services shared = services();
     for (std::size_t i = 0; i < techniques_.size(); ++i)
-        if (const CellSet cells = plan_.lit_by(std::int32_t(i)); cells.any()) {
+        if (const CellSet cells = shown_.lit_by(std::int32_t(i)); cells.any()) {
             shared.restart = std::exchange(restarts_[i], std::uint8_t(0)) != 0;
             SUNFLECK_TRY(techniques_[i]->update(scene, shared, cells));
         }
@@ -228,7 +277,7 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
     LightTarget target{gpu_scene, g_buffer, camera, output};
     target.view = view_;
     target.specular = specular;
-    SUNFLECK_TRY(composer_->add_passes(graph, techniques_, plan_, shared, target));
+    SUNFLECK_TRY(composer_->add_passes(graph, techniques_, shown_, shared, target));
     graph.when_executed([this] { recorded_ = true; });
     make_report();
     return {};
@@ -242,7 +291,7 @@ void System::make_report() {
         visibility_.report(report_);
     composer_->report(report_);
     for (std::size_t i = 0; i < techniques_.size(); ++i)
-        if (plan_.uses(std::int32_t(i)))
+        if (shown_.uses(std::int32_t(i)))
             techniques_[i]->report(report_);
 }
 

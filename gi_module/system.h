@@ -50,8 +50,8 @@ public:
     // not wanted; with it, every pixel is written, zero where nothing is glossy.
     Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const GBufferInput& g_buffer,
                       const gpu::UploadSlice& camera, gpu::ResourceId output, gpu::ResourceId specular = {});
-    // Whether a technique owns specular light.
-    bool lights_specular() const { return plan_.lights_any(~all_diffuse_cells()); }
+    // Whether a technique owns specular light; after an update: and it is shown.
+    bool lights_specular() const { return shown_.lights_any(~all_diffuse_cells()); }
 
     // Lights that another system has seen change (SampleSet::varying_lights): their next change is none to remember.
     void expect_varying(const std::set<ecs::Entity>& lights) { samples_.expect_varying(lights); }
@@ -67,6 +67,11 @@ public:
     std::vector<ExplainedLight> explain(const ReceiverPoint& point, const raytrace::RayScene& rays) const;
     // Draws one of all_overlays(), by name; nothing while its owner lights nothing. An error if there is none.
     Status draw_overlay(std::string_view name, OverlayLines& lines);
+    // Fills one of all_listings(), by name, as things are after the last update. `place`, in the space that is lit: of
+    // those that are of one; null: none is chosen. An error if there is no such listing.
+    Result<ListingContent> fill_listing(std::string_view name, const ListedPlace* place);
+    // One of the listing's actions, by its index, for a row of it: takes effect at the next update.
+    Status act(std::string_view name, std::uint32_t action, std::uint32_t key, bool on);
 
     // Numbers of the last frame; all_counters() says which there are.
     const Report& counters() const { return report_; }
@@ -99,6 +104,7 @@ private:
     gpu::FrameResources resources_;
     Settings settings_;
     LightPlan plan_;
+    LightPlan shown_; // the same, or the part of the light that a view shows
     SampleSet samples_;
     std::unique_ptr<ShadowService> shadows_;
     SceneVisibility visibility_;

@@ -1,5 +1,7 @@
 #include "gi_module/technique.h"
 
+#include "gi_module/inspection/visibility_listing.h"
+#include "gi_module/light_part_views.h"
 #include "gi_module/technique_list.h"
 #include "gi_module/visibility/scene_visibility.h"
 
@@ -22,6 +24,12 @@ std::optional<std::vector<LightShare>> Technique::explain(const PointQuestion&) 
 }
 
 void Technique::draw_overlay(const Overlay&, const Services&, OverlayLines&) const {}
+
+ListingContent Technique::fill_listing(const Listing&, const Services&, const ListedPlace*) const {
+    return {};
+}
+
+void Technique::act(const Listing&, std::uint32_t, std::uint32_t, bool) {}
 
 std::span<const TechniqueEntry> techniques() {
     return all_techniques();
@@ -48,6 +56,8 @@ std::vector<const Counter*> all_counters() {
 
 std::vector<const DebugView*> debug_views() {
     std::vector<const DebugView*> result;
+    for (const DebugView& view : light_part_views())
+        result.push_back(&view);
     for (const TechniqueEntry& technique : techniques())
         for (const DebugView& view : technique.views)
             result.push_back(&view);
@@ -63,6 +73,19 @@ std::vector<const Overlay*> all_overlays() {
     add(shared_overlays());
     for (const TechniqueEntry& technique : techniques())
         add(technique.overlays);
+    return result;
+}
+
+std::vector<const Listing*> all_listings() {
+    std::vector<const Listing*> result;
+    const auto add = [&](std::span<const Listing> listings) {
+        for (const Listing& listing : listings)
+            result.push_back(&listing);
+    };
+    add(ShadowService::listings());
+    add(visibility_listings());
+    for (const TechniqueEntry& technique : techniques())
+        add(technique.listings);
     return result;
 }
 

@@ -17,6 +17,7 @@
 #include "gi_module/shadows/shadow_service.h"
 #include "gi_module/transport/g_buffer.h"
 #include "gi_module/transport/light_plan.h"
+#include "gi_module/transport/listing.h"
 #include "gi_module/transport/report.h"
 
 #include <filesystem>
@@ -101,6 +102,12 @@ struct LightTarget {
     gpu::ResourceId specular{};
 };
 
+// The place that a listing is asked about.
+struct ListedPlace {
+    ecs::Entity entity; // whose surface it is
+    ReceiverPoint point;
+};
+
 class Technique {
 public:
     virtual ~Technique() = default;
@@ -117,6 +124,11 @@ public:
     virtual std::optional<std::vector<LightShare>> explain(const PointQuestion& question) const;
     // Draws one of the technique's overlays, as things are after the last update.
     virtual void draw_overlay(const Overlay& overlay, const Services& services, OverlayLines& lines) const;
+    // Fills one of the technique's tables, as things are after the last update. `place`: of those that are of one.
+    virtual ListingContent fill_listing(const Listing& listing, const Services& services,
+                                        const ListedPlace* place) const;
+    // One of the listing's actions, by its index, for a row of it.
+    virtual void act(const Listing& listing, std::uint32_t action, std::uint32_t key, bool on);
 };
 
 struct TechniqueEntry {
@@ -145,6 +157,7 @@ struct TechniqueEntry {
     std::span<const Counter> counters{};
     std::span<const DebugView> views{};
     std::span<const Overlay> overlays{};
+    std::span<const Listing> listings{};
     std::span<const gpu::EmbeddedShader> (*shaders)() = nullptr;
     Result<std::unique_ptr<Technique>> (*create)(gpu::Device& device, gpu::PipelineStore& pipelines) = nullptr;
 };
@@ -159,5 +172,6 @@ void add_technique(const TechniqueEntry& entry);
 std::vector<const Counter*> all_counters();
 std::vector<const DebugView*> debug_views();
 std::vector<const Overlay*> all_overlays();
+std::vector<const Listing*> all_listings();
 
 } // namespace sunfleck::gi

@@ -45,41 +45,59 @@ void find_samples(gi::System& lighting, const gi::ReceiverPoint& point, PixelRep
     }
 }
 
-} // namespace
+struct Seen {
+    raytrace::SurfacePoint surface;
+    gi::ReceiverPoint point;
+    float distance = 0.0f; // along the ray, in the space that is lit
+    bool moves = false;
+};
 
-PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction) {
-    const scene::SceneSpace& space = renderer.space();
+// What is invisible from behind lets the eye through, as in the picture.
+std::optional<Seen> first_surface(SceneRenderer& renderer, vec3 origin, vec3 direction) {
     const raytrace::RayScene& rays = renderer.rays();
-    PixelReport report;
-    raytrace::Ray ray{space.point(origin), glm::normalize(direction)};
-    // What is invisible from behind lets the eye through, as in the picture.
+    raytrace::Ray ray{renderer.space().point(origin), glm::normalize(direction)};
     constexpr int most_layers = 64;
     for (int layer = 0; layer < most_layers; ++layer) {
         const auto hit = rays.closest_hit(ray);
         if (!hit)
-            return report;
+            return std::nullopt;
         const raytrace::SurfacePoint surface = rays.surface(ray, *hit);
         const bool front = glm::dot(surface.geometric_normal, ray.direction) < 0.0f;
-        if (!front && !surface.material.double_sided) {
-            ray.minimum = hit->distance + 2.0f * surface.offset;
-            continue;
+        if (front || surface.material.double_sided) {
+            const bool moves = !scene::is_static(renderer.registry(), surface.entity);
+            return Seen{surface, gi::ReceiverPoint::of(surface, ray.direction, moves), hit->distance, moves};
         }
-        report.moves = !scene::is_static(renderer.registry(), surface.entity);
-        const gi::ReceiverPoint point = gi::ReceiverPoint::of(surface, ray.direction, report.moves);
-        report.entity = surface.entity;
-        report.position = point.position * space.unit + space.origin;
-        report.normal = point.normal;
-        report.geometric_normal = point.geometric_normal;
-        report.distance = hit->distance * space.unit;
-        report.material = surface.material;
-        report.light = renderer.lighting().explain(point, rays);
-        find_samples(renderer.lighting(), point, report);
-        for (gi::ExplainedLight& part : report.light)
-            for (gi::LightShare& share : part.shares)
-                if (!share.parallel)
-                    share.position = share.position * space.unit + space.origin;
-        return report;
+        ray.minimum = hit->distance + 2.0f * surface.offset;
     }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::optional<gi::ListedPlace> place_in_view(SceneRenderer& renderer, vec3 origin, vec3 direction) {
+    const std::optional<Seen> seen = first_surface(renderer, origin, direction);
+    return seen ? std::optional(gi::ListedPlace{seen->surface.entity, seen->point}) : std::nullopt;
+}
+
+PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction) {
+    const scene::SceneSpace& space = renderer.space();
+    PixelReport report;
+    const std::optional<Seen> seen = first_surface(renderer, origin, direction);
+    if (!seen)
+        return report;
+    report.moves = seen->moves;
+    report.entity = seen->surface.entity;
+    report.position = seen->point.position * space.unit + space.origin;
+    report.normal = seen->point.normal;
+    report.geometric_normal = seen->point.geometric_normal;
+    report.distance = seen->distance * space.unit;
+    report.material = seen->surface.material;
+    report.light = renderer.lighting().explain(seen->point, renderer.rays());
+    find_samples(renderer.lighting(), seen->point, report);
+    for (gi::ExplainedLight& part : report.light)
+        for (gi::LightShare& share : part.shares)
+            if (!share.parallel)
+                share.position = share.position * space.unit + space.origin;
     return report;
 }
 

@@ -39,6 +39,9 @@ struct PixelReport {
     std::vector<Value> material_values() const;
 };
 
+// The same place, for gi::System::fill_listing; none: there is no surface.
+std::optional<gi::ListedPlace> place_in_view(SceneRenderer& renderer, vec3 origin, vec3 direction);
+
 // What the ray meets first, as of the renderer's last update. `direction`: of any length.
 PixelReport report_pixel(SceneRenderer& renderer, vec3 origin, vec3 direction);
 

@@ -90,6 +90,14 @@ SHARED_CONSTANT uint show_staleness = 4u;  // mean age of the shadow maps needed
 SHARED_CONSTANT uint show_light_maps = 5u; // W/m2
 // Green: baked light, plus blue where movers shadow it; red: lit by all samples. Brightness follows the light.
 SHARED_CONSTANT uint show_baked = 6u;
+SHARED_CONSTANT uint show_patches = 7u; // a colour for each node of the visibility database
+// Shares of all samples, cyan (none) over green and yellow to red (all): with a shadow test; fully blocked; that may
+// light the node; that a mover may shadow; that static geometry may shadow.
+SHARED_CONSTANT uint show_shadow_tests = 8u;
+SHARED_CONSTANT uint show_hidden = 9u;
+SHARED_CONSTANT uint show_lighting = 10u;
+SHARED_CONSTANT uint show_mover_shadows = 11u;
+SHARED_CONSTANT uint show_static_shadows = 12u;
 
 SHARED_END
 #ifdef __cplusplus

@@ -28,6 +28,7 @@ constexpr Counter memory{"many_light", "B", memory_group, "Lists, sums, light ma
 constexpr Counter technique_counters[] = {map_updates,   map_texels,          baked_updates, baked_waiting,
                                           render_passes, render_passes_alone, pass_fill,     memory};
 
+constexpr std::string_view samples_legend = "share of all samples: cyan none, green a quarter, yellow half, red all";
 constexpr DebugView technique_views[] = {
     {"tiles", "Length of each tile's lists of light samples",
      "red: samples with a shadow test, green: samples without, as shares of all", "", "many-light", shared::show_tiles},
@@ -36,11 +37,23 @@ constexpr DebugView technique_views[] = {
     {"visibility", "What the visibility database knows of each surface patch",
      "red: samples that are partly blocked, green: free, blue: fully blocked", "", "many-light",
      shared::show_visibility, true},
-    {"staleness", "Age of the shadow maps that a surface needs", "blue: up to date, red: eight frames old", "frames",
+    {"staleness", "Age of the shadow maps that a surface needs", "cyan: up to date, red: eight frames old", "frames",
      "many-light", shared::show_staleness, true},
     {"light_maps", "Unshadowed light in light maps", "irradiance", "W/m2", "many-light", shared::show_light_maps, true},
     {"baked", "Where light is baked", "green: baked, with blue where movers change it; red: lit by all samples", "",
-     "many-light", shared::show_baked, true}};
+     "many-light", shared::show_baked, true},
+    {"patches", "Surface patches of the visibility database, and movers", "a colour for each", "", "visibility",
+     shared::show_patches, true},
+    {"lighting_samples", "Light samples that a patch may see at all", samples_legend, "", "visibility",
+     shared::show_lighting, true},
+    {"hidden_samples", "Light samples that are fully blocked: they cost a patch nothing", samples_legend, "",
+     "visibility", shared::show_hidden, true},
+    {"shadow_tests", "Light samples that need a shadow test: what a patch costs", samples_legend, "", "visibility",
+     shared::show_shadow_tests, true},
+    {"static_shadows", "Light samples that what stands still may shadow: baked light holds these shadows",
+     samples_legend, "", "visibility", shared::show_static_shadows, true},
+    {"mover_shadows", "Light samples that movers may shadow: what is left to do where light is baked", samples_legend,
+     "", "visibility", shared::show_mover_shadows, true}};
 
 } // namespace
 

@@ -23,11 +23,17 @@ vec3 colour_of(uint number) {
     return vec3(h & 255u, (h >> 8) & 255u, (h >> 16) & 255u) / 255.0;
 }
 
+uint sample_count() { return min(uint(ages.length()), constants.state_words * pairs_per_word); }
+
+uint state_of(uint node, uint i) {
+    return (rows[node * constants.words_per_row + i / pairs_per_word] >> (i % pairs_per_word * 2u)) & 3u;
+}
+
 // Fractions of the samples. Red: shadow test needed; green: not needed; blue: blocked.
 vec3 visibility(uint node) {
     vec3 count = vec3(0.0);
-    for (uint i = 0; i < constants.list_stride; ++i) {
-        const uint state = (rows[node * constants.words_per_row + i / pairs_per_word] >> (i % pairs_per_word * 2u)) & 3u;
+    for (uint i = 0; i < sample_count(); ++i) {
+        const uint state = state_of(node, i);
         count += vec3(state == pair_partial, state == pair_none, state == pair_full);
     }
     const float all = max(count.r + count.g + count.b, 1.0);
@@ -37,9 +43,8 @@ vec3 visibility(uint node) {
 // Mean age of the shadow maps that are needed here.
 vec3 staleness(uint node) {
     float age = 0.0, tested = 0.0;
-    for (uint i = 0; i < constants.list_stride; ++i) {
-        const uint state = (rows[node * constants.words_per_row + i / pairs_per_word] >> (i % pairs_per_word * 2u)) & 3u;
-        if (state == pair_partial) {
+    for (uint i = 0; i < sample_count(); ++i) {
+        if (state_of(node, i) == pair_partial) {
             age += min(float(ages[i]), 8.0);
             tested += 1.0;
         }
@@ -47,14 +52,34 @@ vec3 staleness(uint node) {
     return heat(tested > 0.0 ? age / (tested * 8.0) : 0.0);
 }
 
+// Samples whose bit is set in one of the node's two rows of flags.
+uint flagged(uint node, uint row) {
+    uint count = 0u;
+    const uint first = node * constants.words_per_row + constants.state_words + row * constants.flag_words;
+    for (uint i = 0; i < constants.flag_words; ++i)
+        count += uint(bitCount(rows[first + i]));
+    return count;
+}
+
+vec3 share_of_samples(uint node) {
+    uint count = 0u;
+    if (view == show_mover_shadows || view == show_static_shadows)
+        count = flagged(node, view == show_mover_shadows ? 0u : 1u);
+    else
+        for (uint i = 0; i < sample_count(); ++i) {
+            const uint state = state_of(node, i);
+            const bool counts = view == show_hidden          ? state == pair_full
+                                : view == show_shadow_tests ? state == pair_partial
+                                                            : state == pair_partial || state == pair_none;
+            count += uint(counts);
+        }
+    return heat(float(count) / max(float(sample_count()), 1.0));
+}
+
 vec3 baked(uint node) {
     if ((node & node_baked) == 0u)
         return vec3(1.0, 0.15, 0.1);
-    uint movers = 0u;
-    const uint first = (node & ~node_baked) * constants.words_per_row;
-    for (uint i = 0; i < constants.flag_words; ++i)
-        movers += uint(bitCount(rows[first + constants.state_words + i]));
-    return vec3(0.1, 1.0, 4.0 * float(movers) / float(constants.list_stride));
+    return vec3(0.1, 1.0, 4.0 * float(flagged(node & ~node_baked, 0u)) / max(float(sample_count()), 1.0));
 }
 
 void main() {
@@ -82,7 +107,11 @@ void main() {
         colour = node == no_node ? vec3(0.1) : baked(node);
         colour *= 0.3 + 0.7 * clamp(sums[entry].g / (sums[entry].g + 1.0), 0.0, 1.0);
     } else if (node != no_node) {
-        colour = view == show_visibility ? visibility(node & node_mask) : staleness(node & node_mask);
+        const uint known = node & node_mask;
+        colour = view == show_visibility  ? visibility(known)
+                 : view == show_staleness ? staleness(known)
+                 : view == show_patches   ? colour_of(known)
+                                          : share_of_samples(known);
     }
     imageStore(output_image, ivec2(pixel), vec4(colour, 1.0));
 }

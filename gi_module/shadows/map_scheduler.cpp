@@ -34,6 +34,7 @@ void MapScheduler::reset(std::size_t count) {
     stale_since_.assign(count, now_.value_or(0.0));
     static_stale_.assign(count, 1);
     undefined_.assign(count, 1);
+    pinned_.assign(count, 0);
     lags_.assign(count, 0.0f);
     done_.clear();
 }
@@ -65,11 +66,14 @@ std::size_t MapScheduler::unusable() const {
 }
 
 struct MapScheduler::Rank {
+    bool pinned;
     bool unusable; // nothing in the map can be relied on
     bool overdue;
     float weight;
 
     bool goes_before(const Rank& other) const {
+        if (pinned != other.pinned)
+            return pinned;
         if (unusable != other.unusable)
             return unusable;
         return overdue != other.overdue ? overdue : weight > other.weight;
@@ -83,9 +87,17 @@ std::vector<MapScheduler::Rank> MapScheduler::ranks_of(std::span<const std::uint
     for (const std::uint32_t i : stale) {
         const float age = float(age_[i]);
         const bool late = age_[i] >= overdue;
-        ranks.push_back({is_static_stale(i), late, late ? age : age * weights[i]});
+        ranks.push_back({is_pinned(i), is_static_stale(i), late, late ? age : age * weights[i]});
     }
     return ranks;
+}
+
+std::vector<float> MapScheduler::priorities(std::span<const LightSample> samples, MapPriority priority,
+                                            std::span<const float> contributions) const {
+    std::vector<float> result = weights_of(samples, priority, contributions);
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] *= float(age_[i]);
+    return result;
 }
 
 std::vector<std::uint32_t> MapScheduler::choose(std::span<const LightSample> samples, MapPriority priority,

@@ -36,6 +36,9 @@ public:
         mark_static(sample);
         undefined_[sample] = 1;
     }
+    // A pinned map goes before all others while it is stale. Until reset().
+    void pin(std::uint32_t sample, bool on) { pinned_[sample] = on ? 1 : 0; }
+    bool is_pinned(std::uint32_t sample) const { return pinned_[sample] != 0; }
     // Nobody reads the map: it is not drawn, whatever it holds, until it is marked again.
     void set_aside(std::uint32_t sample) {
         age_[sample] = 0;
@@ -50,6 +53,9 @@ public:
     // first. `contributions`: by sample, for MapPriority::contribution (map_contributions.h).
     std::vector<std::uint32_t> choose(std::span<const LightSample> samples, MapPriority priority, std::uint32_t budget,
                                       std::span<const float> contributions = {}) const;
+    // By sample: what decides among maps that are stale, and neither pinned, unusable nor overdue; 0 for fresh ones.
+    std::vector<float> priorities(std::span<const LightSample> samples, MapPriority priority,
+                                  std::span<const float> contributions) const;
     // Of those, and beyond the budget, the maps that show and would otherwise be stale for too long; ascending. They
     // show if they decide more than a thousandth of what all stale maps together do.
     std::vector<std::uint32_t> with_late_ones(std::vector<std::uint32_t> chosen,
@@ -85,6 +91,7 @@ private:
     std::optional<double> now_;
     std::vector<std::uint8_t> static_stale_;
     std::vector<std::uint8_t> undefined_; // 1: the map's content is of another sample, or was never written
+    std::vector<std::uint8_t> pinned_;
     std::vector<float> lags_;
     struct Done {
         std::uint32_t sample, age;

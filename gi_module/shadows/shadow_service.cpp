@@ -85,6 +85,8 @@ void ShadowService::follow(const SampleSet& samples, bool static_changed) {
 
 void ShadowService::schedule(const SampleSet& samples, const ScheduleInput& input) {
     database_ = input.database;
+    gpu_scene_ = &input.gpu_scene;
+    view_projection_ = input.view_projection;
     scheduler_.advance(input.milliseconds);
     if (database_ != nullptr)
         mark_by_visibility(samples, input);

@@ -11,6 +11,7 @@
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/shadows/shadow_settings.h"
 #include "gi_module/transport/light_plan.h"
+#include "gi_module/transport/listing.h"
 #include "gi_module/visibility/visibility_database.h"
 
 namespace sunfleck::gi {
@@ -83,6 +84,12 @@ public:
     bool simplifies_movers() const { return policy_.database && !policy_.full_detail && settings_.map_detail; }
     MapState state(const SampleSet& samples, std::uint32_t sample) const;
 
+    // For tools: the maps as a table, as they are after the last update, and what is asked of one of them (`action`: of
+    // its listing), for the next one.
+    static std::span<const Listing> listings();
+    ListingContent list_maps(const SampleSet& samples) const;
+    void act(std::uint32_t action, std::uint32_t sample, bool on);
+
     static std::span<const Counter> counters();
     void report(Report& report) const;
 
@@ -90,6 +97,7 @@ private:
     void set_unread_aside(const SampleSet& samples, CellSet read);
     void mark_by_visibility(const SampleSet& samples, const ScheduleInput& input);
     void mark_by_bounds(const SampleSet& samples, const scene::GpuScene& gpu_scene);
+    std::vector<float> priorities(const SampleSet& samples) const;
     std::uint32_t budget_of(const ScheduleInput& input) const;
     std::vector<float> contributions(const SampleSet& samples, const ScheduleInput& input, std::uint32_t budget) const;
     std::vector<ShadowRequest> requests(const SampleSet& samples, std::span<const std::uint32_t> drawn) const;
@@ -102,7 +110,10 @@ private:
     MapBudget budget_;
     ShadowSettings settings_;
     MapPolicy policy_;
-    const VisibilityDatabase* database_ = nullptr; // of this frame
+    // Of this frame.
+    const VisibilityDatabase* database_ = nullptr;
+    const scene::GpuScene* gpu_scene_ = nullptr;
+    std::optional<mat4> view_projection_;
     std::vector<std::uint32_t> to_draw_;
     std::vector<std::uint8_t> unread_; // by sample: 1 if nobody reads its map
     std::uint64_t sample_generation_ = 0;

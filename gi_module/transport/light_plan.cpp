@@ -182,6 +182,14 @@ bool LightPlan::shares_movers(std::int32_t technique) const {
     return false;
 }
 
+LightPlan LightPlan::part(CellSet cells) const {
+    LightPlan result = *this;
+    for (std::size_t i = 0; i < light_cell_count; ++i)
+        if (!cells[i])
+            result.owner_[i] = result.fallback_[i] = nobody;
+    return result;
+}
+
 bool LightPlan::lights_any(CellSet cells) const {
     for (std::size_t i = 0; i < light_cell_count; ++i)
         if (cells[i] && owner_[i] != nobody)

@@ -118,6 +118,8 @@ public:
     // Whether any of these cells has an owner.
     bool lights_any(CellSet cells) const;
 
+    // The same for these cells; all others are nobody's.
+    LightPlan part(CellSet cells) const;
     bool operator==(const LightPlan&) const = default;
 
 private:
