@@ -36,6 +36,7 @@ std::unique_ptr<Panel> make_lighting();
 std::unique_ptr<Panel> make_pixel();
 std::unique_ptr<Panel> make_views();
 std::unique_ptr<Panel> make_counters();
+std::unique_ptr<Panel> make_browser();
 std::unique_ptr<Panel> make_compare();
 std::unique_ptr<Panel> make_profile();
 std::unique_ptr<Panel> make_messages();
@@ -57,6 +58,7 @@ private:
     void click(Session& session);
     void overlay(Session& session);
     void toolbar(Session& session);
+    static void play_buttons(Session& session);
     bool split(Session& session);
     Entity icon_at(Session& session, vec2 place) const;
     Gizmo gizmo_;

@@ -10,6 +10,8 @@ constexpr PanelEntry entries[] = {
     {"Pixel", "A place of the picture: its surface, and which light gives it how much", Dock::right, make_pixel},
     {"Views", "What the viewport shows: the picture, or false colours", Dock::bottom, make_views},
     {"Counters", "What the lighting counts in a frame", Dock::bottom, make_counters},
+    {"Browser", "What the lighting keeps, as tables: shadow maps, visibility, and what techniques add", Dock::bottom,
+     make_browser},
     {"Compare", "Against the path tracer or other settings; presets", Dock::bottom, make_compare},
     {"Profile", "What frames take: stages on the CPU, passes on the GPU", Dock::bottom, make_profile},
     {"History", "What was done; click an entry to go back to it", Dock::bottom, make_history},

@@ -60,12 +60,24 @@ std::string bounces_text(std::uint32_t bounce) {
     return bounce == 0 ? "straight" : bounce == 1 ? "1 bounce" : std::to_string(bounce) + " bounces";
 }
 
+// A table of names and values, both as long as they need be.
+bool begin_values(const char* name) {
+    if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchSame))
+        return false;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1.0f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 2.2f);
+    return true;
+}
+
 void row(const std::string& name, const std::string& value, std::string_view tip = {}) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ui::label(name, tip, true);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("%s", name.c_str());
+    ui::tooltip(tip);
     ImGui::TableNextColumn();
-    ui::label(value);
+    ImGui::TextUnformatted(value.c_str());
+    ImGui::PopTextWrapPos();
     ui::note(name, value);
 }
 
@@ -123,7 +135,7 @@ void Pixel::surface(Session& session, const viewer::PixelReport& report) {
     ui::note("surface", name);
     ImGui::SameLine();
     ImGui::TextDisabled(report.moves ? "moves" : "stands still");
-    if (!ImGui::BeginTable("surface", 2, ImGuiTableFlags_SizingStretchProp))
+    if (!begin_values("surface"))
         return;
     row("position", vector_text(report.position) + " m");
     row("normal", vector_text(report.normal), "That light is received by");
@@ -131,7 +143,7 @@ void Pixel::surface(Session& session, const viewer::PixelReport& report) {
     ImGui::EndTable();
     if (!ImGui::TreeNode("Material at this place"))
         return;
-    if (ImGui::BeginTable("material", 2, ImGuiTableFlags_SizingStretchProp)) {
+    if (begin_values("material")) {
         for (const viewer::PixelReport::Value& value : report.material_values())
             row(readable_name(value.name), value.value + (value.unit.empty() ? "" : " " + value.unit));
         ImGui::EndTable();
@@ -141,7 +153,7 @@ void Pixel::surface(Session& session, const viewer::PixelReport& report) {
 
 void Pixel::summary(Session& session, const InspectedPixel& pixel) {
     ui::heading("Light that arrives");
-    if (!ImGui::BeginTable("light", 2, ImGuiTableFlags_SizingStretchProp))
+    if (!begin_values("light"))
         return;
     const vec3 sum = pixel.report.irradiance();
     row("in the picture", light_text(pixel.shown), "Irradiance of this pixel, as the techniques have computed it");

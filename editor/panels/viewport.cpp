@@ -219,6 +219,21 @@ bool Viewport::split(Session& session) {
 }
 
 // Switches in the picture's corner.
+void Viewport::play_buttons(Session& session) {
+    const auto button = [&](const char* name, const char* command) {
+        Command& known = *session.commands->find(command);
+        if (ui::button(name, known.tooltip))
+            session.commands->run(known, session);
+    };
+    button(session.view.playing ? "Stop##play" : "Play##play", "View/Play");
+    if (!session.view.playing)
+        return;
+    ImGui::SameLine(0.0f, 2.0f);
+    button(session.view.paused ? "Go on##pause" : "Pause##pause", "View/Pause");
+    ImGui::SameLine(0.0f, 2.0f);
+    button("Step", "View/Step");
+}
+
 void Viewport::toolbar(Session& session) {
     const ImVec4 area = session.viewport_area;
     ImGui::SetCursorScreenPos(ImVec2(area.x + 0.5f * ui::unit(), area.y + 0.5f * ui::unit()));
@@ -243,8 +258,7 @@ void Viewport::toolbar(Session& session) {
                    "Movements in steps; holding Ctrl is the other way about"))
         session.gizmo.snap = !session.gizmo.snap;
     ImGui::SameLine(0.0f, ui::unit());
-    if (ui::button(session.view.playing ? "Stop##play" : "Play##play", "Movers move; stopped, all is as it was edited"))
-        session.commands->run(*session.commands->find("View/Play"), session);
+    play_buttons(session);
 }
 
 void Viewport::overlay(Session& session) {

@@ -237,15 +237,26 @@ void add_view_commands(std::vector<Command>& list) {
                     [](Session& session) { return session.comparison->flipped; }});
     list.push_back({"View",
                     "Play",
-                    "Movers move; stopped, all is as it was edited",
+                    "Movers move and bodies fall; stopped, all is as it was edited",
                     control(app::key_space),
                     [](Session& session) {
                         session.view.playing = !session.view.playing;
-                        if (!session.view.playing)
-                            session.scene.rewind();
+                        session.view.paused = false;
                     },
                     {},
                     [](Session& session) { return session.view.playing; }});
+    list.push_back({"View",
+                    "Pause",
+                    "What plays stands still; again: it goes on",
+                    {app::key_f1 + 5},
+                    [](Session& session) { session.view.paused = !session.view.paused; },
+                    [](Session& session) { return session.view.playing; },
+                    [](Session& session) { return session.view.paused; }});
+    list.push_back(
+        {"View", "Step", "Plays a sixtieth of a second, then pauses", {app::key_f1 + 6}, [](Session& session) {
+             session.view.playing = session.view.paused = true;
+             session.scene.step(1);
+         }});
     list.push_back({"View",
                     "Rebuild the lighting",
                     "From nothing, as when the saved scene is opened",

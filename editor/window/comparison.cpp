@@ -8,8 +8,15 @@ bool same_view(const ViewRequest& a, const ViewRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
            a.camera.vertical_field_of_view == b.camera.vertical_field_of_view && a.width == b.width &&
            a.height == b.height && a.view == b.view && a.lighting_view == b.lighting_view && a.overlays == b.overlays &&
-           a.chosen_sample == b.chosen_sample && a.look.antialiasing == b.look.antialiasing &&
-           a.look.glare == b.look.glare && a.ev100 == b.ev100 && a.playing == b.playing && a.read_back == b.read_back;
+           a.chosen_sample == b.chosen_sample && a.listing == b.listing && a.look.antialiasing == b.look.antialiasing &&
+           a.look.glare == b.look.glare && a.ev100 == b.ev100 && a.playing == b.playing && a.paused == b.paused &&
+           a.read_back == b.read_back;
+}
+
+void Comparison::forget_device() {
+    differences_.reset();
+    reference_.reset();
+    second_.reset();
 }
 
 SceneChange Comparison::with_kept_settings(SceneChange change) const {
@@ -29,11 +36,12 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
         return;
     }
     if (differences_ == nullptr)
-        differences_ = std::make_unique<DifferenceThread>(device_, wake_);
+        differences_ = std::make_unique<DifferenceThread>(*device_, wake_);
     // The exposure of the picture that it is compared with.
     const std::shared_ptr<ScenePicture> now = scene_.picture();
     ViewRequest wanted = view;
     wanted.read_back = true;
+    wanted.listing.clear();
     wanted.ev100 = now != nullptr ? std::optional<float>(now->ev100) : view.ev100;
     const bool is_new = with == CompareWith::reference ? reference_ == nullptr : second_ == nullptr;
     const bool view_changed = is_new || !same_view(wanted, view_);
@@ -41,14 +49,14 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
     if (with == CompareWith::reference) {
         if (is_new)
             reference_ = std::make_unique<ReferenceThread>(
-                device_, [this] { return scene_.busy(); }, wake_);
+                *device_, [this] { return scene_.busy(); }, wake_);
         if (is_new || change)
             reference_->change(is_new ? everything() : *change);
         if (view_changed)
             reference_->show(wanted);
     } else if (kept_) {
         if (is_new)
-            second_ = std::make_unique<SceneThread>(device_, wake_);
+            second_ = std::make_unique<SceneThread>(*device_, wake_);
         if (is_new || change)
             second_->change(with_kept_settings(is_new ? everything() : *change));
         if (view_changed)

@@ -15,7 +15,10 @@ class Comparison {
 public:
     // `wake`: there is something new to show.
     Comparison(gpu::Device& device, SceneThread& scene, std::function<void()> wake)
-        : device_(device), scene_(scene), wake_(std::move(wake)) {}
+        : device_(&device), scene_(scene), wake_(std::move(wake)) {}
+    // The device is lost: what lies on it goes, and begins again on the next one, which must be given before follow().
+    void forget_device();
+    void use_device(gpu::Device& device) { device_ = &device; }
 
     CompareWith with = CompareWith::nothing;
     CompareAs as = CompareAs::split;
@@ -41,7 +44,7 @@ public:
 
 private:
     SceneChange with_kept_settings(SceneChange change) const;
-    gpu::Device& device_;
+    gpu::Device* device_;
     SceneThread& scene_;
     const std::function<void()> wake_;
     std::unique_ptr<ReferenceThread> reference_;

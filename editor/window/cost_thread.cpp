@@ -14,7 +14,7 @@ using CostClock = std::chrono::steady_clock;
 
 constexpr int warm_up_frames = 4, frames_of_block = 3;
 constexpr std::size_t fewest_pairs = 10;
-constexpr double longest_seconds = 60.0, precise_share = 0.05; // of the frame: how wide the interval may be
+constexpr double precise_share = 0.05; // of the frame: how wide the interval may be
 constexpr double two_sided_95 = 1.959964;
 
 double seconds_of(CostClock::duration duration) {
@@ -57,8 +57,8 @@ struct CostThread::Work {
     std::string to_text;
 };
 
-CostThread::CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake)
-    : device_(device), busy_(std::move(busy)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+CostThread::CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake, CostEffort effort)
+    : device_(device), busy_(std::move(busy)), wake_(std::move(wake)), effort_(effort), thread_([this] { run(); }) {}
 
 CostThread::~CostThread() {
     {
@@ -162,7 +162,7 @@ Status CostThread::measure(Work& work) {
             SUNFLECK_TRY(block(*copies[i], work.view, unused, frame_ms));
     }
     const auto began = CostClock::now();
-    for (bool precise = false; !precise && seconds_of(CostClock::now() - began) < longest_seconds;) {
+    for (bool precise = false; !precise && seconds_of(CostClock::now() - began) < effort_.longest;) {
         std::map<std::string, double> times[2];
         double frame_ms[2] = {};
         const int first = int(work.frame.size() % 2); // A B, then B A
@@ -179,7 +179,7 @@ Status CostThread::measure(Work& work) {
         for (auto& [name, differences] : work.passes)
             differences.push_back(times[1][name] - times[0][name]);
         const CostInterval interval = cost_interval(work.frame);
-        precise = work.frame.size() >= fewest_pairs &&
+        precise = work.frame.size() >= fewest_pairs && seconds_of(CostClock::now() - began) >= effort_.shortest &&
                   interval.high - interval.low <= precise_share * statistics::median(work.frame_ms);
         publish(work, precise);
         wake_();

@@ -28,10 +28,15 @@ CostInterval cost_interval(const std::vector<double>& differences);
 // "+3.2 ms (2.9 to 3.5)", "no measurable effect (less than 0.4 ms)", or what is under way.
 std::string cost_text(const Cost& cost);
 
+// How long is measured: until the interval is precise, but for as long as the first, and at most as the second, s.
+struct CostEffort {
+    double shortest = 0.0, longest = 60.0;
+};
+
 class CostThread {
 public:
     // `busy`: whether the scene is being drawn for the user, who goes first. `wake`: there is something new.
-    CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake);
+    CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake, CostEffort effort = {});
     ~CostThread();
     CostThread(const CostThread&) = delete;
     CostThread& operator=(const CostThread&) = delete;
@@ -52,6 +57,7 @@ private:
     gpu::Device& device_;
     const std::function<bool()> busy_;
     const std::function<void()> wake_;
+    const CostEffort effort_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::unique_ptr<Work> next_;

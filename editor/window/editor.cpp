@@ -1,19 +1,17 @@
 #include "editor/window/editor.h"
 
-#include "editor/window/comparison.h"
 #include "editor/window/cost_thread.h"
+#include "editor/window/display.h"
 #include "editor/window/opening.h"
 #include "editor/window/script_files.h"
 #include "editor/window/state_file.h"
-#include "editor/window/style.h"
-#include "engine/app/gui_screen.h"
 #include "engine/core/log.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "viewer/built_in_scenes.h"
+#include "viewer/lost_devices.h"
 
 #include <algorithm>
-#include <deque>
 #include <thread>
 
 namespace sunfleck::editor {
@@ -32,9 +30,18 @@ public:
 
     Status run() {
         SUNFLECK_TRY(start());
-        const Status drawn = loop();
-        const Status finished = finish();
-        return drawn ? finished : drawn;
+        const Status drawn = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
+            if (!std::exchange(first, false))
+                SUNFLECK_TRY(take_new_device());
+            return loop();
+        });
+        const bool edits_wait = !session_->quit && session_->document->unsaved(); // a signal, or an error
+        const Status finished = finish(bool(drawn), edits_wait);
+        if (drawn)
+            return finished;
+        return edits_wait ? Error{drawn.error().message + "; the unsaved edits are offered by the next run",
+                                  drawn.error().code}
+                          : drawn;
     }
 
 private:
@@ -43,6 +50,7 @@ private:
     void start_recovery();
     void wake();
     Status loop();
+    Status take_new_device();
     bool something_new();
     void finish_opening();
     void keep_edits();
@@ -50,19 +58,16 @@ private:
     void take_keys(const app::InputState& input);
     void tell_scene();
     Status draw(const app::InputState& input);
-    Status present(const std::shared_ptr<ScenePicture>& picture);
     void ask_before_closing();
     void after_frame();
     void tell_scripts();
-    Status finish();
+    Status finish(bool whole, bool edits_wait);
     void keep_camera();
-    float scale() const { return options_.scale > 0.0f ? options_.scale : usual_scale * window_->scale(); }
+    float scale() { return options_.scale > 0.0f ? options_.scale : usual_scale * window().scale(); }
 
     const Options& options_;
-    std::unique_ptr<app::Window> window_;
-    std::unique_ptr<gpu::Device> device_;
-    std::unique_ptr<app::Swapchain> swapchain_;
-    std::unique_ptr<app::GuiScreen> screen_;
+    app::Window& window() { return display_->window(); }
+    std::unique_ptr<Display> display_;
     std::atomic<bool> woken_{true};
     std::unique_ptr<SceneThread> scene_;
     std::unique_ptr<Session> session_;
@@ -76,8 +81,6 @@ private:
     bool kept_unsaved_ = false;
     std::optional<Recovered> recovered_from_; // until its edits are kept once more, or were saved
     std::uint64_t writes_before_ = 0, events_ = 0;
-    // By the GUI's serial.
-    std::deque<std::pair<std::uint64_t, std::vector<std::shared_ptr<ScenePicture>>>> on_screen_;
     std::string title_;
     app::InputState still_input_;
     int frames_due_ = frames_after_event;
@@ -93,16 +96,7 @@ Status Program::start() {
     std::string problem;
     state_path_ = options_.state_file.empty() ? usual_state_file() : std::filesystem::path(options_.state_file);
     state_ = load_state(state_path_, problem);
-    SUNFLECK_ASSIGN(window_, app::Window::create("Sunfleck", options_.width, options_.height));
-    window_->one_by_one(true);
-    SUNFLECK_ASSIGN(device_,
-                    gpu::Device::create({options_.device, options_.validation, window_->instance_extensions()}));
-    SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
-    swapchain_->set_vertical_sync(true);
-    SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
-    screen_->gui().use_window(*window_);
-    screen_->gui().set_style(set_style);
-    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard; // keys are commands here
+    SUNFLECK_ASSIGN(display_, Display::create(options_));
     SUNFLECK_TRY(start_scene());
     if (!problem.empty())
         session_->messages.say(problem, Message::Kind::warning);
@@ -127,19 +121,19 @@ void Program::start_recovery() {
 
 Status Program::start_scene() {
     const auto wakes = [this] { wake(); };
-    scene_ = std::make_unique<SceneThread>(*device_, wakes);
-    session_ = std::make_unique<Session>(*window_, *scene_);
+    scene_ = std::make_unique<SceneThread>(display_->device(), wakes);
+    session_ = std::make_unique<Session>(window(), *scene_);
     session_->wake = wakes;
     session_->recent_files = state_.recent_files;
     session_->budgets = state_.budgets;
     if (!options_.shaders.empty())
         session_->shaders =
             std::make_unique<ShaderWatch>(options_.shaders, viewer::SceneRenderer::shader_paths(), wakes);
-    session_->comparison = std::make_unique<Comparison>(*device_, *scene_, wakes);
+    session_->comparison = std::make_unique<Comparison>(display_->device(), *scene_, wakes);
     session_->preset_folder = state_path_.parent_path() / "presets";
     session_->make_cost_thread = [this, wakes] {
         return std::make_unique<CostThread>(
-            *device_, [this] { return scene_->busy(); }, wakes);
+            display_->device(), [this] { return scene_->busy(); }, wakes);
     };
     for (const auto& [path, keys] : state_.keys)
         if (Command* command = session_->commands->find(path))
@@ -157,14 +151,14 @@ Status Program::start_scene() {
 
 // Whether the GUI has to be drawn.
 bool Program::something_new() {
-    if (const std::uint64_t events = window_->event_count(); events != events_) {
+    if (const std::uint64_t events = window().event_count(); events != events_) {
         events_ = events;
         frames_due_ = frames_after_event;
     }
     const bool woken = woken_.exchange(false);
     if (woken || layout_->flying())
         frames_due_ = std::max(frames_due_, 1);
-    if (window_->has_more()) // the last of many gets its frames, too, although it arrived with the first
+    if (window().has_more()) // the last of many gets its frames, too, although it arrived with the first
         frames_due_ = frames_after_event;
     return frames_due_ > 0;
 }
@@ -174,10 +168,10 @@ Status Program::loop() {
         const bool quiet = ui::take_quiet_frame();
         if (!quiet && !something_new()) {
             tell_scripts();
-            window_->wait(longest_sleep);
+            window().wait(longest_sleep);
             ++figures_.wake_ups;
         }
-        const app::InputState& input = quiet ? (still_input_ = window_->input().still()) : window_->poll();
+        const app::InputState& input = quiet ? (still_input_ = window().input().still()) : window().poll();
         finish_opening();
         take_dropped(input);
         ask_before_closing();
@@ -234,9 +228,9 @@ void Program::take_dropped(const app::InputState& input) {
 }
 
 void Program::ask_before_closing() {
-    if (!window_->should_close())
+    if (!window().should_close())
         return;
-    window_->keep_open();
+    window().keep_open();
     frames_due_ = frames_after_event;
     session_->unless_unsaved([this] { session_->quit = true; });
 }
@@ -275,17 +269,18 @@ void Program::tell_scene() {
     // An empty scene that is about to be replaced needs no picture.
     if (session_->opening != nullptr && session_->document->entity_count() == 0 && !session_->document->unsaved())
         return;
-    if (std::exchange(session_->rebuild, false))
-        collector_.start_over();
     std::optional<SceneChange> change = collector_.collect(session_->document);
     if (change)
         recovery_->change(*change);
     keep_edits();
+    if (std::exchange(session_->rebuild, false)) // all that has been collected so far
+        change = ChangeCollector::everything(session_->document);
     hidden_.apply(session_->document, session_->hidden, change);
     ViewRequest wanted = session_->view.request();
     wanted.camera = session_->camera.view();
     wanted.width = std::uint32_t(session_->viewport_area.z * session_->view.scale);
     wanted.height = std::uint32_t(session_->viewport_area.w * session_->view.scale);
+    wanted.listing = std::exchange(session_->listing, {});
     wanted.read_back = session_->comparison->on();
     session_->comparison->follow(
         change,
@@ -304,10 +299,10 @@ void Program::tell_scene() {
 }
 
 Status Program::draw(const app::InputState& input) {
-    SUNFLECK_ASSIGN(const bool visible, swapchain_->acquire(screen_->serial()));
+    SUNFLECK_ASSIGN(const bool visible, display_->acquire());
     if (!visible) { // minimised, or resized just now
         frames_due_ = std::max(frames_due_, 1);
-        window_->wait(0.05);
+        window().wait(0.05);
         return {};
     }
     const auto began = Clock::now();
@@ -319,34 +314,38 @@ Status Program::draw(const app::InputState& input) {
     session_->take_news();
     ui::begin_notes(!options_.widgets.empty());
     ui::begin_number_boxes();
-    const VkExtent2D extent = swapchain_->extent();
-    screen_->gui().begin_frame(input, extent.width, extent.height, std::min(seconds, 0.1), scale());
+    const VkExtent2D extent = display_->extent();
+    display_->gui().begin_frame(input, extent.width, extent.height, std::min(seconds, 0.1), scale());
     take_keys(input);
     layout_->draw(*session_, picture.get());
-    screen_->gui().end_frame();
+    display_->gui().end_frame();
     tell_scene();
-    SUNFLECK_TRY(present(picture));
+    const ImVec4 area = session_->viewport_area;
+    const VkRect2D place{{int(area.x), int(area.y)}, {std::uint32_t(area.z), std::uint32_t(area.w)}};
+    SUNFLECK_TRY(display_->present(*session_->comparison, picture, place));
     figures_.note_frame(1e3 * std::chrono::duration<double>(Clock::now() - began).count());
     after_frame();
     return {};
 }
 
-Status Program::present(const std::shared_ptr<ScenePicture>& picture) {
-    SUNFLECK_ASSIGN(const std::uint64_t completed, screen_->completed());
-    while (!on_screen_.empty() && on_screen_.front().first <= completed)
-        on_screen_.pop_front();
-    const ImVec4 area = session_->viewport_area;
-    const VkRect2D place{{int(area.x), int(area.y)}, {std::uint32_t(area.z), std::uint32_t(area.w)}};
-    std::vector<std::shared_ptr<ScenePicture>> held;
-    const std::vector<app::Backdrop> backdrops = session_->comparison->backdrops(picture, place, held);
-    on_screen_.emplace_back(screen_->serial(), std::move(held));
-    return screen_->present(backdrops);
+// Everything lies on the device that is lost but the session, which goes on as it is.
+Status Program::take_new_device() {
+    session_->cost.reset();
+    session_->comparison->forget_device();
+    scene_->forget_device();
+    SUNFLECK_TRY(display_->replace_device(options_));
+    session_->comparison->use_device(display_->device());
+    scene_->use_device(display_->device());
+    session_->rebuild = true;
+    session_->messages.say("The GPU stopped answering; a new device goes on with the picture", Message::Kind::warning);
+    frames_due_ = frames_after_event;
+    return {};
 }
 
 void Program::after_frame() {
     const std::string title = session_->file_name() + (session_->document->unsaved() ? " * - Sunfleck" : " - Sunfleck");
     if (title != title_)
-        window_->set_title(title_ = title);
+        window().set_title(title_ = title);
     widgets_due_ = !options_.widgets.empty();
 }
 
@@ -356,11 +355,11 @@ void Program::tell_scripts() {
         session_->messages.check(write_widgets(options_.widgets, ui::notes()));
 }
 
-Status Program::finish() {
+Status Program::finish(bool whole, bool edits_wait) {
     session_->opening.reset();
     keep_camera();
     state_.layout = layout_->state();
-    window_->size(state_.width, state_.height);
+    window().size(state_.width, state_.height);
     state_.recent_files = session_->recent_files;
     state_.budgets = session_->budgets;
     state_.keys.clear();
@@ -372,8 +371,8 @@ Status Program::finish() {
     const Status kept = save_state(state_path_, state_);
     const Status reported = options_.report.empty()
                                 ? Status()
-                                : write_report(options_.report, figures_, *session_, device_->validation_messages());
-    if (!session_->quit && session_->document->unsaved()) // a signal, or an error
+                                : write_report(options_.report, figures_, *session_, display_->validation_messages());
+    if (edits_wait)
         recovery_->leave();
     else if (recovered_from_)
         Recovery::discard(*recovered_from_);
@@ -381,11 +380,10 @@ Status Program::finish() {
     session_->cost.reset();
     session_->comparison.reset();
     scene_.reset(); // cancels, and lets go of its pictures once the GUI has
-    SUNFLECK_TRY(device_->wait_idle());
-    on_screen_.clear();
+    SUNFLECK_TRY(display_->finish(whole));
     SUNFLECK_TRY(kept);
     SUNFLECK_TRY(reported);
-    if (device_->validation_messages() > 0)
+    if (display_->validation_messages() > 0)
         return Error{"validation printed messages (see above)"};
     return {};
 }

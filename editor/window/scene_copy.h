@@ -28,8 +28,6 @@ public:
     std::optional<SceneChange> collect(const std::shared_ptr<Document>& document);
     // Everything there is, for a copy that knows nothing yet.
     static SceneChange everything(const std::shared_ptr<Document>& document);
-    // The next change is everything there is.
-    void start_over() { known_ = nullptr; }
 
 private:
     const Document* known_ = nullptr;

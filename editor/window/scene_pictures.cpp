@@ -23,7 +23,7 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.antialiasing = view_.look.antialiasing;
     request.glare = view_.look.glare;
     request.keep_samples = light_is_slow_;
-    request.step = step_;
+    request.simulate = play_ == nullptr;
     request.progress = [this](float share) { return go_on(share); };
     return request;
 }
@@ -47,7 +47,7 @@ Result<std::shared_ptr<ScenePicture>> SceneThread::free_picture() {
     description.height = view_.height;
     // Images have views, which some use other than copies has to allow.
     description.usage = VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-    SUNFLECK_ASSIGN(picture->image, gpu::Image::create(device_, description));
+    SUNFLECK_ASSIGN(picture->image, gpu::Image::create(*device_, description));
     if (pictures_.size() < most_pictures)
         pictures_.push_back(picture);
     return picture;
@@ -140,9 +140,9 @@ Status SceneThread::look_into_pixel() {
 
 // Where something has changed since the last answer, and the picture has settled.
 void SceneThread::follow_inspection() {
-    if (!inspection_ || failed_ || frames_left_ > 0 || view_.playing || light_pending_)
+    if (!inspection_ || failed_ || frames_left_ > 0 || moves() || light_pending_)
         return;
-    const std::array<std::uint64_t, 4> now{inspection_->serial, revision_, step_, status().builds};
+    const std::array<std::uint64_t, 4> now{inspection_->serial, revision_, steps(), status().builds};
     if (now == inspected_state_)
         return;
     inspected_state_ = now;
@@ -159,9 +159,10 @@ Status SceneThread::draw_picture() {
     picture->camera = view_.camera;
     picture->revision = revision_;
     picture->number = ++number_;
-    picture->step = step_;
+    picture->step = steps();
+    fill_listing();
     note_light();
-    picture->settled = frames_left_ <= 1 && !view_.playing && !light_pending_;
+    picture->settled = frames_left_ <= 1 && !moves() && !light_pending_;
     picture->ev100 = request.ev100;
     picture->frame_ms = 1e3 * seconds_since(began);
     picture->statistics = copy_->renderer().statistics();

@@ -15,20 +15,55 @@ constexpr int frames_after_edit = 4, frames_after_view = 2;
 constexpr double longest_silence = 3.0; // s: edits do not cancel lighting while the picture has been old for so long
 constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
+constexpr std::size_t most_notes = 20'000;
 constexpr std::chrono::milliseconds light_interval{10}; // between looks at light that is being prepared
 
 } // namespace
 
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 SceneThread::SceneThread(gpu::Device& device, std::function<void()> wake)
-    : device_(device), wake_(std::move(wake)), thread_([this] { run(); }) {}
+    : device_(&device), wake_(std::move(wake)), thread_([this] { run(); }) {}
 
 SceneThread::~SceneThread() {
+    end();
+}
+
+void SceneThread::end() {
+    if (!thread_.joinable())
+        return;
     {
         const std::scoped_lock lock(mutex_);
         stop_ = true;
     }
     changed_.notify_one();
     thread_.join();
+}
+
+void SceneThread::forget_device() {
+    end();
+    light_.reset();
+    play_.reset();
+    copy_.reset();
+    pictures_.clear();
+    newest_.reset();
+    inspected_.reset();
+    listing_.reset();
+    inspected_state_ = {};
+    change_ = next_change_ = {};
+    light_pending_ = change_waits_ = false;
+    status_.busy = busy_ = status_.building = false;
+    status_.error.clear();
+}
+
+void SceneThread::use_device(gpu::Device& device) {
+    device_ = &device;
+    stop_ = false;
+    view_changed_ = true;
+    inspection_changed_ = true;
+    thread_ = std::thread([this] { run(); });
 }
 
 void SceneThread::change(SceneChange change) {
@@ -53,14 +88,6 @@ void SceneThread::step(std::uint32_t steps) {
     {
         const std::scoped_lock lock(mutex_);
         steps_ += steps;
-    }
-    changed_.notify_one();
-}
-
-void SceneThread::rewind() {
-    {
-        const std::scoped_lock lock(mutex_);
-        rewind_ = true;
     }
     changed_.notify_one();
 }
@@ -93,6 +120,11 @@ std::shared_ptr<ScenePicture> SceneThread::picture() const {
     return newest_;
 }
 
+std::vector<FrameNote> SceneThread::frame_notes() const {
+    const std::scoped_lock lock(mutex_);
+    return frame_notes_;
+}
+
 SceneStatus SceneThread::status() const {
     const std::scoped_lock lock(mutex_);
     return status_;
@@ -100,8 +132,8 @@ SceneStatus SceneThread::status() const {
 
 bool SceneThread::has_work() const {
     const bool draws = copy_ != nullptr && !failed_ && view_.width > 0 && view_.height > 0;
-    return next_change_.source != nullptr || view_changed_ || rewind_ || steps_ > 0 || !next_shaders_.empty() ||
-           inspection_changed_ || (draws && (frames_left_ > 0 || view_.playing));
+    return next_change_.source != nullptr || view_changed_ || steps_ > 0 || !next_shaders_.empty() ||
+           inspection_changed_ || !next_actions_.empty() || (draws && (frames_left_ > 0 || moves()));
 }
 
 // What the GUI asked for becomes the thread's own. False: the thread ends.
@@ -129,19 +161,20 @@ bool SceneThread::take_work() {
     }
     new_shaders_ = std::exchange(next_shaders_, {});
     inspection_ = next_inspection_;
-    inspection_changed_ = false;
+    if (std::exchange(inspection_changed_, false) && !view_.listing.empty())
+        frames_left_ = std::max(frames_left_, 1);
+    actions_ = std::exchange(next_actions_, {});
+    if (!actions_.empty())
+        frames_left_ = std::max(frames_left_, frames_after_view);
     if (std::exchange(view_changed_, false)) {
-        if (next_view_.playing != view_.playing)
+        const bool other_motion = next_view_.playing != view_.playing || next_view_.paused != view_.paused;
+        if (other_motion)
             last_frame_ = Clock::now();
         view_ = next_view_;
-        frames_left_ = std::max(frames_left_, frames_after_view);
+        frames_left_ = std::max(frames_left_, other_motion ? frames_after_edit : frames_after_view);
     }
-    const std::uint32_t steps = std::exchange(steps_, 0u);
-    const bool rewound = std::exchange(rewind_, false);
-    if (rewound)
-        step_ = 0;
-    step_ += steps;
-    if (rewound || steps > 0)
+    asked_steps_ += std::exchange(steps_, 0u);
+    if (asked_steps_ > 0)
         frames_left_ = std::max(frames_left_, frames_after_edit);
     return true;
 }
@@ -156,8 +189,10 @@ void SceneThread::run() {
         use_shaders(std::exchange(new_shaders_, {}));
         if (copy_ == nullptr || failed_ || view_.width == 0 || view_.height == 0)
             continue;
+        follow_play();
         follow_light();
-        if (frames_left_ > 0 || view_.playing)
+        take_actions(std::exchange(actions_, {}));
+        if (frames_left_ > 0 || moves())
             frame();
         follow_inspection();
     }
@@ -215,14 +250,19 @@ Status SceneThread::apply_change() {
         return Error{"the scene has grown too much to be followed; rebuild the lighting"};
     if (change.everything) {
         light_.reset();
+        play_.reset();
         copy_.reset();
-        step_ = 0;
         exposure_is_old_ = true;
-        SUNFLECK_ASSIGN(copy_, SceneCopy::create(device_));
-        light_ = std::make_unique<viewer::LightingChanges>(device_);
+        SUNFLECK_ASSIGN(copy_, SceneCopy::create(*device_));
+        light_ = std::make_unique<viewer::LightingChanges>(*device_);
         light_is_slow_ = false;
     }
-    SUNFLECK_TRY(copy_->apply(change));
+    if (play_ != nullptr) {
+        SUNFLECK_TRY(play_->edit(copy_->renderer().registry(), copy_->renderer().meshes(), change.updates,
+                                 [&] { return copy_->apply(change); }));
+    } else {
+        SUNFLECK_TRY(copy_->apply(change));
+    }
     if (change.everything)
         use_shaders(std::vector(shaders_));
     revision_ = change.revision;
@@ -254,13 +294,29 @@ bool SceneThread::go_on(float share) {
     return true;
 }
 
-void SceneThread::frame() {
-    if (view_.playing) {
-        owed_steps_ = std::min(owed_steps_ + seconds_since(last_frame_) / simulation::step_seconds, most_steps);
-        step_ += std::uint64_t(owed_steps_);
-        owed_steps_ -= std::floor(owed_steps_);
+// Play begins and ends with the view.
+void SceneThread::follow_play() {
+    ecs::Registry& registry = copy_->renderer().registry();
+    if (view_.playing && play_ == nullptr) {
+        play_ = std::make_unique<ScenePlay>(registry, copy_->renderer().meshes());
+        owed_steps_ = 0.0;
     }
-    if (number_ == 0 || view_.playing)
+    if (!view_.playing && play_ != nullptr) {
+        play_->end(registry);
+        play_.reset();
+        asked_steps_ = 0;
+    }
+    for (; play_ != nullptr && asked_steps_ > 0; --asked_steps_)
+        play_->step(registry);
+}
+
+void SceneThread::frame() {
+    if (moves()) {
+        owed_steps_ = std::min(owed_steps_ + seconds_since(last_frame_) / simulation::step_seconds, most_steps);
+        for (; owed_steps_ >= 1.0; owed_steps_ -= 1.0)
+            play_->step(copy_->renderer().registry());
+    }
+    if (number_ == 0 || moves())
         last_frame_ = Clock::now();
     cancelled_ = false;
     const Status drawn = draw_picture();
@@ -281,6 +337,8 @@ void SceneThread::publish(std::shared_ptr<ScenePicture> picture) {
     last_frame_ = Clock::now();
     {
         const std::scoped_lock lock(mutex_);
+        if (frame_notes_.size() < most_notes)
+            frame_notes_.push_back({seconds_now(), picture->frame_ms});
         status_.longest_frame_ms = std::max(status_.longest_frame_ms, picture->frame_ms);
         newest_ = std::move(picture);
         status_.error.clear();

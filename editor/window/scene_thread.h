@@ -9,6 +9,7 @@
 #pragma once
 
 #include "editor/window/scene_copy.h"
+#include "editor/window/scene_play.h"
 #include "editor/window/shader_watch.h"
 #include "viewer/lighting_change.h"
 #include "viewer/picture_settings.h"
@@ -30,9 +31,11 @@ struct ViewRequest {
     std::string lighting_view;         // FrameRequest::lighting_view
     std::vector<std::string> overlays; // FrameRequest::overlays
     std::optional<std::uint32_t> chosen_sample;
+    std::string listing; // of gi::all_listings(): is filled with each picture; empty: none
     viewer::PictureSettings look;
     std::optional<float> ev100; // in place of the scene's, or of what the picture asks for
-    bool playing = false;       // movers move
+    bool playing = false;       // the scene is in motion; when it ends, all stands as edited
+    bool paused = false;        // then: steps are made by step() alone
     bool read_back = false;     // settled pictures have their pixels on the CPU, too
 };
 
@@ -50,6 +53,18 @@ struct InspectedPixel {
     vec3 shown{0.0f};           // irradiance in the picture, W/m2
     std::uint64_t serial = 0;   // of the request
     std::uint64_t revision = 0; // of the document
+};
+
+// A table of what the lighting keeps, as of the newest picture.
+struct ShownListing {
+    std::string name;
+    gi::ListingContent content;
+};
+// What is asked of one of its rows.
+struct RowAction {
+    std::string listing;
+    std::uint32_t action = 0, key = 0;
+    bool on = false;
 };
 
 // A finished picture, in its blit-source state. Its memory is used again when nobody holds it.
@@ -77,30 +92,45 @@ struct SceneStatus {
     double longest_frame_ms = 0.0;
 };
 
+// When a frame was finished, for --report.
+struct FrameNote {
+    double at = 0.0; // s on the system's clock
+    double milliseconds = 0.0;
+};
+double seconds_now();
+
 class SceneThread {
 public:
     // `wake` is called from the thread whenever there is something new to show. The device must outlive this.
     SceneThread(gpu::Device& device, std::function<void()> wake);
     // Cancels what it does.
     ~SceneThread();
+    // The device is lost: cancels, and lets go of all that lies on it. Nothing is drawn until use_device.
+    void forget_device();
+    // Another device, which must outlive this. The thread must be told everything again; shaders stay replaced.
+    void use_device(gpu::Device& device);
     SceneThread(const SceneThread&) = delete;
     SceneThread& operator=(const SceneThread&) = delete;
 
     void change(SceneChange change);
     void show(const ViewRequest& request);
-    // Movers go on by so many steps of simulation, once.
+    // While the view plays: so many steps of simulation, once.
     void step(std::uint32_t steps);
-    // Movers stand where they start.
-    void rewind();
     // Answered now and whenever the settled picture changes; nothing is asked: no longer.
     void inspect(std::optional<InspectRequest> request);
     // The newest answer; null: there is none.
     std::shared_ptr<const InspectedPixel> inspected() const;
+    // Of the listing that was asked for; null: there is none yet.
+    std::shared_ptr<const ShownListing> listing() const;
+    // From the next frame on.
+    void act(RowAction action);
     // From the next frame on. Where its pipeline cannot be made, status() says so and the old shader stays.
     void replace_shader(CompiledShader shader);
     // The newest picture; null before the first one.
     std::shared_ptr<ScenePicture> picture() const;
     SceneStatus status() const;
+    // Of the first thousands of frames.
+    std::vector<FrameNote> frame_notes() const;
     // SceneStatus::busy, at once and from any thread.
     bool busy() const { return busy_; }
 
@@ -111,6 +141,10 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
     void run();
+    void end();
+    bool moves() const { return view_.playing && !view_.paused; }
+    std::uint64_t steps() const { return play_ != nullptr ? play_->steps() : 0; }
+    void follow_play();
     bool has_work() const;
     bool take_work();
     Status apply_change();
@@ -120,6 +154,8 @@ private:
     Status draw_picture();
     Status look_into_pixel();
     void follow_inspection();
+    void take_actions(const std::vector<RowAction>& actions);
+    void fill_listing();
     viewer::FrameRequest frame_request();
     bool go_on(float share);
     Result<std::shared_ptr<ScenePicture>> free_picture();
@@ -129,37 +165,43 @@ private:
     void use_shaders(const std::vector<CompiledShader>& shaders);
     void note_light();
 
-    gpu::Device& device_;
+    gpu::Device* device_;
     const std::function<void()> wake_;
 
     mutable std::mutex mutex_; // of all until the next comment
     std::condition_variable changed_;
     SceneChange next_change_;
     ViewRequest next_view_;
-    bool view_changed_ = false, rewind_ = false;
+    bool view_changed_ = false;
     std::vector<CompiledShader> next_shaders_;
     std::uint32_t steps_ = 0;
     std::optional<InspectRequest> next_inspection_;
     bool inspection_changed_ = false;
     std::shared_ptr<const InspectedPixel> inspected_;
+    std::vector<RowAction> next_actions_;
+    std::shared_ptr<const ShownListing> listing_;
     std::shared_ptr<ScenePicture> newest_;
     SceneStatus status_;
+    std::vector<FrameNote> frame_notes_;
 
     std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false};
     // Of the thread alone.
     std::unique_ptr<SceneCopy> copy_;
     std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
+    std::unique_ptr<ScenePlay> play_;                // of copy_; null: it stands as edited
     bool light_pending_ = false;                     // the picture has not got all of its light yet
     std::vector<CompiledShader> shaders_;            // in place of those of the program
     std::vector<CompiledShader> new_shaders_;        // not in use yet
     SceneChange change_;                             // not applied yet
+    std::vector<RowAction> actions_;                 // likewise
     ViewRequest view_;
     std::optional<InspectRequest> inspection_;
     // What the newest answer is of: request, document, step, lightings made so far.
     std::array<std::uint64_t, 4> inspected_state_{};
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
     Clock::time_point build_began_, last_frame_;
-    std::uint64_t step_ = 0, revision_ = 0, number_ = 0;
+    std::uint64_t revision_ = 0, number_ = 0;
+    std::uint32_t asked_steps_ = 0; // by step()
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
     bool failed_ = false, exposure_is_old_ = true;

@@ -26,8 +26,10 @@ void ReportFigures::note_frame(double milliseconds) {
         longest_gap_ms = std::max(longest_gap_ms, gap);
     last = now;
     ++gui_frames;
-    if (gui_ms.size() < most_times)
+    if (gui_ms.size() < most_times) {
         gui_ms.push_back(milliseconds);
+        gui_at.push_back(seconds_now());
+    }
 }
 
 Status write_widgets(const std::filesystem::path& path, const std::vector<ui::Note>& notes) {
@@ -57,6 +59,13 @@ Status write_report(const std::filesystem::path& path, const ReportFigures& figu
     json["wake_ups"] = figures.wake_ups;
     json["gui_ms"] = {{"median", figures.gui_ms.empty() ? 0.0 : statistics::median(figures.gui_ms)},
                       {"p95", figures.gui_ms.empty() ? 0.0 : statistics::percentile(figures.gui_ms, 0.95)}};
+    json["gui_frames_at"] = figures.gui_at;
+    json["scene_frames_at"] = Json::array();
+    json["scene_frame_ms"] = Json::array();
+    for (const FrameNote& note : session.scene.frame_notes()) {
+        json["scene_frames_at"].push_back(note.at);
+        json["scene_frame_ms"].push_back(note.milliseconds);
+    }
     json["longest_gap_ms"] = figures.longest_gap_ms;
     json["scene_frames"] = scene.frames;
     json["long_builds"] = scene.builds;

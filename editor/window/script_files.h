@@ -8,7 +8,8 @@ namespace sunfleck::editor {
 
 struct ReportFigures {
     std::uint64_t gui_frames = 0, wake_ups = 0;
-    std::vector<double> gui_ms; // of the last thousands
+    std::vector<double> gui_ms; // of the first thousands
+    std::vector<double> gui_at; // when they ended, s on the system's clock
     std::chrono::steady_clock::time_point last{};
     double longest_gap_ms = 0.0; // between two GUI frames that followed each other within a second
 

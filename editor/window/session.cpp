@@ -42,6 +42,7 @@ ViewRequest ViewOptions::request() const {
     result.look = look;
     result.ev100 = ev100;
     result.playing = playing;
+    result.paused = paused;
     return result;
 }
 
@@ -53,7 +54,7 @@ Session::~Session() = default;
 
 void Session::take(std::shared_ptr<Document> opened) {
     document = std::move(opened);
-    view.playing = false;
+    view.playing = view.paused = false;
     hidden.clear();
     locked.clear();
     reloading_.reset();

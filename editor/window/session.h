@@ -52,7 +52,7 @@ struct ViewOptions {
     float scale = 1.0f; // rendered pixels for each of the screen's, along a side
     viewer::PictureSettings look;
     std::optional<float> ev100;
-    bool playing = false;
+    bool playing = false, paused = false;
 
     bool has_overlay(const std::string& name) const {
         return std::find(overlays.begin(), overlays.end(), name) != overlays.end();
@@ -131,7 +131,8 @@ public:
     ViewRequest shown;                      // what the scene thread was told last
     ImVec4 viewport_area{0, 0, 0, 0};       // x, y, width, height: pixels of the window
 
-    std::string front; // a panel that is to be brought to the front
+    std::string listing; // that a panel wants to show in this frame; empty: none does
+    std::string front;   // a panel that is to be brought to the front
 
     // Looks into the pixel at a place of the viewport: what is there, and what lights it.
     void inspect(vec2 place);

@@ -59,17 +59,28 @@ Result<std::unique_ptr<Gui>> Gui::create(gpu::Device& device, gpu::PipelineStore
                                              {ImGuiKey_Z, 'Z'}};
     for (const auto& [meaning, key] : keys)
         io.KeyMap[meaning] = key;
-    SUNFLECK_TRY(gui->make_atlas(device));
+    add_font();
+    SUNFLECK_TRY(gui->use_device(device, pipelines, target_format));
+    return gui;
+}
+
+void Gui::forget_device() {
+    pipeline_ = nullptr;
+    atlas_ = {};
+}
+
+Status Gui::use_device(gpu::Device& device, gpu::PipelineStore& pipelines, VkFormat target_format) {
+    SUNFLECK_TRY(make_atlas(device));
     gpu::GraphicsDescription description;
     description.vertex_shader = "engine/app/gui.vert";
     description.fragment_shader = "engine/app/gui.frag";
     description.colour_formats = {target_format};
     description.blend = true;
-    SUNFLECK_ASSIGN(gui->pipeline_, pipelines.graphics(description));
-    return gui;
+    SUNFLECK_ASSIGN(pipeline_, pipelines.graphics(description));
+    return {};
 }
 
-Status Gui::make_atlas(gpu::Device& device) {
+void Gui::add_font() {
     ImGuiIO& io = ImGui::GetIO();
     std::error_code code;
     const float pixels = font_size * atlas_scale;
@@ -78,6 +89,10 @@ Status Gui::make_atlas(gpu::Device& device) {
         config.SizePixels = pixels;
         io.Fonts->AddFontDefault(&config);
     }
+}
+
+Status Gui::make_atlas(gpu::Device& device) {
+    ImGuiIO& io = ImGui::GetIO();
     unsigned char* coverage = nullptr;
     int width = 0, height = 0;
     io.Fonts->GetTexDataAsAlpha8(&coverage, &width, &height);

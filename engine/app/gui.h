@@ -18,6 +18,10 @@ public:
     static Result<std::unique_ptr<Gui>> create(gpu::Device& device, gpu::PipelineStore& pipelines,
                                                VkFormat target_format);
     ~Gui();
+    // Another device, in place of one that is lost: windows, focus and what is being typed stay. What lay on the device
+    // before is let go of at once.
+    void forget_device();
+    Status use_device(gpu::Device& device, gpu::PipelineStore& pipelines, VkFormat target_format);
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
@@ -39,6 +43,7 @@ private:
     struct Draw;
     struct Geometry;
     struct Frame;
+    static void add_font();
     Status make_atlas(gpu::Device& device);
     void make_style(float scale);
     static Geometry collect(const ImDrawData& data);

@@ -9,14 +9,29 @@ constexpr VkClearColorValue dark{{0.03f, 0.027f, 0.024f, 1.0f}};
 } // namespace
 
 Result<std::unique_ptr<GuiScreen>> GuiScreen::create(gpu::Device& device, Swapchain& swapchain) {
+    return create(device, swapchain, nullptr);
+}
+
+Result<std::unique_ptr<GuiScreen>> GuiScreen::create(gpu::Device& device, Swapchain& swapchain,
+                                                     std::unique_ptr<Gui> gui) {
     std::unique_ptr<GuiScreen> screen(new GuiScreen(device, swapchain));
     screen->shaders_.add(shaders());
     screen->pipelines_ = std::make_unique<gpu::PipelineStore>(device, screen->shaders_);
     SUNFLECK_ASSIGN(screen->submission_, gpu::Submission::create(device, 2));
     screen->resources_ = std::make_unique<gpu::FrameResources>(device);
     screen->graph_ = std::make_unique<gpu::FrameGraph>(&device);
-    SUNFLECK_ASSIGN(screen->gui_, Gui::create(device, *screen->pipelines_, picture_format));
+    screen->gui_ = std::move(gui);
+    if (screen->gui_ != nullptr) {
+        SUNFLECK_TRY(screen->gui_->use_device(device, *screen->pipelines_, picture_format));
+    } else {
+        SUNFLECK_ASSIGN(screen->gui_, Gui::create(device, *screen->pipelines_, picture_format));
+    }
     return screen;
+}
+
+std::unique_ptr<Gui> GuiScreen::give_gui() {
+    gui_->forget_device();
+    return std::move(gui_);
 }
 
 GuiScreen::~GuiScreen() {

@@ -18,7 +18,12 @@ class GuiScreen {
 public:
     // The device and the swapchain must outlive it.
     static Result<std::unique_ptr<GuiScreen>> create(gpu::Device& device, Swapchain& swapchain);
+    // With the GUI of a screen whose device is lost.
+    static Result<std::unique_ptr<GuiScreen>> create(gpu::Device& device, Swapchain& swapchain,
+                                                     std::unique_ptr<Gui> gui);
     ~GuiScreen();
+    // The device is lost: the GUI, for another screen. Only destroying this one makes sense then.
+    std::unique_ptr<Gui> give_gui();
 
     // Also usable over other images of the same format.
     Gui& gui() { return *gui_; }

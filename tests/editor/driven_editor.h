@@ -108,7 +108,9 @@ public:
         run("xdotool windowsize " + window_ + " " + std::to_string(width) + " " + std::to_string(height));
     }
     void key(const std::string& keys) { run("xdotool key " + keys); }
-    void type(const std::string& text) { run("xdotool type --delay 15 '" + text + "'"); }
+    void type(const std::string& text) {
+        run("xdotool type --delay " + std::string(text.size() > 200 ? "1" : "15") + " -- '" + text + "'");
+    }
     // A number into a box, by clicking and typing.
     bool enter(const std::string& name, const std::string& text) {
         if (!click(name))
@@ -133,6 +135,8 @@ public:
     std::string log() const { return read_file(folder_ / "log").value(); }
     std::string file(const std::string& name) const { return (folder_ / name).string(); }
     pid_t process() const { return editor_; }
+    // As xdotool names it.
+    const std::string& window() const { return window_; }
     // It has not ended by itself.
     bool runs() const {
         siginfo_t info{};

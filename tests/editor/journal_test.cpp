@@ -8,7 +8,9 @@
 #include "tests/support/test_size.h"
 
 #include <csignal>
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -106,6 +108,44 @@ protected:
         }
         ::kill(::getpid(), SIGKILL);
     }
+    // The same, killed by another process after so many microseconds of edits. How many edits were made and kept.
+    // `saves`: the document is saved after each.
+    int edit_until_killed(std::uint32_t seed, bool saves, useconds_t after) {
+        int ends[2];
+        EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::alarm(60);
+            const std::shared_ptr<Document> document = open();
+            ChangeCollector collector;
+            Recovery recovery(folder_ / "recovery");
+            recovery.change(*collector.collect(document));
+            recovery.saved(document->path().string());
+            while (!fs::exists(own_folder() / "base.json"))
+                ::usleep(200);
+            tests::RandomEdits edits(*document, seed);
+            const auto tell = [&](char letter) { return ::write(ends[1], &letter, 1) == 1; };
+            for (int i = 0; i < 1000 && tell(i == 0 ? 'b' : 'e'); ++i) {
+                edit(document, edits, collector, &recovery);
+                if (saves && document->unsaved() && document->save(document->path()))
+                    recovery.saved(document->path().string());
+            }
+            ::pause();
+        }
+        ::close(ends[1]);
+        char letter = 0;
+        EXPECT_EQ(::read(ends[0], &letter, 1), 1) << "it has begun";
+        ::usleep(after);
+        ::kill(child, SIGKILL);
+        int made = 0;
+        while (::read(ends[0], &letter, 1) == 1)
+            ++made;
+        ::close(ends[0]);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+        return made;
+    }
     fs::path own_folder() const {
         for (const auto& entry : fs::directory_iterator(folder_ / "recovery"))
             if (fs::exists(entry.path() / "journal"))
@@ -141,6 +181,78 @@ TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
         EXPECT_TRUE((*found)->path().empty()) << "no file is replaced";
         Recovery::discard(left[0]);
     }
+}
+
+// Killed at random moments, a third of the runs while they save all the time: the file is always one that was saved
+// whole, and file and journal together have all edits but the one that was being made.
+TEST_F(EditorJournal, KeepsFileAndEditsWheneverTheProgramIsKilled) {
+    std::mt19937 random(11);
+    int offered = 0, in_saves = 0;
+    for (std::uint32_t seed = 1; seed <= tests::by_size(15u, 200u); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const bool saves = seed % 3 == 0;
+        const std::shared_ptr<Document> wanted = open();
+        const int made = edit_until_killed(seed, saves, useconds_t(random() % 60'000));
+        in_saves += saves ? 1 : 0;
+        const std::shared_ptr<Document> file = open();
+        ASSERT_NE(file, nullptr);
+        const std::string in_file = content(*file);
+        // What it may be: after each edit that was made, and the one that may have been on its way.
+        std::vector<std::string> contents{content(*wanted)};
+        tests::RandomEdits edits(*wanted, seed);
+        for (int i = 0; i <= made; ++i) {
+            edits.once();
+            contents.push_back(content(*wanted));
+        }
+        EXPECT_NE(std::find(contents.begin(), contents.end(), in_file), contents.end()) << "the file is neither";
+        std::string found = in_file;
+        const std::vector<Recovered> left = Recovery::left_behind(folder_ / "recovery");
+        if (!left.empty()) {
+            auto recovered = Recovery::load(left[0]);
+            ASSERT_TRUE(recovered) << recovered.error().message;
+            found = content(**recovered);
+            ++offered;
+        }
+        const auto newest = std::size_t(made);
+        const auto is_newest = [&](const std::string& text) {
+            return text == contents[newest] || text == contents[newest + 1];
+        };
+        EXPECT_TRUE(is_newest(found) || (saves && is_newest(in_file))) << made << " edits were made";
+        fs::remove_all(folder_ / "recovery");
+    }
+    EXPECT_GT(offered, 3);
+    EXPECT_GT(in_saves, 3);
+}
+
+// The disk is full, at any byte of a save: one error, and the file is the old one or the new one.
+TEST_F(EditorJournal, AFullDiskLosesNothing) {
+    std::mt19937 random(3);
+    int failed = 0;
+    for (std::uint32_t seed = 1; seed <= tests::by_size(12u, 50u); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        const std::shared_ptr<Document> document = open();
+        const std::string before = content(*document);
+        tests::RandomEdits edits(*document, seed);
+        for (int i = 0; i < 5; ++i)
+            edits.once();
+        const std::string after = content(*document);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            std::signal(SIGXFSZ, SIG_IGN);
+            const rlim_t limit = rlim_t(random() % 30'000) * (seed % 4);
+            const rlimit size{limit, limit};
+            ::setrlimit(RLIMIT_FSIZE, &size);
+            ::_exit(document->save(folder_ / "room.scene.json") ? 0 : 3);
+        }
+        random.discard(1);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        ASSERT_TRUE(WIFEXITED(status));
+        const bool saved = WEXITSTATUS(status) == 0;
+        failed += saved ? 0 : 1;
+        EXPECT_EQ(content(*open()), saved ? after : before);
+    }
+    EXPECT_GT(failed, 2);
 }
 
 // The last line is cut off anywhere: all edits before it are there.

@@ -71,6 +71,15 @@ TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
         return !pixels.empty() && pixels[0] >= '1' && pixels[0] <= '9';
     })) << editor->value("counters/constant_light_pixels");
 
+    // Its table, and what can be done to a row.
+    ASSERT_TRUE(editor->click("tab Browser"));
+    ASSERT_TRUE(editor->click("browser/Constant light channels"));
+    ASSERT_TRUE(editor->wait_for("browser/summary", "3 channels"));
+    EXPECT_EQ(editor->value("browser/row 1/channel"), "g");
+    ASSERT_TRUE(editor->click("browser/row 1/Mark"));
+    EXPECT_TRUE(editor->wait_for("browser/row 1/times asked", "1"));
+    ASSERT_TRUE(editor->click("tab Counters"));
+
     editor->key("ctrl+shift+s");
     ASSERT_TRUE(editor->click("dialog/name"));
     editor->key("ctrl+a");

@@ -208,6 +208,8 @@ TEST(EditorSources, PanelsNameNoComponentTechniqueOrSetting) {
         names.insert("\"" + std::string(counter->name) + "\"");
     for (const gi::Overlay* overlay : gi::all_overlays())
         names.insert("\"" + std::string(overlay->name) + "\"");
+    for (const gi::Listing* listing : gi::all_listings())
+        names.insert("\"" + std::string(listing->name) + "\"");
     int files = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(SUNFLECK_SOURCE_DIR) / "editor/panels")) {
         const std::string text = read_file(entry.path()).value();

@@ -19,6 +19,12 @@ constexpr gi::DebugView all_views[] = {{"constant_light_surfaces", "Where the co
 constexpr gi::Overlay all_overlays[] = {
     {"constant_light_cube", "A cube of the scene's unit about its origin", "green: always", "constant light"}};
 
+constexpr gi::ListingColumn columns[] = {{"channel", "", "Of the light"},
+                                         {"times asked", "", "How often it was marked"}};
+constexpr gi::ListingAction row_actions[] = {{"Mark", "Counts one more"}};
+constexpr gi::Listing all_listings[] = {
+    {"constant_light_channels", "What the constant light is made of", "constant light", columns, row_actions}};
+
 class ConstantLight final : public gi::Technique {
 public:
     static Result<std::unique_ptr<gi::Technique>> create(gpu::Device& device, gpu::PipelineStore& pipelines) {
@@ -55,6 +61,13 @@ public:
     void draw_overlay(const gi::Overlay&, const gi::Services&, gi::OverlayLines& lines) const override {
         lines.box({vec3(-1.0f), vec3(1.0f)}, vec3(0.0f, 1.0f, 0.0f));
     }
+    gi::ListingContent fill_listing(const gi::Listing&, const gi::Services&, const gi::ListedPlace*) const override {
+        gi::ListingContent content{"3 channels", {}};
+        for (std::uint32_t i = 0; i < 3; ++i)
+            content.rows.push_back({i, std::nullopt, {std::string(1, "rgb"[i]), double(marks_[i])}, {}});
+        return content;
+    }
+    void act(const gi::Listing&, std::uint32_t, std::uint32_t key, bool) override { ++marks_[key]; }
     void report(gi::Report& report) const override { report.set(pixels, double(pixels_)); }
 
 private:
@@ -62,6 +75,7 @@ private:
     VkSampler sampler_ = VK_NULL_HANDLE;
     const gpu::Pipeline* kernel_ = nullptr;
     std::uint64_t pixels_ = 0;
+    int marks_[3] = {};
 };
 
 } // namespace
@@ -85,6 +99,7 @@ const gi::TechniqueEntry& constant_light() {
         .counters = all_counters,
         .views = all_views,
         .overlays = all_overlays,
+        .listings = all_listings,
         .shaders = gpu::constant_light_shaders,
         .create = ConstantLight::create,
     };
