@@ -26,7 +26,7 @@ Status Document::save(const std::filesystem::path& path) {
     const std::string file = path.filename().string();
     if (!file.ends_with(scene_ending) || file.size() == scene_ending.size())
         return Error{"cannot save '" + path.string() + "': the name of a scene file ends in .scene.json"};
-    if (path == path_ && file_changed()) {
+    if (path == path_ && file_changed() && stamp_of(path_)) {
         stamp_ = stamp_of(path_);
         return Error{"'" + path.string() +
                      "' was changed by another program since it was opened; save once more to replace that, or under "
@@ -35,7 +35,7 @@ Status Document::save(const std::filesystem::path& path) {
     std::error_code code;
     const std::string stem = file.substr(0, file.find('.'));
     const std::filesystem::path geometry = path.parent_path() / (stem + ".glb");
-    if (!std::filesystem::exists(path, code) && std::filesystem::exists(geometry, code))
+    if (path != path_ && !std::filesystem::exists(path, code) && std::filesystem::exists(geometry, code))
         return Error{"cannot save '" + path.string() + "': '" + geometry.filename().string() +
                      "' is there and belongs to something else; choose another name"};
     io::SaveOptions options;

@@ -64,8 +64,10 @@ const gi::Listing* find_listing(const std::string& name) {
 }
 
 void Browser::list_of_tables(Session& session) {
+    std::vector<const gi::Listing*> all = gi::all_listings();
+    std::stable_sort(all.begin(), all.end(), [](const auto* a, const auto* b) { return a->group < b->group; });
     std::string_view group;
-    for (const gi::Listing* listing : gi::all_listings()) {
+    for (const gi::Listing* listing : all) {
         if (listing->group != group) {
             group = listing->group;
             ui::heading(readable_name(group));
@@ -138,6 +140,10 @@ void Browser::row(Session& session, const gi::Listing& listing, int place) {
     ImGui::PushID(int(row.key));
     ImGui::TableNextRow();
     const bool chosen = row.sample && session.view.chosen_sample == row.sample;
+    if (!listing.actions.empty()) {
+        ImGui::TableNextColumn();
+        actions(session, listing, row);
+    }
     for (std::size_t i = 0; i < listing.columns.size() && i < row.cells.size(); ++i) {
         ImGui::TableNextColumn();
         if (i > 0 || !row.sample) {
@@ -145,38 +151,49 @@ void Browser::row(Session& session, const gi::Listing& listing, int place) {
             continue;
         }
         const std::string text = text_of(session, row.cells[0]);
+        ImGui::AlignTextToFramePadding();
         if (ui::choice(text, chosen, "Click: singled out in overlays"))
             session.view.chosen_sample = chosen ? std::nullopt : row.sample;
-    }
-    if (!listing.actions.empty()) {
-        ImGui::TableNextColumn();
-        actions(session, listing, row);
+        ui::note(listing.columns[0].name, text);
     }
     ImGui::PopID();
 }
 
-void Browser::table(Session& session, const gi::Listing& listing) {
-    const int columns = int(listing.columns.size()) + (listing.actions.empty() ? 0 : 1);
-    if (!ImGui::BeginTable(chosen_.c_str(), columns,
-                           ImGuiTableFlags_Sortable | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
-                               ImGuiTableFlags_Resizable | ImGuiTableFlags_SizingStretchProp))
-        return;
-    ImGui::TableSetupScrollFreeze(0, 1);
-    for (const gi::ListingColumn& column : listing.columns)
-        ImGui::TableSetupColumn(std::string(column.name).c_str());
-    if (!listing.actions.empty())
-        ImGui::TableSetupColumn("##actions", ImGuiTableColumnFlags_NoSort | ImGuiTableColumnFlags_WidthFixed);
+// As wide as their names and what they usually hold: what there is no room for is scrolled to.
+void set_up_columns(const gi::Listing& listing) {
+    if (!listing.actions.empty()) {
+        float width = 0.0f;
+        for (const gi::ListingAction& action : listing.actions)
+            width +=
+                ImGui::CalcTextSize(std::string(action.name).c_str()).x + (action.stays ? 2.6f : 1.6f) * ui::unit();
+        ImGui::TableSetupColumn("##actions", ImGuiTableColumnFlags_NoSort | ImGuiTableColumnFlags_WidthFixed, width);
+    }
+    for (const gi::ListingColumn& column : listing.columns) {
+        const std::string name(column.name);
+        const float width = std::max(ImGui::CalcTextSize(name.c_str()).x + 1.6f * ui::unit(), 5.0f * ui::unit());
+        ImGui::TableSetupColumn(name.c_str(), ImGuiTableColumnFlags_WidthFixed, width);
+    }
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (std::size_t i = 0; i < listing.columns.size(); ++i) {
         const gi::ListingColumn& column = listing.columns[i];
-        ImGui::TableSetColumnIndex(int(i));
+        ImGui::TableSetColumnIndex(int(i) + (listing.actions.empty() ? 0 : 1));
         ImGui::TableHeader(std::string(column.name).c_str());
         ui::note("by " + std::string(column.name));
         ui::tooltip(std::string(column.tooltip) + (column.unit.empty() ? "" : "\n\nUnit: " + std::string(column.unit)));
     }
+}
+
+void Browser::table(Session& session, const gi::Listing& listing) {
+    const int first = listing.actions.empty() ? 0 : 1; // of the listing's columns
+    if (!ImGui::BeginTable(chosen_.c_str(), int(listing.columns.size()) + first,
+                           ImGuiTableFlags_Sortable | ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
+                               ImGuiTableFlags_RowBg | ImGuiTableFlags_Resizable))
+        return;
+    ImGui::TableSetupScrollFreeze(first, 1);
+    set_up_columns(listing);
     if (ImGuiTableSortSpecs* order = ImGui::TableGetSortSpecs();
         order != nullptr && order->SpecsCount > 0 && order->SpecsDirty) {
-        column_ = order->Specs->ColumnIndex;
+        column_ = std::max(order->Specs->ColumnIndex - first, 0);
         falling_ = order->Specs->SortDirection == ImGuiSortDirection_Descending;
         order->SpecsDirty = false;
         sort(session);

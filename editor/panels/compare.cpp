@@ -5,6 +5,7 @@
 #include "editor/window/fields.h"
 #include "editor/window/presets.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace sunfleck::editor {
@@ -23,29 +24,32 @@ private:
 };
 
 template <typename T>
-void option(const char* name, T value, T& place, const char* tip) {
+void option(const char* name, T value, T& place, const char* tip, bool last = false) {
     bool on = place == value;
     if (ImGui::RadioButton(name, on))
         place = value;
     ui::note(name, place == value ? "on" : "off");
     ui::tooltip(tip);
+    if (last)
+        return;
     ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x < 6.5f * ui::unit()) // of another one
+        ImGui::NewLine();
 }
 
 void Compare::choose(Session& session) {
     Comparison& comparison = *session.comparison;
     ui::heading("Compare with");
     option("Nothing", CompareWith::nothing, comparison.with, "The scene alone");
-    option("Reference", CompareWith::reference, comparison.with, "The path tracer, which works while the scene rests");
-    ImGui::NewLine();
+    option("Reference", CompareWith::reference, comparison.with, "The path tracer, which works while the scene rests",
+           true);
     ImGui::BeginDisabled(!comparison.kept());
-    option("Kept settings", CompareWith::kept_settings, comparison.with, "The same scene, lit with the settings kept");
+    option("Kept settings", CompareWith::kept_settings, comparison.with, "The same scene, lit with the settings kept",
+           true);
     ImGui::EndDisabled();
-    ImGui::NewLine();
     option("Split", CompareAs::split, comparison.as, "The scene to the left of the line, which can be dragged");
     option("Flip", CompareAs::flip, comparison.as, "One or the other, by the button or T");
-    option("Error", CompareAs::difference, comparison.as, "Eight times the difference");
-    ImGui::NewLine();
+    option("Error", CompareAs::difference, comparison.as, "Eight times the difference", true);
     if (ui::button("Keep settings", "Keeps the settings as they are now, to be compared with"))
         comparison.keep(session.document->settings());
     ImGui::SameLine();
@@ -78,7 +82,8 @@ void Compare::figures(Session& session) const {
 
 void Compare::presets(Session& session) {
     ui::heading("Presets");
-    ui::text_box("preset", name_, "Name of a preset", 9.0f * ui::unit());
+    ui::text_box("preset", name_, "Name of a preset",
+                 std::min(9.0f * ui::unit(), ImGui::GetContentRegionAvail().x - 4.5f * ui::unit()));
     ImGui::SameLine();
     if (ui::button("Save##preset", "Keeps the settings that differ from their defaults under this name",
                    !name_.empty()))
@@ -111,7 +116,9 @@ void Compare::differences(const Session& session) const {
         if (here == there)
             continue;
         any = true;
-        ui::text("difference " + std::string(name), readable_name(name) + ": " + here + " here, " + there + " kept");
+        std::string text = readable_name(name);
+        text.append(": ").append(here).append(" here, ").append(there).append(" kept");
+        ui::text("difference " + std::string(name), text);
     }
     if (!any)
         ImGui::TextDisabled("Nothing");

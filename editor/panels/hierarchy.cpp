@@ -171,6 +171,7 @@ void Hierarchy::drag_and_drop(Session& session, Entity entity) {
 void Hierarchy::context_menu(Session& session, Entity entity) {
     if (!ImGui::BeginPopupContextItem("menu"))
         return;
+    ui::close_by_escape();
     if (!session.document->selected(entity))
         session.document->select({entity});
     if (ui::menu_item("Rename", "F2", true)) {

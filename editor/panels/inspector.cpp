@@ -54,6 +54,7 @@ void Inspector::name_row(Session& session) {
 void Inspector::component_menu(Session& session, ecs::PoolBase& pool, const Entities& owners) {
     if (!ImGui::BeginPopupContextItem("menu"))
         return;
+    ui::close_by_escape();
     Document& document = *session.document;
     if (ui::menu_item("Copy", "", true))
         session.copied = {std::string(pool.description()->name), document.registry().value(pool, owners[0])};
@@ -118,6 +119,7 @@ void Inspector::add_menu(Session& session) {
     }
     if (!ImGui::BeginPopup("add"))
         return;
+    ui::close_by_escape();
     for (ecs::PoolBase* pool : document.registry().described_pools()) {
         const bool offered = !is_part_of_tree(document, *pool) && !pool->is_derived() &&
                              owners_of(session, *pool).size() < document.selection().size();

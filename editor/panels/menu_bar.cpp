@@ -50,6 +50,7 @@ void draw_menu_bar(Session& session) {
         if (!open)
             continue;
         entries(session, group);
+        ui::close_by_escape();
         ImGui::EndMenu();
     }
     const std::string title = session.file_name() + (session.document->unsaved() ? " *" : "");

@@ -44,8 +44,7 @@ std::string vector_text(vec3 value, const char* pattern = "%.3f  %.3f  %.3f") {
 }
 
 std::string light_text(vec3 irradiance) {
-    return format("%.4g W/m2", double(luminance(irradiance))) + "   (" + vector_text(irradiance, "%.3g, %.3g, %.3g") +
-           ")";
+    return format("%.4g W/m2", double(luminance(irradiance))) + "\n" + vector_text(irradiance, "%.3g  %.3g  %.3g");
 }
 
 std::string percent(float share) {
@@ -65,7 +64,7 @@ bool begin_values(const char* name) {
     if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingStretchSame))
         return false;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 1.0f);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 2.2f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.8f);
     return true;
 }
 
@@ -159,7 +158,7 @@ void Pixel::summary(Session& session, const InspectedPixel& pixel) {
     row("in the picture", light_text(pixel.shown), "Irradiance of this pixel, as the techniques have computed it");
     row("sum of shares", light_text(sum), "Of all lights below, each tested by a ray");
     for (const gi::ExplainedLight& part : pixel.report.light)
-        row("by " + std::string(part.technique), part.divided ? light_text(part.sum()) : "not divided by lights");
+        row("by " + readable_name(part.technique), part.divided ? light_text(part.sum()) : "not divided by lights");
     if (const auto& patch = pixel.report.patch) {
         row("patch",
             "#" + std::to_string(patch->node) +
@@ -188,10 +187,11 @@ void Pixel::lamps(Session& session) {
         (share.light->bounce == 0 ? parts.straight : parts.reflected) += share.part;
     }
     ui::heading("Lamps");
-    if (!ImGui::BeginTable("lamps", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+    if (!ImGui::BeginTable("lamps", 4, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg))
         return;
-    for (const char* name : {"lamp", "straight", "reflected", "share"})
-        ImGui::TableSetupColumn(name);
+    for (const auto& [name, width] :
+         {std::pair("lamp", 1.4f), {"straight", 1.0f}, {"reflected", 1.0f}, {"share", 0.9f}})
+        ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, width);
     ImGui::TableHeadersRow();
     for (const auto& [name, lamp] : by_lamp) {
         const auto& [entity, parts] = lamp;
@@ -217,10 +217,10 @@ void Pixel::list(Session& session) {
         if (ui::button("Choose none", "No light sample is singled out in overlays"))
             session.view.chosen_sample.reset();
     }
-    if (!ImGui::BeginTable("shares", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+    if (!ImGui::BeginTable("shares", 4, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_RowBg))
         return;
-    for (const char* name : {"light", "way", "W/m2", "share"})
-        ImGui::TableSetupColumn(name);
+    for (const auto& [name, width] : {std::pair("light", 1.4f), {"way", 1.0f}, {"W/m2", 1.0f}, {"share", 0.9f}})
+        ImGui::TableSetupColumn(name, ImGuiTableColumnFlags_WidthStretch, width);
     ImGui::TableHeadersRow();
     std::size_t rows = 0;
     for (const Share& share : shares_) {

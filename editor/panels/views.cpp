@@ -97,6 +97,8 @@ void Views::draw(Session& session) {
     const ui::Scope scope("views");
     if (!ImGui::BeginTable("views", 4, ImGuiTableFlags_SizingStretchSame))
         return;
+    for (const float width : {1.0f, 1.2f, 1.2f, 1.7f})
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, width);
     ImGui::TableNextColumn();
     picture_views(session);
     ImGui::TableNextColumn();

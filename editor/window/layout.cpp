@@ -57,7 +57,7 @@ void Layout::dock(Session& session, Dock dock, ImVec2 size) {
     ImGui::BeginChild(name_of(dock), size, false);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing_);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding_);
-    if (ImGui::BeginTabBar("tabs")) {
+    if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyScroll)) {
         for (const Shown& shown : panels_) {
             if (shown.entry->dock != dock)
                 continue;

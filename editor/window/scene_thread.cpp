@@ -169,7 +169,7 @@ bool SceneThread::take_work() {
     if (std::exchange(view_changed_, false)) {
         const bool other_motion = next_view_.playing != view_.playing || next_view_.paused != view_.paused;
         if (other_motion)
-            last_frame_ = Clock::now();
+            played_until_ = Clock::now();
         view_ = next_view_;
         frames_left_ = std::max(frames_left_, other_motion ? frames_after_edit : frames_after_view);
     }
@@ -312,7 +312,8 @@ void SceneThread::follow_play() {
 
 void SceneThread::frame() {
     if (moves()) {
-        owed_steps_ = std::min(owed_steps_ + seconds_since(last_frame_) / simulation::step_seconds, most_steps);
+        const double seconds = seconds_since(std::exchange(played_until_, Clock::now()));
+        owed_steps_ = std::min(owed_steps_ + seconds / simulation::step_seconds, most_steps);
         for (; owed_steps_ >= 1.0; owed_steps_ -= 1.0)
             play_->step(copy_->renderer().registry());
     }

@@ -97,6 +97,11 @@ bool menu_item(const std::string& name, const std::string& shortcut, bool enable
     return chosen;
 }
 
+void close_by_escape() {
+    if (ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
+        ImGui::CloseCurrentPopup();
+}
+
 bool choice(const std::string& name, bool chosen, std::string_view tip) {
     const bool pressed = ImGui::Selectable(name.c_str(), chosen);
     note(visible(name), chosen ? "chosen" : "");

@@ -46,6 +46,8 @@ void tooltip(std::string_view text);
 bool button(const std::string& name, std::string_view tip = {}, bool enabled = true, float width = 0.0f);
 bool toggle(const std::string& name, bool& on, std::string_view tip = {});
 bool menu_item(const std::string& name, const std::string& shortcut, bool enabled, bool checked = false);
+// Within a menu or popup: Escape closes it.
+void close_by_escape();
 // A row to be clicked, as wide as there is room.
 bool choice(const std::string& name, bool chosen, std::string_view tip = {});
 // True while the text changes; with `enter`, when Enter was pressed.

@@ -57,6 +57,7 @@ const TechniqueEntry& adaptive_shadows_technique() {
         .adds_in_place = true,
         .settings = settings_of<AdaptiveShadowsSettings>(),
         .counters = technique_counters,
+        .listings = AdaptiveShadowsTechnique::listings(),
         .shaders = gpu::sunfleck_gi_adaptive_shadows_shaders,
         .create = AdaptiveShadowsTechnique::create,
     };

@@ -15,6 +15,10 @@ public:
     Status update(const SceneView& scene, Services& services, CellSet cells) override;
     Status add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) override;
     void report(Report& report) const override;
+    static std::span<const Listing> listings();
+    ListingContent fill_listing(const Listing& listing, const Services& services,
+                                const ListedPlace* place) const override;
+    void act(const Listing& listing, std::uint32_t action, std::uint32_t key, bool on) override;
     std::optional<std::vector<LightShare>> explain(const PointQuestion& question) const override {
         return sample_shares(question);
     }

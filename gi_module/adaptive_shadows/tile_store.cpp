@@ -86,6 +86,19 @@ std::vector<TileStore::Drawing> TileStore::draw(std::span<const TileKey> needed,
     return drawings;
 }
 
+std::vector<TileStore::Held> TileStore::held() const {
+    std::vector<Held> result;
+    result.reserve(tiles_.size());
+    for (const auto& [key, tile] : tiles_)
+        result.push_back({key, tile.slot, tile.has_content, tile.fresh, tile.needed == time_});
+    return result;
+}
+
+void TileStore::redraw(const TileKey& key) {
+    if (const auto tile = tiles_.find(key); tile != tiles_.end())
+        tile->second.has_static = tile->second.fresh = false;
+}
+
 std::optional<std::uint32_t> TileStore::slot_of(const TileKey& key) const {
     const auto tile = tiles_.find(key);
     if (tile == tiles_.end() || !tile->second.has_content)

@@ -41,6 +41,15 @@ public:
     // The tile's slot, if there is something in it; then maybe with movers where they were.
     std::optional<std::uint32_t> slot_of(const TileKey& key) const;
     std::size_t size() const { return tiles_.size(); }
+    // What lies in memory, in the order of the keys; `needed`: by the last call of draw.
+    struct Held {
+        TileKey key;
+        std::uint32_t slot = 0;
+        bool has_content = false, fresh = false, needed = false;
+    };
+    std::vector<Held> held() const;
+    // All of the tile is drawn again, once it is needed.
+    void redraw(const TileKey& key);
 
 private:
     struct Tile {

@@ -33,11 +33,10 @@ TEST_F(EditorWindowBrowser, MapsAreSortedPinnedAndRedrawn) {
     editor->start({"cornell"});
     ASSERT_TRUE(editor->settles());
     ASSERT_TRUE(editor->click("tab Browser"));
-    ASSERT_TRUE(editor->appears("browser/row 0/slot"));
-    EXPECT_LT(number("row 0/slot"), number("row 1/slot"));
-    ASSERT_TRUE(editor->click("browser/by slot"));
-    ASSERT_TRUE(editor->click("browser/by slot"));
-    EXPECT_TRUE(editor->wait_until([&] { return number("row 0/slot") > number("row 1/slot"); })) << "falling";
+    ASSERT_TRUE(editor->appears("browser/row 0/sample"));
+    EXPECT_LT(number("row 0/sample"), number("row 1/sample"));
+    ASSERT_TRUE(editor->click("browser/by sample"));
+    EXPECT_TRUE(editor->wait_until([&] { return number("row 0/sample") > number("row 1/sample"); })) << "falling";
 
     EXPECT_EQ(editor->value("browser/row 0/Pin"), "off");
     ASSERT_TRUE(editor->click("browser/row 0/Pin"));

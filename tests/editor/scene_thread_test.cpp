@@ -4,6 +4,7 @@
 
 #include "engine/core/file.h"
 #include "engine/io/image.h"
+#include "engine/scene/simulation_components.h"
 #include "test_places.h"
 #include "tests/editor/random_edits.h"
 #include "tests/support/folder.h"
@@ -11,6 +12,7 @@
 #include "tests/support/run_tool.h"
 #include "tests/support/test_size.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace sunfleck::editor {
@@ -97,6 +99,54 @@ TEST_F(EditorScene, ShowsWhatRenderDraws) {
         ASSERT_TRUE(wanted && found);
         EXPECT_EQ(differing(*found, *wanted), 0u);
     }
+}
+
+// A body is dropped into the room, falls while it plays, and hangs where it was edited when play ends: the same
+// picture, bit for bit, and the document has heard nothing of it.
+TEST_F(EditorScene, PlayLeavesThePictureAsItWas) {
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    const auto templates = scene::entity_templates();
+    const auto box =
+        std::find_if(templates.begin(), templates.end(), [](const auto& one) { return one.name == "Box"; });
+    ASSERT_NE(box, templates.end());
+    const Entity body = add_from(*document, *box, vec3(2.0f, 4.0f, 2.0f), 0.8f);
+    scene::Mover at_rest;
+    at_rest.path = scene::MoverPath::none;
+    document->begin("Make it fall");
+    document->set(body, pool_of<scene::Mover>(*document), std::make_shared<scene::Mover>(at_rest));
+    document->set(body, pool_of<scene::RigidBody>(*document), std::make_shared<scene::RigidBody>());
+    document->commit();
+    ASSERT_TRUE(document->save(folder_ / "before.scene.json"));
+    const std::string saved = read_file(folder_ / "before.scene.json").value();
+
+    SceneThread scene(tests::device(), [] {});
+    scene.change(ChangeCollector::everything(document));
+    ViewRequest request = view(*document);
+    scene.show(request);
+    const Picture before = settled(scene, *document);
+    ASSERT_NE(before, nullptr);
+    request.playing = request.paused = true;
+    scene.show(request);
+    scene.step(40);
+    const Picture fallen = wait_for(scene, [](const ScenePicture& picture) {
+        return picture.settled && picture.pixels != nullptr && picture.step == 40;
+    });
+    ASSERT_NE(fallen, nullptr);
+    EXPECT_GT(differing(*fallen->pixels, *before->pixels), width * height / 100u) << "it has fallen";
+    request.paused = false; // in real time
+    scene.show(request);
+    ASSERT_NE(wait_for(scene, [](const ScenePicture& picture) { return picture.step > 60; }), nullptr);
+    request.playing = false;
+    scene.show(request);
+    const Picture after = wait_for(scene, [](const ScenePicture& picture) {
+        return picture.settled && picture.pixels != nullptr && picture.step == 0;
+    });
+    ASSERT_NE(after, nullptr);
+    EXPECT_EQ(differing(*after->pixels, *before->pixels), 0u);
+    fs::create_directories(folder_ / "after");
+    ASSERT_TRUE(document->save(folder_ / "after/before.scene.json"));
+    EXPECT_EQ(read_file(folder_ / "after/before.scene.json").value(), saved);
 }
 
 // With so many samples that light is made behind the frames.

@@ -163,6 +163,27 @@ TEST(ShadowTiles, WhatTheBudgetLeavesComesLater) {
     EXPECT_EQ(store.stale(), 2u);
 }
 
+TEST(ShadowTiles, AreListedAndRedrawnOnRequest) {
+    TileStore store;
+    store.reset(8);
+    store.draw(keys({0, 1, 2}), {}, rests);
+    store.draw(keys({0, 2}), {}, rests);
+    store.mark([](const TileKey& key) { return key.x == 2; });
+    const auto held = store.held();
+    ASSERT_EQ(held.size(), 3u);
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(held[i].key.x, i);
+        EXPECT_EQ(held[i].needed, i != 1);
+        EXPECT_EQ(held[i].fresh, i != 2);
+        EXPECT_EQ(store.slot_of(held[i].key), held[i].slot);
+    }
+    store.redraw(held[0].key);
+    const auto drawn = store.draw(keys({0, 1}), {}, rests);
+    ASSERT_EQ(drawn.size(), 1u);
+    EXPECT_EQ(drawn[0].key.x, 0u);
+    EXPECT_TRUE(drawn[0].redraw_static);
+}
+
 TEST(ShadowTiles, LostFramesAndMovedLightsAreDrawnAgain) {
     TileStore store;
     store.reset(8);
