@@ -141,12 +141,12 @@ TEST_F(TransferTest, AKnotInARoomIsAsThePathTracerSees) {
         });
     const std::vector<std::size_t> knot = pixels_of(world, name);
     ASSERT_GT(knot.size(), 80u);
-    const std::vector<vec4> truth = traced(world, 5, by_size(32, 128));
+    const std::vector<vec4> truth = traced(world, 5, by_size(64, 1024)); // their noise is in the root
     const Error error = error_of(picture.pixels, truth, knot);
     std::printf("%zu pixels: mean %+.3f, root mean square %.3f\n", knot.size(), error.relative_mean,
                 error.relative_root_mean_square);
-    EXPECT_LT(std::abs(error.relative_mean), 0.06);
-    EXPECT_LT(error.relative_root_mean_square, 0.2);
+    EXPECT_LT(std::abs(error.relative_mean), 0.03);
+    EXPECT_LT(error.relative_root_mean_square, 0.1);
 }
 
 } // namespace
