@@ -70,7 +70,8 @@ protected:
         return result;
     }
 
-    // What a file of it has: glTF knows a little less than a document (no entity without a place, say).
+    // What a file of it has: in glTF every entity has a place, what has geometry has a material, and a material without
+    // geometry is nobody's.
     std::string content_of_save(Document& document) {
         const fs::path place = folder_ / "copy";
         fs::remove_all(place);
@@ -169,7 +170,7 @@ protected:
         for (const auto& entry : fs::directory_iterator(folder_ / "recovery"))
             if (fs::exists(entry.path() / "journal"))
                 return entry.path();
-        return folder_.path();
+        return folder_.path;
     }
     const tests::Folder folder_{"editor_journal"};
 };

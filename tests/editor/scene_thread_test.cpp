@@ -193,7 +193,7 @@ TEST_F(EditorScene, EditedShadersShow) {
     const std::shared_ptr<Document> document = open_scene();
     ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
-    ShaderWatch watch(folder_.path(), viewer::SceneRenderer::shader_paths(), [] {});
+    ShaderWatch watch(folder_.path, viewer::SceneRenderer::shader_paths(), [] {});
     scene.change(ChangeCollector::everything(document));
     ViewRequest colours = view(*document);
     colours.view = shared::view_albedo; // which this shader draws

@@ -8,24 +8,20 @@
 
 namespace sunfleck::tests {
 
-class Folder {
-public:
-    explicit Folder(const std::string& name)
-        : path_(std::filesystem::path(testing::TempDir()) / (name + "_" + std::to_string(getpid()))) {
-        std::filesystem::create_directories(path_);
+struct Folder {
+    explicit Folder(const std::string& name = "sunfleck_files")
+        : path(std::filesystem::path(testing::TempDir()) / (name + "_" + std::to_string(getpid()))) {
+        std::filesystem::create_directories(path);
     }
     ~Folder() {
         std::error_code code;
-        std::filesystem::remove_all(path_, code);
+        std::filesystem::remove_all(path, code);
     }
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
+    std::filesystem::path operator/(const std::string& name) const { return path / name; }
 
-    const std::filesystem::path& path() const { return path_; }
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-private:
-    const std::filesystem::path path_;
+    const std::filesystem::path path;
 };
 
 } // namespace sunfleck::tests

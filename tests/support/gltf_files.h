@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "engine/io/scene_file.h"
+#include "tests/support/folder.h"
 
 #include <cstring>
 #include <gtest/gtest.h>
@@ -77,13 +78,6 @@ struct GltfBuilder {
             bytes += word(body.size()) + std::string("BIN\0", 4) + body;
         return bytes;
     }
-};
-
-struct Folder {
-    std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / ("sunfleck_files_" + std::to_string(getpid()));
-    Folder() { std::filesystem::create_directories(path); }
-    ~Folder() { std::filesystem::remove_all(path); }
 };
 
 } // namespace sunfleck::tests
