@@ -6,12 +6,31 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #include <tiny_gltf.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
 
 namespace sunfleck::io {
 namespace {
+
+// A power of light as glTF has it: a photometric strength and a colour of at most 1.
+struct Brightness {
+    double photometric = luminous_efficacy;
+    std::vector<double> colour;
+};
+
+// The strength is a power of two times the luminous efficacy, so that the product of both is read as it was, to the
+// bit.
+Brightness brightness_of(vec3 power) {
+    int exponent = 0;
+    std::frexp(std::max({power.x, power.y, power.z}), &exponent);
+    Brightness result;
+    result.photometric *= std::ldexp(1.0, exponent);
+    for (int c = 0; c < 3; ++c)
+        result.colour.push_back(std::ldexp(double(power[c]), -exponent));
+    return result;
+}
 
 class Exporter {
 public:
@@ -199,13 +218,11 @@ private:
         }
         material.pbrMetallicRoughness.metallicFactor = double(source.metallic);
         material.pbrMetallicRoughness.roughnessFactor = double(source.roughness);
-        const vec3 nits = source.emission * luminous_efficacy;
-        const float strength = std::max({nits.x, nits.y, nits.z});
-        if (strength > 0.0f) {
-            const vec3 factor = nits / strength;
-            material.emissiveFactor = {double(factor.x), double(factor.y), double(factor.z)};
+        if (source.emission != vec3(0.0f)) {
+            const Brightness emission = brightness_of(source.emission);
+            material.emissiveFactor = emission.colour;
             set_extension(material.extensions, "KHR_materials_emissive_strength", "emissiveStrength",
-                          tinygltf::Value(double(strength)));
+                          tinygltf::Value(emission.photometric));
         }
         if (!source.specular)
             set_extension(material.extensions, "KHR_materials_specular", "specularFactor", tinygltf::Value(0.0));
@@ -220,14 +237,12 @@ private:
     }
 
     void add_light(tinygltf::Node& node, const char* type, vec3 strength, const scene::SpotLight* spot) {
-        const vec3 photometric = strength * luminous_efficacy;
-        const float intensity = std::max({photometric.x, photometric.y, photometric.z, 1e-20f});
+        const Brightness brightness = brightness_of(strength);
         tinygltf::Light light;
         light.name = node.name;
         light.type = type;
-        light.intensity = double(intensity);
-        for (int c = 0; c < 3; ++c)
-            light.color.push_back(double(photometric[c] / intensity));
+        light.intensity = brightness.photometric;
+        light.color = brightness.colour;
         if (spot != nullptr) {
             light.spot.innerConeAngle = double(spot->inner_angle);
             light.spot.outerConeAngle = double(spot->outer_angle);

@@ -280,7 +280,7 @@ void NodeImport::bind_skins() {
 void NodeImport::add_camera(const tinygltf::Camera& camera, ecs::Entity entity, const std::string& name) {
     if (camera.type == "perspective") {
         const float angle = float(camera.perspective.yfov);
-        registry_->emplace<scene::Camera>(entity, {angle > 0.01f && angle < 3.1f ? angle : 0.9f});
+        registry_->emplace<scene::Camera>(entity, {angle >= 0.01f && angle <= 3.1f ? angle : 0.9f});
         return;
     }
     // An orthographic camera is approximated by a distant one with a narrow field of view.
