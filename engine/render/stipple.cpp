@@ -72,7 +72,7 @@ void StipplePass::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const Pix
                       gpu::ResourceId picture, VkFormat format) const {
     if (rectangle.width == 0)
         return;
-    // As large as the picture, so that it is not made anew with each rectangle.
+    // As large as the picture, so that a rectangle of another size needs no other image.
     const gpu::ResourceId blended = graph.create_image("blended surfaces", format, g_buffer.width, g_buffer.height);
     gpu::ComputePass(graph, "stippled surfaces", *kernel_)
         .sampled(picture, sampler_)

@@ -42,7 +42,7 @@ public:
     void update(const Request& request);
     std::span<const FollowedLight> lights() const { return lights_; }
     bool is_fading() const { return fading_; }
-    // How often all lights were placed anew: at first, and where light has jumped.
+    // How often all lights were resampled: at first, and whenever the emitter has moved too far for them to follow.
     std::uint32_t starts() const { return starts_; }
 
 private:
