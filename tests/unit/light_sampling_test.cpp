@@ -321,6 +321,36 @@ TEST(LightSampling, ClustersKnowTheDarkSideOfTheGap) {
     }
 }
 
+// A point light in the open, over a small square: one walk in 1,000 hits it, and others are not tried for ever. Flux is
+// the light's share in the square's solid angle, as often as it is reflected.
+TEST(LightSampling, WalksInTheOpenAreBoundedAndKeepTheirFlux) {
+    SampledScene world;
+    const float height = 2.0f, half = 0.1123f;
+    assets::SceneBuilder builder(world.registry, world.meshes);
+    builder.quad("square", vec3(-half, 0, half), vec3(2 * half, 0, 0), vec3(0, 0, -2 * half),
+                 assets::diffuse(vec3(0.5f)));
+    const ecs::Entity light = world.registry.create();
+    world.registry.emplace<scene::Transform>(light, {vec3(0, height, 0)});
+    world.registry.emplace<scene::PointLight>(light, {vec3(1.0f)});
+    world.finish();
+    const double share = std::asin(double(half * half / (half * half + height * height))) / 3.14159265358979;
+    ASSERT_NEAR(share, 1e-3, 1e-5);
+    const int seeds = 16;
+    double flux = 0;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        SampleRequest settings;
+        settings.candidates = 1;
+        settings.seed = std::uint32_t(seed);
+        settings.termination = Termination::bounce_limit; // every hit is a sample
+        const auto samples = sample_indirect(world.emitters, 1000, settings, *world.rays);
+        // 65,536 walks, of which 66 hit; the limits are four standard deviations of independent walks.
+        EXPECT_GT(samples.size(), 33u);
+        EXPECT_LT(samples.size(), 99u);
+        flux += total_luminance(samples) / seeds;
+    }
+    EXPECT_NEAR(flux / (4.0 * 3.14159265358979 * 0.5 * share), 1.0, 4.0 / std::sqrt(65.5 * seeds));
+}
+
 // A sample on the floor under a parallel ceiling at height h: over its lobe the squared cosine u is uniform in [0, 1],
 // the term is u^2 / h^2, so a bound b takes away the integral of 1 - b h^2 / u^2 from sqrt(b) h to 1, (1 - sqrt(b)
 // h)^2.
