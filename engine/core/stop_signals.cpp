@@ -27,7 +27,7 @@ void note_signal(int signal) {
         return;
     first_signal = signal;
     itimerspec moment{};
-    moment.it_value.tv_nsec = 250'000'000;
+    moment.it_value.tv_nsec = 150'000'000; // a large level's memory takes as long again to give back
     if (has_grace != 0)
         ::timer_settime(grace, 0, &moment, nullptr);
 }

@@ -120,7 +120,7 @@ Result<VkDescriptorSet> FrameResources::allocate_set(const Pipeline& pipeline) {
 
 namespace {
 
-Status check_bindings(const Pipeline& pipeline, std::span<const Binding> bindings) {
+Status check_bindings(const Pipeline& pipeline, std::span<const Binding> bindings, std::uint64_t most_bytes) {
     const auto& declared = pipeline.bindings();
     if (bindings.size() != declared.size())
         return Error{"shader '" + pipeline.name() + "' declares " + std::to_string(declared.size()) +
@@ -129,13 +129,19 @@ Status check_bindings(const Pipeline& pipeline, std::span<const Binding> binding
         if (bindings[i].kind != declared[i].kind)
             return Error{"shader '" + pipeline.name() + "' declares binding " + std::to_string(declared[i].number) +
                          " as a " + name_of(declared[i].kind) + ", but a " + name_of(bindings[i].kind) + " is bound"};
+    for (std::size_t i = 0; i < declared.size(); ++i)
+        if (bindings[i].kind == BindingKind::storage_buffer && bindings[i].buffer_info.range > most_bytes)
+            return Error{"shader '" + pipeline.name() + "' needs " + std::to_string(bindings[i].buffer_info.range) +
+                             " bytes in binding " + std::to_string(declared[i].number) + ", and this device allows " +
+                             std::to_string(most_bytes),
+                         ErrorCode::unsupported};
     return {};
 }
 
 } // namespace
 
 Status FrameResources::bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings) {
-    SUNFLECK_TRY(check_bindings(pipeline, bindings));
+    SUNFLECK_TRY(check_bindings(pipeline, bindings, device_.traits().max_storage_range));
     device_.vk.vkCmdBindPipeline(commands, pipeline.bind_point(), pipeline.handle());
     if (bindings.empty())
         return {};

@@ -35,7 +35,8 @@ struct Binding {
     static Binding storage(const UploadSlice& slice) { return of_slice(BindingKind::storage_buffer, slice); }
     static Binding storage(const BufferRange& range) {
         Binding binding{BindingKind::storage_buffer};
-        binding.buffer_info = {range.buffer->handle(), range.offset, range.size};
+        const VkDeviceSize rest = range.buffer->size() - range.offset;
+        binding.buffer_info = {range.buffer->handle(), range.offset, range.size == VK_WHOLE_SIZE ? rest : range.size};
         return binding;
     }
     static Binding texels(const Buffer& buffer) {
@@ -93,7 +94,8 @@ public:
     }
 
     // Binds `pipeline` with one entry for each of its bindings, by ascending binding number. An error if their number
-    // or kinds are not what the shaders declare.
+    // or kinds are not what the shaders declare, and one (ErrorCode::unsupported) if a storage buffer is
+    // larger than the device lets a shader see.
     Status bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings);
     // All of the pipeline's push constants. Bytes after those that the shaders declare are padding, and left out.
     Status push_bytes(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const std::byte> constants);

@@ -170,27 +170,30 @@ void BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<
     baked_rows_.assign(rows.begin(), rows.end());
 }
 
-// How many of those that wait are baked in this frame, from the last on. What they evaluate is counted for many at
-// once.
+// How many of those that wait are baked in this frame, from the last on: until they evaluate so much, or their changes
+// are as many as a shader can see. Both are counted for many at once.
 std::uint32_t BakedLight::take_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
                                        std::uint64_t most) {
     constexpr std::size_t at_once = 1024;
+    const std::uint64_t most_changes = device_.traits().max_storage_range / sizeof(std::uint32_t);
     std::size_t count = 0;
-    std::vector<std::uint64_t> evaluations;
-    while (count < waiting_.size() && evaluations_ < most) {
-        evaluations.assign(std::min(at_once, waiting_.size() - count), 0);
-        parallel_for_chunks(evaluations.size(), 16, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t changes = jobs_.changes().size();
+    std::vector<std::uint64_t> reached; // by how many samples, or somewhat more
+    const auto is_full = [&] { return evaluations_ >= most || changes + samples.size() >= most_changes; };
+    while (count < waiting_.size() && !is_full()) {
+        reached.assign(std::min(at_once, waiting_.size() - count), 1);
+        parallel_for_chunks(reached.size(), 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 const Piece& piece = pieces_[waiting_[waiting_.size() - 1 - count - i]];
-                std::uint64_t reaching = 1;
                 for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
                     if (held_by_light_maps(samples[sample]))
-                        reaching += test_flag(database, piece.nodes, sample).has_value();
-                evaluations[i] = reaching * piece.texels();
+                        reached[i] += test_flag(database, piece.nodes, sample).has_value();
             }
         });
-        for (std::size_t i = 0; i < evaluations.size() && evaluations_ < most; ++i, ++count)
-            evaluations_ += evaluations[i];
+        for (std::size_t i = 0; i < reached.size() && !is_full(); ++i, ++count) {
+            evaluations_ += reached[i] * pieces_[waiting_[waiting_.size() - 1 - count]].texels();
+            changes += reached[i];
+        }
     }
     return std::uint32_t(count);
 }

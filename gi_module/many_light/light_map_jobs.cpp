@@ -77,6 +77,24 @@ void LightMapJobs::split(std::uint32_t invocations) {
     jobs_ = std::move(parts);
 }
 
+std::vector<LightMapJobs::Piece> LightMapJobs::pieces(std::uint64_t most_bytes) const {
+    const std::uint64_t most_jobs = most_bytes / sizeof(shared::LightMapJob), most_changes = most_bytes / 4;
+    std::vector<Piece> pieces;
+    std::uint32_t first = 0; // of the piece's changes
+    for (shared::LightMapJob job : jobs_) {
+        const std::uint64_t end = std::uint64_t(job.first_change) + job.change_count;
+        if (pieces.empty() || end - first > most_changes || pieces.back().jobs.size() >= most_jobs) {
+            pieces.emplace_back();
+            first = job.first_change;
+        }
+        // Parts of one patch share their changes, so the end may be the same again.
+        pieces.back().changes = std::span(changes_).subspan(first, std::size_t(end - first));
+        job.first_change -= first;
+        pieces.back().jobs.push_back(job);
+    }
+    return pieces;
+}
+
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
                               std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
     if (now.size() != before.size())

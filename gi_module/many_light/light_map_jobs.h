@@ -32,6 +32,14 @@ public:
     // `invocations`.
     void split(std::uint32_t invocations);
 
+    // All of them in order, in as few pieces as have at most so many bytes of jobs, and of changes, each: a shader sees
+    // only so much of a buffer. A piece's jobs count changes from its own first; one job may be larger than that.
+    struct Piece {
+        std::vector<shared::LightMapJob> jobs;
+        std::span<const std::uint32_t> changes; // of this list
+    };
+    std::vector<Piece> pieces(std::uint64_t most_bytes) const;
+
     bool empty() const { return jobs_.empty(); }
     std::span<const shared::LightMapJob> jobs() const { return jobs_; }
     std::span<const std::uint32_t> changes() const { return changes_; }

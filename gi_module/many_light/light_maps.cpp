@@ -155,17 +155,20 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
 Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
     if (jobs_.empty())
         return {};
-    SUNFLECK_ASSIGN(const gpu::UploadSlice jobs, resources.upload(jobs_.jobs()));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
     SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
-    const std::uint32_t count = std::uint32_t(jobs_.jobs().size()), row_length = std::min(count, 32768u);
-    gpu::ComputePass(graph, "light maps", *kernel_)
-        .storage_read(jobs)
-        .storage_read(changes)
-        .storage_read(rows)
-        .storage_read_write(texels_)
-        .push(shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f})
-        .dispatch(row_length, (count + row_length - 1) / row_length);
+    for (const LightMapJobs::Piece& piece : jobs_.pieces(device_.traits().max_storage_range)) {
+        SUNFLECK_ASSIGN(const gpu::UploadSlice jobs,
+                        resources.upload(std::span<const shared::LightMapJob>(piece.jobs)));
+        SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(piece.changes));
+        const std::uint32_t count = std::uint32_t(piece.jobs.size()), row_length = std::min(count, 32768u);
+        gpu::ComputePass(graph, "light maps", *kernel_)
+            .storage_read(jobs)
+            .storage_read(changes)
+            .storage_read(rows)
+            .storage_read_write(texels_)
+            .push(shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f})
+            .dispatch(row_length, (count + row_length - 1) / row_length);
+    }
     return {};
 }
 

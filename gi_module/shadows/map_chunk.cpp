@@ -59,11 +59,22 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                 (occluders == Occluders::all || item.is_static == (occluders == Occluders::static_only)))
                 add_item(item, requests, occluders, detail, part);
     });
+    std::size_t job_count = 0;
+    for (const ChunkPart& part : parts)
+        job_count += part.jobs.size();
+    Chunk chunk;
+    SUNFLECK_ASSIGN(chunk.jobs, resources.allocate(job_count * sizeof(shared::ShadowJob)));
     ChunkPart all;
     all.seen.resize(requests.size());
-    for (ChunkPart& part : parts)
-        all.append(part);
-    Chunk chunk;
+    std::size_t jobs_before = 0;
+    for (ChunkPart& part : parts) {
+        all.append(part, jobs_before);
+        // Many objects have hundreds of megabytes of jobs: they are copied once, and each part ends with that.
+        std::copy(part.jobs.begin(), part.jobs.end(),
+                  reinterpret_cast<shared::ShadowJob*>(chunk.jobs.data) + jobs_before);
+        jobs_before += part.jobs.size();
+        part = {};
+    }
     for (const ShadowRequest& request : requests)
         chunk.slots.push_back(request.slot);
     chunk.areas.resize(requests.size());
@@ -78,7 +89,6 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
     chunk.culled_count = std::uint32_t(all.culled_commands.size());
     all.commands.insert(all.commands.end(), all.culled_commands.begin(), all.culled_commands.end());
     all.commands.insert(all.commands.end(), all.hole_commands.begin(), all.hole_commands.end());
-    SUNFLECK_ASSIGN(chunk.jobs, resources.upload(std::span<const shared::ShadowJob>(all.jobs)));
     SUNFLECK_ASSIGN(chunk.commands, resources.upload(std::span<const VkDrawIndexedIndirectCommand>(all.commands)));
     return chunk;
 }

@@ -40,17 +40,16 @@ struct ShadowMaps::ChunkPart {
             command.firstInstance += std::uint32_t(jobs_before);
         to.insert(to.end(), from.begin(), from.end());
     }
-    void append(ChunkPart& part) {
-        move(part.commands, commands, jobs.size());
-        move(part.culled_commands, culled_commands, jobs.size());
-        move(part.hole_commands, hole_commands, jobs.size());
-        jobs.insert(jobs.end(), part.jobs.begin(), part.jobs.end());
+    // All but the jobs, of which so many come before the part's.
+    void append(ChunkPart& part, std::size_t jobs_before) {
+        move(part.commands, commands, jobs_before);
+        move(part.culled_commands, culled_commands, jobs_before);
+        move(part.hole_commands, hole_commands, jobs_before);
         hole_textures.insert(hole_textures.end(), part.hole_textures.begin(), part.hole_textures.end());
         for (std::size_t layer = 0; layer < part.seen.size(); ++layer)
             seen[layer] |= part.seen[layer];
         areas.insert(areas.end(), part.areas.begin(), part.areas.end());
         vertices += part.vertices;
-        part = {};
     }
 };
 
