@@ -97,16 +97,18 @@ float tile_visibility(TileLight light, Pixel pixel) {
     const int first = (int(slot) * int(tile_side) + texel.y) * int(tile_side) + texel.x;
     const float step = 2.0 / side;
     const vec2 uv = (corner + 0.5) * step - 1.0;
-    vec4 lit, vote;
+    vec4 lit, vote, values;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const float on_plane = plane_value(light, receiver, uv + step * vec2(i & 1, i >> 1));
-        const float stored = uintBitsToFloat(texelFetch(map_words, first + (i & 1) + (i >> 1) * int(tile_side)).r);
+        values[i] = uintBitsToFloat(texelFetch(map_words, first + (i & 1) + (i >> 1) * int(tile_side)).r);
         const vec2 result = texel_vote(on_plane, receiver.place.z, shadow_filter_window * receiver.bias,
-                                       shadow_filter_slack * receiver.reach, depth_step(map_bits), stored);
+                                       shadow_filter_slack * receiver.reach, depth_step(map_bits), values[i]);
         lit[i] = result.x;
         vote[i] = result.y;
     }
-    return count_votes(lit, vote, position - corner);
+    const vec2 inside = position - corner;
+    return surface_votes(values, inside, receiver.place.z, receiver.reach, depth_step(map_bits),
+                         count_votes(lit, vote, inside));
 }
 
 void main() {

@@ -189,6 +189,52 @@ TEST_F(AnywhereSharpShadows, FollowALampThatIsCarried) {
     EXPECT_LE(rested.lit_in_shadow + rested.dark_in_light, rested.shadow / 100);
 }
 
+// A wall with a door frame that stands out of it by less than a texel of the map of a lamp that moves.
+void make_door_frame(assets::SceneBuilder& builder) {
+    const scene::Material plaster = assets::diffuse(vec3(0.7f)), wood = assets::diffuse(vec3(0.4f, 0.25f, 0.1f));
+    builder.quad("wall", vec3(-2.0f, 0.0f, 0.0f), vec3(4.0f, 0.0f, 0.0f), vec3(0.0f, 3.0f, 0.0f), plaster);
+    builder.box("left", vec3(-0.55f, 0.0f, 0.0f), vec3(-0.45f, 2.1f, 0.015f), wood);
+    builder.box("right", vec3(0.45f, 0.0f, 0.0f), vec3(0.55f, 2.1f, 0.015f), wood);
+    builder.box("lintel", vec3(-0.55f, 2.1f, 0.0f), vec3(0.55f, 2.2f, 0.015f), wood);
+    builder.point_light("lamp", vec3(-0.2f, 1.25f, 1.6f), vec3(10.0f));
+    builder.camera("view", vec3(0.1f, 1.6f, 2.1f), vec3(-0.2f, 1.7f, 0.0f), 60.0f);
+}
+
+// Texels that are coarser than what stands out of a wall show it here and there, and would draw it as blots on the wall
+// beside it. What rays find lit keeps its light, at the half of the wall's edge pixels that lie beside the frame, too.
+TEST_F(AnywhereSharpShadows, ACarriedLampDrawsNoBlotsBesideAFrame) {
+    GpuWorld world(make_door_frame, "view");
+    world.request.width = 640;
+    world.request.height = 360;
+    ecs::Registry& registry = world.renderer->registry();
+    ecs::Entity lamp;
+    registry.view<scene::PointLight>().each([&](ecs::Entity entity, const scene::PointLight&) { lamp = entity; });
+    registry.emplace<scene::Mover>(lamp, {});
+    gi::Settings settings = punctual_only();
+    settings.with("moving_light_tiles", "1");
+    for (int step = 0; step < 3; ++step) {
+        scene::Transform place = *registry.try_get<scene::Transform>(lamp);
+        place.position.x += 0.07f;
+        registry.update<scene::Transform>(lamp, place);
+        scene::update_world_transforms(registry);
+        settings.shadows = true;
+        world.set(settings);
+        const io::Picture picture = world.picture();
+        settings.shadows = false;
+        world.set(settings);
+        const io::Picture unshadowed = world.picture();
+        const TracedLight traced(world, 1, true);
+        int blots = 0;
+        for (std::size_t i = 0; i < traced.pixels().size(); ++i) {
+            const TracedPixel& pixel = traced.pixels()[i];
+            if (pixel.surface && pixel.least > 0.0 && unshadowed.pixels[i].g > 0.0f)
+                blots += picture.pixels[i].g < 0.9f * unshadowed.pixels[i].g;
+        }
+        std::printf("step %d: %d pixels lost more than a tenth\n", step, blots);
+        EXPECT_LE(blots, 60);
+    }
+}
+
 // In centimetres or kilometres as in metres.
 TEST_F(AnywhereSharpShadows, InAnyUnit) {
     for (const float scale : {0.01f, 1000.0f}) {
