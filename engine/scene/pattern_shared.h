@@ -94,12 +94,33 @@ SHARED_FUNCTION float line_mean(float place, float reach, float width, bool soft
     return (line_integral(x + 0.5f * w, reach, soft) - line_integral(x - 0.5f * w, reach, soft)) / w;
 }
 
-// Rectangles of unit size with joints, each of its own tone, `tones` at most; the same over pixels that show several.
-SHARED_FUNCTION float joints_and_tones(vec2 place, vec2 width, vec2 reach, float tones, float layer) {
+// Of what a pixel shows beside a joint in the middle of which two rectangles meet, the share that is the next one's.
+// `apart`: from the pixel's middle to the joint's.
+SHARED_FUNCTION float share_beyond_joint(float apart, float reach, float width) {
+    const float half_width = 0.5f * max(width, least_pattern_width);
+    const float hidden = max(min(reach, apart + half_width) - max(apart - half_width, 0.0f), 0.0f);
+    const float own = half_width + min(apart, half_width) - hidden, beyond = max(half_width - apart - reach, 0.0f);
+    return beyond / max(own + beyond, least_pattern_width);
+}
+
+// Rectangles of unit size, each of its own tone: over pixels that reach over an edge, or an end, into the next one.
+// `shifts`: what a place in the row before, and in the row after, has as its x, beside this one.
+SHARED_FUNCTION float tone_mean(vec2 place, vec2 width, vec2 reach, vec2 shifts, float layer) {
+    const vec2 edge = floor(place + vec2(0.5f, 0.5f)), apart = abs(place - edge);
+    const float row = floor(place.y), next_row = place.y < edge.y ? edge.y : edge.y - 1.0f;
+    const float next_column = place.x < edge.x ? edge.x : edge.x - 1.0f;
+    const float beside = floor(place.x + (next_row > row ? shifts.y : shifts.x));
+    const float own = pattern_noise(floor(place.x), row, layer);
+    return own + share_beyond_joint(apart.x, reach.x, width.x) * (pattern_noise(next_column, row, layer) - own) +
+           share_beyond_joint(apart.y, reach.y, width.y) * (pattern_noise(beside, next_row, layer) - own);
+}
+
+// Rectangles with joints, `tones` at most; the same over pixels that show many.
+SHARED_FUNCTION float joints_and_tones(vec2 place, vec2 width, vec2 reach, float tones, float layer, vec2 shifts) {
     const float joints = 1.0f - (1.0f - line_mean(place.x, reach.x, width.x, false)) *
                                     (1.0f - line_mean(place.y, reach.y, width.y, false));
-    const float many = min(max(max(width.x, width.y) - 0.5f, 0.0f), 1.0f);
-    const float tone = tones * pattern_noise(floor(place.x), floor(place.y), layer);
+    const float many = min(max(max(width.x, width.y) - 1.0f, 0.0f), 1.0f);
+    const float tone = tones * tone_mean(place, width, reach, shifts, layer);
     const float mixed = tone + (0.5f * tones - tone) * many;
     return mixed + (1.0f - mixed) * joints;
 }
@@ -126,11 +147,12 @@ SHARED_FUNCTION float filtered_pattern_share(uint kind, float scale, vec3 positi
     }
     if (kind == pattern_planks)
         return joints_and_tones(vec2(at.x / 8.0f + 0.37f * floor(at.y), at.y), vec2(width.x / 8.0f, width.y),
-                                vec2(0.03f / 8.0f, 0.03f), 0.55f, 1.0f);
+                                vec2(0.03f / 8.0f, 0.03f), 0.55f, 1.0f, vec2(-0.37f, 0.37f));
     if (kind == pattern_bricks) {
         const float row = floor(at.y * 2.0f);
-        return joints_and_tones(vec2(at.x + 0.5f * (row - 2.0f * floor(0.5f * row)), at.y * 2.0f),
-                                vec2(width.x, width.y * 2.0f), vec2(0.03f, 0.06f), 0.3f, 2.0f);
+        const float shift = 0.5f * (row - 2.0f * floor(0.5f * row)), back = shift > 0.25f ? -0.5f : 0.5f;
+        return joints_and_tones(vec2(at.x + shift, at.y * 2.0f), vec2(width.x, width.y * 2.0f), vec2(0.03f, 0.06f),
+                                0.3f, 2.0f, vec2(back, back));
     }
     return 0.0f;
 }
