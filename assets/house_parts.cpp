@@ -1,6 +1,8 @@
 // Furniture, lamps and things that move.
 #include "assets/house_parts.h"
 
+#include "engine/scene/summer_sky.h"
+
 #include <algorithm>
 
 namespace sunfleck::assets {
@@ -13,6 +15,8 @@ const vec3 dark_cord(0.06f);
 void House::sky(vec3 radiance) {
     const ecs::Entity entity = group("sky", vec3(0.0f));
     s_.registry().emplace<scene::Environment>(entity, {radiance, false});
+    s_.registry().emplace<scene::EnvironmentMap>(entity,
+                                                 {std::string(scene::summer_sky_name), 0.0f, scene::summer_sky()});
 }
 
 void House::player_start(vec3 foot, vec3 looking_at) {

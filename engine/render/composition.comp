@@ -59,7 +59,7 @@ void main() {
     vec4 value = vec4(0.0, 0.0, 0.0, hit ? 1.0 : 0.0);
     bool radiance = false;
     if (constants.view == view_final) {
-        value.rgb = hit ? surface_radiance(pixel, surface) : sky_radiance(pixel);
+        value.rgb = hit ? surface_radiance(pixel, surface) : sky_radiance(vec2(pixel) + 0.5);
         value.a = 1.0;
         radiance = true;
     } else if (constants.view == view_irradiance) {

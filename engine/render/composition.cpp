@@ -19,11 +19,20 @@ Result<CompositionPass> CompositionPass::create(gpu::Device& device, gpu::Pipeli
         for (const std::uint32_t sky : {0, 1}) {
             views.specialization = {emission, sky};
             SUNFLECK_ASSIGN(pass.views_[emission][sky], pipelines.compute(views));
-            for (const std::uint32_t brightness : {0, 1})
-                for (const std::uint32_t glare : {0, 1}) {
-                    final.specialization = {emission, sky, brightness, glare};
-                    SUNFLECK_ASSIGN(pass.final_[emission][sky][brightness][glare], pipelines.graphics(final));
-                }
+        }
+    for (const std::uint32_t emission : {0, 1})
+        for (const std::uint32_t brightness : {0, 1})
+            for (const std::uint32_t glare : {0, 1}) {
+                final.specialization = {emission, 0, brightness, glare};
+                SUNFLECK_ASSIGN(pass.final_[emission][brightness][glare], pipelines.graphics(final));
+            }
+    final.depth_format = depth_format; // 0 where no surface is, which is the depth of the triangle
+    final.depth_compare = VK_COMPARE_OP_EQUAL;
+    final.depth_write = false;
+    for (const std::uint32_t brightness : {0, 1})
+        for (const std::uint32_t glare : {0, 1}) {
+            final.specialization = {0, 1, brightness, glare};
+            SUNFLECK_ASSIGN(pass.sky_[brightness][glare], pipelines.graphics(final));
         }
     gpu::GraphicsDescription emission;
     emission.vertex_shader = "engine/render/composition_emission.vert";
@@ -91,44 +100,56 @@ void CompositionPass::add_final(gpu::FrameGraph& graph, const scene::GpuScene& s
         .read(g_buffer.albedo, gpu::Usage::sampled)
         .read(emission_image ? g_buffer.emission : g_buffer.surface, gpu::Usage::sampled)
         .read(input.glare.valid() ? input.glare : g_buffer.albedo, gpu::Usage::sampled)
-        .read(input.specular.valid() ? input.specular : g_buffer.albedo, gpu::Usage::sampled)
-        .write(output, gpu::Usage::colour_attachment)
+        .read(input.specular.valid() ? input.specular : g_buffer.albedo, gpu::Usage::sampled);
+    if (sky_has_picture(input))
+        pass.read(g_buffer.depth, gpu::Usage::depth_attachment);
+    pass.write(output, gpu::Usage::colour_attachment)
         .execute([this, &scene, g_buffer, input, camera, output, emission_image](gpu::PassContext& context) -> Status {
-            const gpu::Pipeline& kernel =
-                *final_[emission_image][sky_has_picture(input)][input.alpha_is_brightness][input.glare.valid()];
-            const shared::CompositionConstants constants = composition_constants(g_buffer, input);
-            const auto image = [&](gpu::ResourceId id) {
-                return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
-            };
+            const gpu::Pipeline& kernel = *final_[emission_image][input.alpha_is_brightness][input.glare.valid()];
             auto target =
                 gpu::rendering_attachment(context.graph.view(output), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
             target.loadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE; // every pixel is written
             VkRenderingInfo rendering{VK_STRUCTURE_TYPE_RENDERING_INFO};
-            rendering.renderArea.extent = {constants.width, constants.height};
+            rendering.renderArea.extent = {g_buffer.width, g_buffer.height};
             rendering.layerCount = 1;
             rendering.colorAttachmentCount = 1;
             rendering.pColorAttachments = &target;
             const gpu::DeviceFunctions& vk = context.device.vk;
-            // Bound, but not read, where there is none.
-            const gpu::Binding bindings[] = {image(input.irradiance),
-                                             image(g_buffer.albedo),
-                                             image(emission_image ? g_buffer.emission : g_buffer.albedo),
-                                             input.sky_image != nullptr ? input.sky_image->binding()
-                                                                        : image(g_buffer.albedo),
-                                             gpu::Binding::uniform(camera),
-                                             glare_binding(context, g_buffer, input),
-                                             image(input.specular.valid() ? input.specular : g_buffer.albedo)};
-            gpu::begin_rendering(vk, context.commands, rendering, constants.width, constants.height);
-            Status status = context.resources.bind(context.commands, kernel, bindings);
-            if (status)
-                status = context.resources.push(context.commands, kernel, constants);
-            if (status)
-                vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
+            gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
+            Status status = draw_all(context, kernel, g_buffer, input, camera);
             if (status && !emission_image)
                 status = draw_emission(context, scene, g_buffer, input, camera);
             vk.vkCmdEndRendering(context.commands);
+            if (!status || !sky_has_picture(input))
+                return status;
+            target.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+            const auto depth = gpu::rendering_attachment(context.graph.view(g_buffer.depth),
+                                                         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, true);
+            rendering.pDepthAttachment = &depth;
+            gpu::begin_rendering(vk, context.commands, rendering, g_buffer.width, g_buffer.height);
+            status = draw_all(context, *sky_[input.alpha_is_brightness][input.glare.valid()], g_buffer, input, camera);
+            vk.vkCmdEndRendering(context.commands);
             return status;
         });
+}
+
+Status CompositionPass::draw_all(gpu::PassContext& context, const gpu::Pipeline& kernel, const GBuffer& g_buffer,
+                                 const CompositionInput& input, const gpu::UploadSlice& camera) const {
+    const auto image = [&](gpu::ResourceId id) {
+        return gpu::Binding::sampled_image(context.graph.view(id), sampler_);
+    };
+    // Bound, but not read, where there is none.
+    const gpu::Binding bindings[] = {image(input.irradiance),
+                                     image(g_buffer.albedo),
+                                     image(g_buffer.emission.valid() ? g_buffer.emission : g_buffer.albedo),
+                                     input.sky_image != nullptr ? input.sky_image->binding() : image(g_buffer.albedo),
+                                     gpu::Binding::uniform(camera),
+                                     glare_binding(context, g_buffer, input),
+                                     image(input.specular.valid() ? input.specular : g_buffer.albedo)};
+    SUNFLECK_TRY(context.resources.bind(context.commands, kernel, bindings));
+    SUNFLECK_TRY(context.resources.push(context.commands, kernel, composition_constants(g_buffer, input)));
+    context.device.vk.vkCmdDraw(context.commands, 3, 1, 0, 0);
+    return {};
 }
 
 gpu::Binding CompositionPass::glare_binding(gpu::PassContext& context, const GBuffer& g_buffer,

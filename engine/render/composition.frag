@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // The tone-mapped final picture, with as few reads a pixel as there can be: on a CPU device they are what it costs.
-// Surfaces whose emission has no texture are drawn over it (composition_emission.frag).
+// Surfaces whose emission has no texture are drawn over it (composition_emission.frag), and so is a sky with a picture,
+// by this shader again, on the pixels that show it.
 #include "engine/core/shader_language.h"
 #include "engine/render/composition_shared.h"
 #include "engine/render/tone_map.h"
@@ -42,7 +43,7 @@ void main() {
     const float kept = has_glare != 0 ? 1.0 - constants.glare_share : 1.0;
     if (textured_emission != 0)
         radiance += kept * texelFetch(emission_image, pixel, 0).rgb;
-    radiance = texel.a > albedo_of_nothing ? radiance : kept * sky_radiance(pixel);
+    radiance = texel.a > albedo_of_nothing ? radiance : kept * sky_radiance(gl_FragCoord.xy);
     if (has_glare != 0)
         radiance += glare(gl_FragCoord.xy / vec2(constants.width, constants.height));
     const vec3 shown = shown_from_radiance(radiance, constants.exposure);

@@ -40,15 +40,20 @@ private:
                    const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
     void add_view(gpu::FrameGraph& graph, const scene::GpuScene& scene, const GBuffer& g_buffer,
                   const CompositionInput& input, const gpu::UploadSlice& camera, gpu::ResourceId output) const;
+    // One triangle over all of the picture.
+    Status draw_all(gpu::PassContext& context, const gpu::Pipeline& kernel, const GBuffer& g_buffer,
+                    const CompositionInput& input, const gpu::UploadSlice& camera) const;
     // Another image stands in where there is none.
     gpu::Binding glare_binding(gpu::PassContext& context, const GBuffer& g_buffer, const CompositionInput& input) const;
     Status draw_emission(gpu::PassContext& context, const scene::GpuScene& scene, const GBuffer& g_buffer,
                          const CompositionInput& input, const gpu::UploadSlice& camera) const;
 
-    // [emission has an image][the sky has a picture]; final pictures: [alpha is brightness][glare], too
-    const gpu::Pipeline* views_[2][2] = {};
-    const gpu::Pipeline* final_[2][2][2][2] = {};
+    const gpu::Pipeline* views_[2][2] = {};    // [emission has an image][the sky has a picture]
+    const gpu::Pipeline* final_[2][2][2] = {}; // [emission has an image][alpha is brightness][glare]
+    // [alpha is brightness][glare]. A picture of the sky is drawn where it shows, by a depth test: looked up for every
+    // pixel, it takes a CPU device as long as all the rest.
     const gpu::Pipeline* emission_[2][2] = {};
+    const gpu::Pipeline* sky_[2][2] = {};
     VkSampler sampler_ = VK_NULL_HANDLE, linear_ = VK_NULL_HANDLE;
 };
 
