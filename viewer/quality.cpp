@@ -53,7 +53,8 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     // A picture is as near to the path tracer with a quarter as with half of its pixels in each direction, at any size;
     // it is the repair that draws what is fine.
     result.low_resolution = quality == Quality::ultra ? 1 : 4;
-    result.patch_levels = 2; // houses have many small surfaces
+    result.repair_contacts = quality > Quality::low; // with less, shadow maps are too coarse to show contacts
+    result.patch_levels = 2;                         // houses have many small surfaces
     result.dynamic_share = 0.2f;
     result.map_priority = gi::MapPriority::contribution;
     if (gi::Settings::find("moving_light_tiles") != nullptr)

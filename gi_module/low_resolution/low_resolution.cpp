@@ -145,15 +145,16 @@ Status LowResolution::add_passes(gpu::FrameGraph& graph, const LowResolutionSett
         low_pixels_ = repaired_ = not_repaired_ = 0;
         return {};
     }
-    SUNFLECK_TRY(add_reconstruction(stage, through_buffer));
+    SUNFLECK_TRY(add_reconstruction(stage, through_buffer, settings.repair_contacts));
     SUNFLECK_TRY(add_compaction(stage));
     stage.repair = stage.resolves = true;
     SUNFLECK_TRY(light_stage(stage, contributors));
     return add_counters(stage, frame);
 }
 
-Status LowResolution::add_reconstruction(const PixelStage& stage, bool through_buffer) {
-    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipeline("reconstruct.comp", {stage.constants.scale, through_buffer}));
+Status LowResolution::add_reconstruction(const PixelStage& stage, bool through_buffer, bool repairs_contacts) {
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel,
+                    pipeline("reconstruct.comp", {stage.constants.scale, through_buffer, repairs_contacts}));
     gpu::ComputePass(stage.graph, "reconstruction", *kernel)
         .uniform(stage.camera)
         .sampled(stage.g_buffer.depth, sampler_)

@@ -84,7 +84,7 @@ private:
                        gpu::FrameResources& resources, VkFormat texel_format = VK_FORMAT_UNDEFINED);
     Result<const gpu::Pipeline*> pipeline(const char* shader, std::vector<std::uint32_t> specialization);
     Status light_stage(PixelStage stage, std::span<const PixelLighting> contributors);
-    Status add_reconstruction(const PixelStage& stage, bool through_buffer);
+    Status add_reconstruction(const PixelStage& stage, bool through_buffer, bool repairs_contacts);
     Status add_compaction(const PixelStage& stage);
     Status add_counters(const PixelStage& stage, const LowResolutionFrame& frame);
 

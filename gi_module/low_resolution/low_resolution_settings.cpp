@@ -15,7 +15,10 @@ const TypeDescription& LowResolutionSettings::description() {
                         "Pixels whose low-resolution neighbours differ by more than this share are lit at full "
                         "resolution"),
          SUNFLECK_FIELD(S, repair_angle, "degrees", 0.1, 90,
-                        "Pixels whose normals differ by more from all neighbours are lit at full resolution")}};
+                        "Pixels whose normals differ by more from all neighbours are lit at full resolution"),
+         SUNFLECK_FIELD(S, repair_contacts, "", 0, 1,
+                        "Pixels of a surface just behind another one's edge are lit at full resolution: narrow shadows "
+                        "under a shelf, beside a frame")}};
     return type;
 }
 

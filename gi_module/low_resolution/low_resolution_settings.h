@@ -9,6 +9,7 @@ struct LowResolutionSettings {
     std::uint32_t low_resolution = 4;
     float repair_contrast = 0.3f;
     float repair_angle = 12.0f;
+    bool repair_contacts = true;
 
     static const TypeDescription& description();
 };

@@ -12,10 +12,15 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const int scale = 4;
 layout(constant_id = 1) const uint to_buffer = 0; // 1: the picture is written to a buffer, which is copied
+layout(constant_id = 2) const uint repairs_contacts = 1;
 
 // If the valid neighbours' bilinear weights sum up to less, the pixel lies beyond them, at a crease or a silhouette,
 // and blending would extrapolate.
 const float min_weight_sum = 0.3;
+
+// A surface that stands before another by less than this, in tolerances (about two low-resolution pixels in all), darkens
+// it where they seem to meet: under a shelf, beside a frame.
+const float contact_reach = 14.0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -87,6 +92,25 @@ bool on_one_plane(Neighbour neighbours[4], float distance) {
                abs(neighbours[i].height) * max(max(corners.x, corners.y), max(corners.z, corners.w)) < distance;
     }
     return same;
+}
+
+// Whether, half a cell from a pixel that lies on a plane, a surface hides a part of that plane which is little further
+// away. The shadow between them may be narrower than what lies between two low-resolution pixels. Where two surfaces
+// only meet, the pixel is before the other one, and not behind it. `plane`, `height`: see Neighbour.
+bool at_contact(ivec2 pixel, ivec2 inside, float depth, vec3 plane, float height, float tolerance) {
+    const ivec2 last = ivec2(constants.width, constants.height) - 1;
+    const vec3 place = camera_ray(camera, vec2(pixel) + 0.5) * (camera.position.w / max(depth, 1e-7));
+    bool contact = false;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 step = (i & 1) == 0 ? ivec2(i - 1, 0) : ivec2(0, i - 2);
+        const ivec2 beside = clamp(pixel + (scale / 2) * step, ivec2(0), last);
+        const float other = texelFetch(depth_image, beside, 0).r;
+        const vec3 normal = unpack_normal(texelFetch(normals_image, beside, 0).g);
+        const vec3 to_other = camera_ray(camera, vec2(beside) + 0.5) * (camera.position.w / max(other, 1e-7));
+        const float before = height * (other - dot(plane, vec3(1.0, vec2(inside + beside - pixel))));
+        contact = contact || (before > tolerance && before < contact_reach * tolerance && dot(normal, place - to_other) < 0.0);
+    }
+    return contact;
 }
 
 // Half-precision bits of a non-negative value, rounded down.
@@ -186,7 +210,13 @@ void main() {
         }
         const bvec4 on_plane = lessThan(off_plane, vec4(tolerance));
         vec4 shares = weights;
-        bool again = all_differ;
+        int own = 0; // a neighbour on the pixel's plane
+        [[unroll]] for (int i = 1; i < 4; ++i)
+            own = on_plane[i] && exists[i] ? i : own;
+        bool contact = false;
+        if (repairs_contacts != 0)
+            contact = at_contact(pixel, inside, depth, neighbours[own].depth_plane, heights[own], tolerance);
+        bool again = contact || all_differ;
         if (!(all(same_normal) && all(on_plane))) {
             const vec4 valid = vec4(on_plane) * vec4(lessThan(apart, vec4(constants.normal_limit))) * vec4(exists);
             shares = (weights + 1e-3) * valid;
@@ -194,7 +224,7 @@ void main() {
             const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
             const float highest = max(max(high.x, high.y), max(high.z, high.w));
             const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-            again = sum < min_weight_sum || highest - lowest > constants.contrast * highest;
+            again = contact || sum < min_weight_sum || highest - lowest > constants.contrast * highest;
             shares = sum == 0.0 ? weights : shares / sum; // in case there is no room to light it again
         }
         const bool surface = depth > 0.0;
