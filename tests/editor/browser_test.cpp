@@ -1,32 +1,12 @@
 // The Browser panel: shadow maps and the visibility of a patch, as the lighting lists them.
-#include "tests/editor/driven_editor.h"
-
-#include <gtest/gtest.h>
+#include "tests/editor/window_fixture.h"
 
 namespace sunfleck {
 namespace {
 
-namespace fs = std::filesystem;
-using tests::DrivenEditor;
-
-class EditorWindowBrowser : public testing::Test {
+class EditorWindowBrowser : public tests::EditorWindowTest {
 protected:
-    void SetUp() override {
-        if (!DrivenEditor::possible())
-            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
-        folder = fs::path(testing::TempDir()) / ("sunfleck_browser_" + std::to_string(getpid()));
-        fs::remove_all(folder);
-        editor = std::make_unique<DrivenEditor>(folder);
-    }
-    void TearDown() override {
-        if (HasFailure() && editor != nullptr)
-            std::printf("%s\n", editor->log().c_str());
-        editor.reset();
-        fs::remove_all(folder);
-    }
     double number(const std::string& name) const { return std::atof(editor->value("browser/" + name).c_str()); }
-    fs::path folder;
-    std::unique_ptr<DrivenEditor> editor;
 };
 
 TEST_F(EditorWindowBrowser, MapsAreSortedPinnedAndRedrawn) {

@@ -8,6 +8,7 @@
 #include "test_places.h"
 #include "tests/support/driven_display.h"
 
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -76,30 +77,51 @@ public:
     bool appears(const std::string& name) const {
         return wait_until([&] { return find(name).has_value(); });
     }
+    // Time for events on their way: what widgets() tells until then may be of before.
+    static void let_events_arrive() { std::this_thread::sleep_for(std::chrono::milliseconds(250)); }
     // The scene is drawn as it will stay.
-    bool settles() const { return wait_for("status/settled", "yes", 240.0); }
+    bool settles() const {
+        let_events_arrive();
+        return wait_for("status/settled", "yes", 240.0);
+    }
 
+    // Points at a widget, and again where it has moved meanwhile: lists that are searched grow shorter with each
+    // letter.
+    bool reach(const std::string& name) {
+        for (int tries = 0; tries < 10 && appears(name); ++tries) {
+            const std::optional<Widget> before = find(name);
+            if (before)
+                point_at(*before);
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            const std::optional<Widget> now = find(name);
+            if (before && now && std::abs(now->x - before->x) < 2.0 && std::abs(now->y - before->y) < 2.0)
+                return true;
+        }
+        return false;
+    }
     bool click(const std::string& name, const std::string& button = "1", int times = 1) {
-        if (!appears(name))
+        if (!reach(name))
             return false;
-        point_at(*find(name));
         run("xdotool click --repeat " + std::to_string(times) + " --delay 60 " + button);
         return true;
     }
     // Presses at the widget's middle, moves and lets go.
     bool drag(const std::string& name, int x, int y) {
-        if (!appears(name))
+        if (!reach(name))
             return false;
-        point_at(*find(name));
         run("xdotool mousedown 1");
         for (int step = 0; step < 6; ++step)
             run("xdotool mousemove_relative -- " + std::to_string(x / 6) + " " + std::to_string(y / 6) + " sleep 0.03");
         run("xdotool mouseup 1");
         return true;
     }
+    // As a hand does, past the place beside it: a jump to where the pointer was when the camera began to fly is taken
+    // by GLFW for its own, which put the pointer back there.
     void point_at(const Widget& widget) {
-        run("xdotool mousemove --window " + window_ + " " + std::to_string(int(widget.x + 0.5 * widget.width)) + " " +
-            std::to_string(int(widget.y + 0.5 * widget.height)) + " sleep 0.05");
+        const int x = int(widget.x + 0.5 * widget.width), y = int(widget.y + 0.5 * widget.height);
+        const std::string move = " mousemove --window " + window_ + " ";
+        run("xdotool" + move + std::to_string(x - 1) + " " + std::to_string(y) + move + std::to_string(x) + " " +
+            std::to_string(y) + " sleep 0.05");
     }
     void point_at(int x, int y) {
         run("xdotool mousemove --window " + window_ + " " + std::to_string(x) + " " + std::to_string(y));

@@ -1,9 +1,7 @@
 // Seeded random edits through the window, some while the scene plays or its light is made: all of them undone give the
 // bytes of the first save, all of them done again those of the last.
-#include "tests/editor/driven_editor.h"
+#include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
-
-#include <gtest/gtest.h>
 
 #include <random>
 
@@ -82,28 +80,22 @@ private:
     std::mt19937 random_;
 };
 
-TEST(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
-    if (!DrivenEditor::possible())
-        GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+using EditorWindowHistory = tests::EditorWindowTest;
+
+TEST_F(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
     const char* const seed_text = std::getenv("SUNFLECK_SEED");
     const std::uint32_t seed = seed_text != nullptr ? std::uint32_t(std::atoi(seed_text)) : 1u;
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const fs::path folder = fs::path(testing::TempDir()) / ("sunfleck_artist_" + std::to_string(getpid()));
-    fs::remove_all(folder);
-    DrivenEditor editor(folder);
-    editor.start({"cornell"});
-    ASSERT_TRUE(editor.settles()) << editor.log();
+    editor->start({"cornell"});
+    ASSERT_TRUE(editor->settles()) << editor->log();
     // Each into a folder of its own, under the same name.
     const auto saved = [&](const std::string& name) {
         fs::create_directories(folder / name);
-        editor.key("ctrl+shift+s");
-        EXPECT_TRUE(editor.click("dialog/name"));
-        editor.key("ctrl+a");
-        editor.type(editor.file(name + "/room.scene.json"));
-        editor.key("Return");
+        editor->key("ctrl+shift+s");
+        name_file(editor->file(name + "/room.scene.json"));
         EXPECT_TRUE(DrivenEditor::wait_until([&] { return fs::exists(folder / name / "room.scene.json"); }))
-            << editor.value("status/message");
-        EXPECT_TRUE(editor.wait_for("menu/title", "room.scene.json"));
+            << editor->value("status/message");
+        EXPECT_TRUE(editor->wait_for("menu/title", "room.scene.json"));
         std::string bytes;
         for (const char* file : {"room.scene.json", "room.glb"})
             if (const auto text = read_file(folder / name / file))
@@ -111,18 +103,18 @@ TEST(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
         return bytes;
     };
     const std::string first = saved("first");
-    RandomArtist artist(editor, seed);
+    RandomArtist artist(*editor, seed);
     const int edits = tests::by_size(6, 300);
-    for (int i = 0; i < edits && editor.runs(); ++i)
+    for (int i = 0; i < edits && editor->runs(); ++i)
         artist.edit();
-    ASSERT_TRUE(editor.runs()) << editor.log();
-    editor.key("Escape");
+    ASSERT_TRUE(editor->runs()) << editor->log();
+    editor->key("Escape");
     // What was undone among the edits is done again first, so that the end is known.
     const auto many = [&](const std::string& key) {
         std::string command = "xdotool key --delay 25";
         for (int i = 0; i < edits + 5; ++i)
             command += " " + key;
-        editor.run(command);
+        editor->run(command);
     };
     many("ctrl+shift+z");
     const std::string last = saved("last");
@@ -130,11 +122,10 @@ TEST(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
     EXPECT_EQ(saved("undone"), first);
     many("ctrl+shift+z");
     EXPECT_EQ(saved("redone"), last);
-    const auto report = editor.end();
+    const auto report = editor->end();
     ASSERT_TRUE(report.is_object());
     EXPECT_GT(report["edits"], edits / 4) << "most of them were edits";
     EXPECT_NE(first, last);
-    fs::remove_all(folder);
 }
 
 } // namespace

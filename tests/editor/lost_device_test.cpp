@@ -1,9 +1,7 @@
 // The editor when its GPU stops answering, by a Vulkan layer (tests/robust/lossy_layer.cpp): one message, everything is
 // where it was, a new device goes on with the picture; the third loss ends the program, and no edit is lost.
-#include "tests/editor/driven_editor.h"
+#include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
-
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <random>
@@ -33,25 +31,18 @@ private:
     std::vector<std::pair<std::string, std::string>> variables_;
 };
 
-class EditorWindowLoss : public testing::Test {
+class EditorWindowLoss : public tests::EditorWindowTest {
 protected:
     void SetUp() override {
-        if (!DrivenEditor::possible())
-            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
-        folder = fs::path(testing::TempDir()) / ("sunfleck_loss_" + std::to_string(getpid()));
-        fs::remove_all(folder);
+        EditorWindowTest::SetUp();
         environment = std::make_unique<Environment>(std::vector<std::pair<std::string, std::string>>{
             {"VK_LAYER_PATH", SUNFLECK_LAYERS ":/usr/share/vulkan/explicit_layer.d"},
             {"VK_INSTANCE_LAYERS", "VK_LAYER_SUNFLECK_lossy"},
             {"SUNFLECK_LOSE_FILE", (folder / "lose").string()}});
-        editor = std::make_unique<DrivenEditor>(folder);
     }
     void TearDown() override {
-        if (HasFailure() && editor != nullptr)
-            std::printf("%s\n", editor->log().c_str());
-        editor.reset();
+        EditorWindowTest::TearDown();
         environment.reset();
-        fs::remove_all(folder);
     }
     int count(const std::string& part) const {
         const std::string text = editor->log();
@@ -71,9 +62,7 @@ protected:
     }
     static constexpr const char *again = "begins again on a new device",
                                 *roughness = "inspector/Material/roughness/value";
-    fs::path folder;
     std::unique_ptr<Environment> environment;
-    std::unique_ptr<DrivenEditor> editor;
 };
 
 TEST_F(EditorWindowLoss, EverythingIsWhereItWas) {

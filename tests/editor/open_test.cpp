@@ -1,33 +1,17 @@
 // What comes later appears by itself: a technique that only the tests know is in the editor's panels and menus, its
 // setting can be undone and is saved.
-#include "tests/editor/driven_editor.h"
-
-#include <gtest/gtest.h>
+#include "tests/editor/window_fixture.h"
 
 namespace sunfleck {
 namespace {
 
-namespace fs = std::filesystem;
-using tests::DrivenEditor;
-
-class EditorOpen : public testing::Test {
+class EditorOpen : public tests::EditorWindowTest {
 protected:
     void SetUp() override {
-        if (!DrivenEditor::possible())
-            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
-        folder = fs::path(testing::TempDir()) / ("sunfleck_open_" + std::to_string(getpid()));
-        fs::remove_all(folder);
-        editor = std::make_unique<DrivenEditor>(folder);
-        editor->start({"cornell"}, SUNFLECK_OPEN_EDITOR);
+        EditorWindowTest::SetUp();
+        if (!IsSkipped())
+            editor->start({"cornell"}, SUNFLECK_OPEN_EDITOR);
     }
-    void TearDown() override {
-        if (HasFailure() && editor != nullptr)
-            std::printf("%s\n", editor->log().c_str());
-        editor.reset();
-        fs::remove_all(folder);
-    }
-    fs::path folder;
-    std::unique_ptr<DrivenEditor> editor;
 };
 
 TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
@@ -81,10 +65,7 @@ TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
     ASSERT_TRUE(editor->click("tab Counters"));
 
     editor->key("ctrl+shift+s");
-    ASSERT_TRUE(editor->click("dialog/name"));
-    editor->key("ctrl+a");
-    editor->type(editor->file("mine.scene.json"));
-    editor->key("Return");
+    ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
     const auto saved = nlohmann::json::parse(read_file(folder / "mine.scene.json").value());
     EXPECT_EQ(saved["settings"]["constant_irradiance"], "2") << saved["settings"].dump();

@@ -1,8 +1,6 @@
 // The editor's window under random use: clicks, drags, keys and texts of all kinds do no harm.
-#include "tests/editor/driven_editor.h"
+#include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
-
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
@@ -11,7 +9,6 @@
 namespace sunfleck {
 namespace {
 
-namespace fs = std::filesystem;
 using tests::DrivenEditor, tests::Widget;
 
 // What ends the program, or would lead out of the test's folder.
@@ -24,8 +21,10 @@ public:
     RandomUser(DrivenEditor& editor, std::uint32_t seed) : editor_(editor), random_(seed) {}
 
     void act() {
-        const std::uint32_t kind = below(20);
-        if (kind < 9)
+        const std::uint32_t kind = below(24);
+        if (kind >= 20)
+            menu();
+        else if (kind < 9)
             click();
         else if (kind < 12)
             drag();
@@ -53,6 +52,26 @@ private:
             editor_.run("xdotool click --repeat " + std::to_string(1 + below(2)) + " --delay 60 " +
                         buttons[below(std::size(buttons))]);
         }
+    }
+    // Lets one fall, and chooses.
+    void menu() {
+        choose([](const std::string& name) {
+            return name.starts_with("menu/") && name != "menu/title" && name.find('/', 5) == std::string::npos;
+        });
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        choose([](const std::string& name) { return name.starts_with("menu/") && name.find('/', 5) != name.npos; });
+        if (below(3) == 0)
+            editor_.key("Escape");
+    }
+    void choose(const std::function<bool(const std::string&)>& wanted) {
+        widgets_ = editor_.widgets();
+        std::erase_if(widgets_, [&](const Widget& widget) {
+            return is_left_out(widget.name) || widget.value == "disabled" || !wanted(widget.name);
+        });
+        if (widgets_.empty())
+            return;
+        editor_.point_at(widgets_[below(widgets_.size())]);
+        editor_.run("xdotool click 1");
     }
     void drag() {
         if (const Widget* widget = some_widget())
@@ -111,28 +130,31 @@ double resident_mib(pid_t process) {
     return 0.0;
 }
 
+using EditorWindowUse = tests::EditorWindowTest;
+
 // A quarter of a minute; ./run bench editor takes twenty. SUNFLECK_SEED repeats a failure.
-TEST(EditorWindowUse, RandomUseDoesNoHarm) {
-    if (!DrivenEditor::possible())
-        GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+TEST_F(EditorWindowUse, RandomUseDoesNoHarm) {
     const char* const seed_text = std::getenv("SUNFLECK_SEED");
     const std::uint32_t seed = seed_text != nullptr ? std::uint32_t(std::atoi(seed_text)) : 1u;
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const fs::path folder = fs::path(testing::TempDir()) / ("sunfleck_use_" + std::to_string(getpid()));
-    fs::remove_all(folder);
-    DrivenEditor editor(folder);
-    editor.start({"cornell", "--validation"});
-    ASSERT_TRUE(editor.settles()) << editor.log();
-    RandomUser user(editor, seed);
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(tests::by_size(15, 1200));
+    editor->start({"cornell", "--validation"});
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    RandomUser user(*editor, seed);
+    const char* const seconds_text = std::getenv("SUNFLECK_USE_SECONDS");
+    const int seconds = seconds_text != nullptr ? std::atoi(seconds_text) : tests::by_size(15, 1200);
+    const auto begin = std::chrono::steady_clock::now(), end = begin + std::chrono::seconds(seconds);
     int events = 0;
-    for (; std::chrono::steady_clock::now() < end && editor.runs(); ++events)
+    double half = 0.0; // memory when half of the time has passed, MiB
+    for (; std::chrono::steady_clock::now() < end && editor->runs(); ++events) {
         user.act();
-    ASSERT_TRUE(editor.runs()) << "ended after " << events << " events\n" << editor.log();
-    const double memory = resident_mib(editor.process());
-    const auto report = editor.end();
-    ASSERT_TRUE(report.is_object()) << "ended after " << events << " events\n" << editor.log();
-    EXPECT_EQ(report["validation_messages"], 0) << editor.log();
+        if (half == 0.0 && std::chrono::steady_clock::now() - begin > (end - begin) / 2)
+            half = resident_mib(editor->process());
+    }
+    ASSERT_TRUE(editor->runs()) << "ended after " << events << " events\n" << editor->log();
+    const double memory = resident_mib(editor->process());
+    const auto report = editor->end();
+    ASSERT_TRUE(report.is_object()) << "ended after " << events << " events\n" << editor->log();
+    EXPECT_EQ(report["validation_messages"], 0) << editor->log();
     int used = 0;
     std::string unused;
     for (const auto& [name, uses] : report["commands"].items())
@@ -140,9 +162,13 @@ TEST(EditorWindowUse, RandomUseDoesNoHarm) {
             ++used;
         else
             unused += " '" + name + "'";
-    std::printf("%d events, %d of %d commands, %.0f MiB at the end; never:%s\n", events, used,
-                int(report["commands"].size()), memory, unused.c_str());
-    fs::remove_all(folder);
+    const int commands = int(report["commands"].size());
+    std::printf("seed %u: %d events, %d of %d commands, %.0f MiB at half time, %.0f MiB at the end; never:%s\n", seed,
+                events, used, commands, half, memory, unused.c_str());
+    if (seconds >= 1200) { // of less, chance decides
+        EXPECT_GE(used, 0.9 * commands);
+        EXPECT_LE(memory, 1.01 * half);
+    }
 }
 
 } // namespace

@@ -1,0 +1,52 @@
+// What all tests of the editor's window begin and end with: a folder of the test's own, an editor that can be started
+// in a display of its own, and its log where something failed.
+#pragma once
+
+#include "tests/editor/driven_editor.h"
+
+#include <gtest/gtest.h>
+
+namespace sunfleck::tests {
+
+class EditorWindowTest : public testing::Test {
+protected:
+    // The size of the window, as of --size.
+    explicit EditorWindowTest(std::string size = "1280x800") : size_(std::move(size)) {}
+
+    void SetUp() override {
+        if (!DrivenEditor::possible())
+            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
+        folder = std::filesystem::path(testing::TempDir()) / ("sunfleck_editor_" + std::to_string(getpid()));
+        std::filesystem::remove_all(folder);
+        editor = std::make_unique<DrivenEditor>(folder, size_);
+    }
+    void TearDown() override {
+        if (HasFailure() && editor != nullptr)
+            std::printf("%s\n", editor->log().c_str());
+        editor.reset();
+        std::filesystem::remove_all(folder);
+    }
+
+    // Lets the menu fall and chooses.
+    void menu(const std::string& group, const std::string& entry) const {
+        ASSERT_TRUE(editor->click("menu/" + group));
+        ASSERT_TRUE(editor->click("menu/" + group + "/" + entry)) << group << ": " << entry;
+    }
+    // Types a path into the file dialog that is open, or is about to open.
+    void name_file(const std::string& path) const {
+        editor->let_events_arrive(); // and no other dialog is meant
+        ASSERT_TRUE(editor->click("dialog/name"));
+        editor->key("ctrl+a");
+        editor->type(path);
+        editor->key("Return");
+    }
+    std::string message() const { return editor->value("status/message"); }
+
+    std::filesystem::path folder;
+    std::unique_ptr<DrivenEditor> editor;
+
+private:
+    std::string size_;
+};
+
+} // namespace sunfleck::tests
