@@ -2,6 +2,7 @@
 
 #include "engine/statistics/clipped_sum.h"
 #include "engine/statistics/summary.h"
+#include "viewer/preparation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,20 @@ namespace {
 
 using CostClock = std::chrono::steady_clock;
 
-constexpr int warm_up_frames = 4, frames_of_block = 3;
-constexpr std::size_t fewest_pairs = 10;
-constexpr double precise_share = 0.05; // of the frame: how wide the interval may be
+constexpr int warm_up_blocks = 3, frames_of_block = 3;
+constexpr std::uint32_t small_width = 64, small_height = 36;
+constexpr std::size_t fewest_pairs = 16;
+constexpr double precise_share = 0.05;   // of the frame: how wide the interval may be
+constexpr double telling_interval = 0.5; // s: the GUI's own frames disturb what is measured
 constexpr double two_sided_95 = 1.959964;
+
+viewer::FrameRequest request_of(const ViewRequest& view) {
+    viewer::FrameRequest request;
+    request.camera = view.camera;
+    request.width = view.width;
+    request.height = view.height;
+    return request;
+}
 
 double seconds_of(CostClock::duration duration) {
     return std::chrono::duration<double>(duration).count();
@@ -26,6 +37,12 @@ double seconds_of(CostClock::duration duration) {
 CostInterval cost_interval(const std::vector<double>& differences) {
     return {statistics::clipped_centre(differences, 0.0), statistics::clipped_centre(differences, two_sided_95),
             statistics::clipped_centre(differences, -two_sided_95)};
+}
+
+CostInterval cost_of_ratios(const std::vector<double>& log_ratios, double frame_ms) {
+    const CostInterval ratio = cost_interval(log_ratios);
+    const auto milliseconds = [frame_ms](double value) { return frame_ms * std::expm1(value); };
+    return {milliseconds(ratio.estimate), milliseconds(ratio.low), milliseconds(ratio.high)};
 }
 
 std::string cost_text(const Cost& cost) {
@@ -52,9 +69,10 @@ struct CostThread::Work {
     std::string setting;
     gi::Settings from;
     ViewRequest view;
-    std::vector<double> frame_ms, frame; // with the first value; differences
+    std::vector<double> frame_ms, log_ratios; // with the first value; of a pair, second to first
     std::map<std::string, std::vector<double>> passes;
     std::string to_text;
+    CostClock::time_point began; // of the first pair
 };
 
 CostThread::CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake, CostEffort effort)
@@ -109,23 +127,20 @@ bool CostThread::wait_for_turn() const {
 
 Status CostThread::block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times,
                          double& frame_ms) {
-    viewer::FrameRequest request;
-    request.camera = view.camera;
-    request.width = view.width;
-    request.height = view.height;
+    viewer::FrameRequest request = request_of(view);
     request.progress = [this](float) { return !abandoned_; };
-    std::vector<double> frames;
+    double log_sum = 0.0;
     std::map<std::string, std::vector<double>> passes;
     for (int i = 0; i < frames_of_block; ++i) {
         SUNFLECK_TRY(copy.renderer().render_and_wait(request));
         const viewer::FrameStatistics& statistics = copy.renderer().statistics();
-        frames.push_back(statistics.frame_ms);
+        log_sum += std::log(statistics.frame_ms);
         for (const auto& [name, time] : statistics.gpu_ms)
             passes[name].push_back(time);
         for (const auto& [name, time] : statistics.cpu_ms)
             passes[name + " (CPU)"].push_back(time);
     }
-    frame_ms = statistics::median(frames);
+    frame_ms = std::exp(log_sum / frames_of_block);
     times.clear();
     for (const auto& [name, values] : passes)
         times[name] = statistics::median(values);
@@ -136,53 +151,72 @@ void CostThread::publish(const Work& work, bool finished) {
     const std::scoped_lock lock(mutex_);
     if (next_ != nullptr) // something else is asked for already
         return;
-    cost_.pairs = work.frame.size();
+    cost_.pairs = work.log_ratios.size();
+    cost_.seconds = seconds_of(CostClock::now() - work.began);
     cost_.frame_ms = statistics::median(work.frame_ms);
-    cost_.frame = cost_interval(work.frame);
+    cost_.frame = cost_of_ratios(work.log_ratios, cost_.frame_ms);
     cost_.finished = finished;
     cost_.passes.clear();
     for (const auto& [name, differences] : work.passes)
         if (const CostInterval interval = cost_interval(differences);
-            differences.size() == work.frame.size() && !interval.includes_zero())
+            differences.size() == work.log_ratios.size() && !interval.includes_zero())
             cost_.passes.emplace_back(name, interval);
     std::sort(cost_.passes.begin(), cost_.passes.end(),
               [](const auto& a, const auto& b) { return std::abs(a.second.estimate) > std::abs(b.second.estimate); });
 }
 
+// With all of its light and shadow maps, so that making them is no part of what is measured.
+Result<std::unique_ptr<SceneCopy>> CostThread::prepared_copy(const Work& work, const gi::Settings& settings) {
+    SUNFLECK_ASSIGN(std::unique_ptr<SceneCopy> copy, SceneCopy::create(device_));
+    SceneChange scene = work.scene;
+    scene.settings = settings;
+    SUNFLECK_TRY(copy->apply(scene));
+    viewer::PreparationOptions options;
+    options.progress = [this](float) { return wait_for_turn(); };
+    ViewRequest small = work.view; // what is kept does not depend on the picture
+    small.width = small_width;
+    small.height = small_height;
+    SUNFLECK_TRY(viewer::prepare_lighting(copy->renderer(), request_of(small), options));
+    std::map<std::string, double> unused;
+    double frame_ms = 0.0;
+    for (int i = 0; i < warm_up_blocks && wait_for_turn(); ++i)
+        SUNFLECK_TRY(block(*copy, work.view, unused, frame_ms));
+    return copy;
+}
+
 Status CostThread::measure(Work& work) {
     std::unique_ptr<SceneCopy> copies[2];
-    SceneChange scene = work.scene;
     for (int i = 0; i < 2; ++i) {
-        SUNFLECK_ASSIGN(copies[i], SceneCopy::create(device_));
-        scene.settings = i == 0 ? work.from : *work.scene.settings;
-        SUNFLECK_TRY(copies[i]->apply(scene));
-        std::map<std::string, double> unused;
-        double frame_ms = 0.0;
-        for (int frame = 0; frame < warm_up_frames && wait_for_turn(); frame += frames_of_block)
-            SUNFLECK_TRY(block(*copies[i], work.view, unused, frame_ms));
+        SUNFLECK_ASSIGN(copies[i], prepared_copy(work, i == 0 ? work.from : *work.scene.settings));
     }
-    const auto began = CostClock::now();
-    for (bool precise = false; !precise && seconds_of(CostClock::now() - began) < effort_.longest;) {
+    work.began = CostClock::now();
+    CostClock::time_point told = work.began;
+    for (bool precise = false; !precise && seconds_of(CostClock::now() - work.began) < effort_.longest;) {
         std::map<std::string, double> times[2];
         double frame_ms[2] = {};
-        const int first = int(work.frame.size() % 2); // A B, then B A
+        const int first = int(work.log_ratios.size() % 2); // A B, then B A
         for (const int turn : {first, 1 - first}) {
             if (!wait_for_turn())
                 return {};
             SUNFLECK_TRY(block(*copies[turn], work.view, times[turn], frame_ms[turn]));
         }
         work.frame_ms.push_back(frame_ms[0]);
-        work.frame.push_back(frame_ms[1] - frame_ms[0]);
+        work.log_ratios.push_back(std::log(frame_ms[1] / frame_ms[0]));
         for (int i = 0; i < 2; ++i)
             for (const auto& [name, time] : times[i])
-                work.passes[name].resize(work.frame.size() - 1);
+                work.passes[name].resize(work.log_ratios.size() - 1);
         for (auto& [name, differences] : work.passes)
             differences.push_back(times[1][name] - times[0][name]);
-        const CostInterval interval = cost_interval(work.frame);
-        precise = work.frame.size() >= fewest_pairs && seconds_of(CostClock::now() - began) >= effort_.shortest &&
-                  interval.high - interval.low <= precise_share * statistics::median(work.frame_ms);
-        publish(work, precise);
-        wake_();
+        const double usual_ms = statistics::median(work.frame_ms);
+        const CostInterval interval = cost_of_ratios(work.log_ratios, usual_ms);
+        precise = work.log_ratios.size() >= fewest_pairs &&
+                  seconds_of(CostClock::now() - work.began) >= effort_.shortest &&
+                  interval.high - interval.low <= precise_share * usual_ms;
+        if (const auto now = CostClock::now(); !precise && seconds_of(now - told) > telling_interval) {
+            told = now;
+            publish(work, false);
+            wake_();
+        }
     }
     publish(work, true);
     return {};

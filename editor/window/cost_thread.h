@@ -19,12 +19,16 @@ struct Cost {
     CostInterval frame;
     std::vector<std::pair<std::string, CostInterval>> passes; // whose time changed, the most changed first
     std::size_t pairs = 0;                                    // of blocks
+    double seconds = 0.0;                                     // that they took
     bool finished = false;
     std::string error;
 };
 
 // The difference of pairs: centre and interval.
 CostInterval cost_interval(const std::vector<double>& differences);
+// The same where a pair gives the logarithm of how many times longer its second block took, as in the gate: a machine
+// that is slow for a while slows both down by the same factor, and not by the same time.
+CostInterval cost_of_ratios(const std::vector<double>& log_ratios, double frame_ms);
 // "+3.2 ms (2.9 to 3.5)", "no measurable effect (less than 0.4 ms)", or what is under way.
 std::string cost_text(const Cost& cost);
 
@@ -50,6 +54,7 @@ private:
     struct Work;
     void run();
     Status measure(Work& work);
+    Result<std::unique_ptr<SceneCopy>> prepared_copy(const Work& work, const gi::Settings& settings);
     Status block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times, double& frame_ms);
     bool wait_for_turn() const;
     void publish(const Work& work, bool finished);
