@@ -4,7 +4,10 @@ namespace sunfleck::demo {
 
 Result<std::unique_ptr<GameDisplay>> GameDisplay::create(const std::string& title, const Options& options) {
     std::unique_ptr<GameDisplay> display(new GameDisplay());
-    SUNFLECK_ASSIGN(display->window_, app::Window::create(title, options.width, options.height));
+    auto window = app::Window::create(title, options.width, options.height);
+    if (!window)
+        return Error{window.error().message + "; or do without a window: --headless", window.error().code};
+    display->window_ = std::move(*window);
     SUNFLECK_TRY(display->make_device(options));
     return display;
 }

@@ -62,9 +62,9 @@ void CommandPanel::row(Session& session, Command& command) {
 
 void CommandPanel::draw(Session& session) {
     const ui::Scope scope("commands");
-    ui::text_box("search", filter_, "Search commands", 20.0f * ui::unit());
+    ui::text_box("search", filter_, "Search commands", 13.0f * ui::unit());
     ImGui::SameLine();
-    ImGui::TextDisabled("Flying: hold the right button; W A S D, Q and E, shift, wheel");
+    ui::label("Flying: hold the right button; W A S D, Q and E, shift, wheel", {}, true);
     ImGui::BeginChild("rows");
     if (ImGui::BeginTable("rows", 3, ImGuiTableFlags_SizingFixedFit)) {
         ImGui::TableSetupColumn("command");

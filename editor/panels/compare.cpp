@@ -53,6 +53,8 @@ void Compare::choose(Session& session) {
     if (ui::button("Keep settings", "Keeps the settings as they are now, to be compared with"))
         comparison.keep(session.document->settings());
     ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize("Show the scene").x + ui::unit())
+        ImGui::NewLine();
     if (ui::button(comparison.flipped ? "Show the scene##flip" : "Show the other##flip", {},
                    comparison.on() && comparison.as == CompareAs::flip))
         comparison.flipped = !comparison.flipped;

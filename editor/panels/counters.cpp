@@ -35,6 +35,8 @@ void budget_box(Session& session, const gi::Counter& counter, double count) {
     look.maximum = 1e12;
     look.unit = std::string(counter.unit);
     look.width = 10.0f * ui::unit();
+    ImGui::TextDisabled("Amber above");
+    ImGui::SameLine();
     const ui::NumberEdit edit = ui::number_box("most", look);
     if (edit.phase == ui::NumberEdit::Phase::dragged)
         session.budgets.counters[name] = edit.value;
@@ -62,6 +64,7 @@ void value(Session& session, const gi::Counter& counter, double count) {
     ui::note(name, text);
     ui::tooltip(std::string(counter.tooltip) + "\n\nClick: a budget for it");
     if (ImGui::BeginPopup("budget")) {
+        ui::close_by_escape();
         budget_box(session, counter, count);
         ImGui::EndPopup();
     }

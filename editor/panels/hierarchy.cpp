@@ -259,7 +259,10 @@ void Hierarchy::row(Session& session, std::size_t index) {
         const std::string kind = kind_of(document, row.entity);
         const float wide = ImGui::CalcTextSize(kind.c_str()).x;
         if (ImGui::CalcTextSize(name.c_str()).x + wide + ui::unit() < high.x - low.x)
-            list->AddText(ImVec2(high.x - wide - 4.0f, low.y), ImGui::GetColorU32(ImGuiCol_TextDisabled), kind.c_str());
+            list->AddText(
+                ImVec2(high.x - wide - 4.0f, low.y),
+                ImGui::GetColorU32(selected || ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_TextDisabled),
+                kind.c_str());
         row_input(session, index, pressed);
     }
     ImGui::PopID();
@@ -301,7 +304,7 @@ void Hierarchy::draw(Session& session) {
             row(session, std::size_t(i));
     ImGui::PopStyleVar();
     if (rows_.empty())
-        ImGui::TextDisabled(filter_.empty() ? "Nothing here yet: drop a file on the window,\nor choose Add." : "");
+        ui::hint(filter_.empty() ? "Nothing here yet: drop a file on the window, or choose Add." : "");
     ImGui::EndChild();
 }
 

@@ -134,7 +134,7 @@ void Inspector::add_menu(Session& session) {
 void Inspector::draw(Session& session) {
     const ui::Scope scope("inspector");
     if (session.document->selection().empty()) {
-        ImGui::TextDisabled("Nothing is selected: click something in the\nviewport or in the hierarchy.");
+        ui::hint("Nothing is selected: click something in the viewport or in the hierarchy.");
         return;
     }
     name_row(session);

@@ -64,6 +64,7 @@ private:
     Gizmo gizmo_;
     bool flying_ = false;
     ImVec2 pressed_{0, 0};
+    ImVec2 toolbar_low_{0, 0}, toolbar_high_{0, 0}; // in the last frame; clicks there do not go through to the picture
     bool press_is_click_ = false, press_inspects_ = false;
 };
 

@@ -224,6 +224,7 @@ void Profile::draw(Session& session) {
     for (const ProfiledFrame& one : session.frames)
         if (one.number == chosen_)
             frame = &one;
+    ImGui::AlignTextToFramePadding();
     ImGui::Text("Frame %llu: %s", static_cast<unsigned long long>(frame->number),
                 milliseconds(frame->statistics.frame_ms).c_str());
     ImGui::SameLine();

@@ -15,7 +15,7 @@ void progress(const char* name, const std::string& text, float share) {
 
 void newest_message(Session& session) {
     if (session.messages.all().empty())
-        return ImGui::TextDisabled("Right button and W A S D: fly. Click: select. F: look at the selection.");
+        return ui::label("Right button and W A S D: fly. Click: select. F: look at the selection.", {}, true);
     const Message& message = session.messages.all().back();
     const ImVec4 red(1.0f, 0.5f, 0.42f, 1.0f);
     if (message.kind == Message::Kind::error)

@@ -14,6 +14,7 @@ namespace sunfleck::editor {
 namespace {
 
 constexpr ImU32 selected_colour = IM_COL32(255, 176, 64, 255), other_colour = IM_COL32(235, 235, 235, 170);
+constexpr double longest_step = 0.1; // s of flight in a frame
 constexpr std::size_t most_outlines = 200, most_icons = 500;
 
 // A line in the world, cut where it passes the camera.
@@ -100,6 +101,20 @@ void mark_inspected(const Session& session) {
                 width > 2.0f ? IM_COL32(20, 18, 16, 220) : IM_COL32(255, 255, 255, 255), width);
 }
 
+// Where there is nothing to be seen yet.
+void say_how_to_begin(ImVec2 low, ImVec2 room) {
+    const ui::Scope scope("begin");
+    const char* const lines[] = {"Drop a glTF or scene file here,", "choose File, Open or a built-in scene,",
+                                 "or make one from nothing: Add"};
+    float y = low.y + 0.42f * room.y;
+    for (const char* line : lines) {
+        const ImVec2 size = ImGui::CalcTextSize(line);
+        ImGui::SetCursorScreenPos(ImVec2(low.x + std::max(0.5f * (room.x - size.x), 0.0f), y));
+        ui::text("line", line);
+        y += 1.5f * size.y;
+    }
+}
+
 struct Icon {
     Entity entity;
     vec3 place; // pixels and distance
@@ -126,11 +141,16 @@ std::vector<Icon> icons(Session& session) {
 Entity Viewport::icon_at(Session& session, vec2 place) const {
     if (!session.view.show_icons)
         return ecs::null_entity;
-    Icon nearest{ecs::null_entity, vec3(0.0f, 0.0f, 1e30f)};
-    for (const Icon& one : icons(session))
-        if (glm::length(vec2(one.place) - place) < 0.6f * ui::unit() && one.place.z < nearest.place.z)
-            nearest = one;
-    return nearest.entity;
+    std::vector<Icon> there = icons(session);
+    std::erase_if(there, [&](const Icon& one) { return glm::length(vec2(one.place) - place) >= 0.6f * ui::unit(); });
+    std::stable_sort(there.begin(), there.end(), [](const Icon& a, const Icon& b) { return a.place.z < b.place.z; });
+    if (there.empty())
+        return ecs::null_entity;
+    // Where they lie behind one another, the nearest; clicked again, the one behind what is selected.
+    const std::vector<Entity>& selection = session.document->selection();
+    const auto now = std::find_if(there.begin(), there.end(),
+                                  [&](const Icon& one) { return selection.size() == 1 && selection[0] == one.entity; });
+    return now == there.end() || now + 1 == there.end() ? there.front().entity : (now + 1)->entity;
 }
 
 void Viewport::click(Session& session) {
@@ -164,7 +184,7 @@ void Viewport::navigate(Session& session, bool hovered) {
             return;
         }
         session.camera.look(input.mouse_motion);
-        session.camera.fly(input, double(io.DeltaTime), session.scene_size());
+        session.camera.fly(input, std::min(double(io.DeltaTime), longest_step), session.scene_size());
         return;
     }
     if (!hovered)
@@ -237,6 +257,7 @@ void Viewport::play_buttons(Session& session) {
 void Viewport::toolbar(Session& session) {
     const ImVec4 area = session.viewport_area;
     ImGui::SetCursorScreenPos(ImVec2(area.x + 0.5f * ui::unit(), area.y + 0.5f * ui::unit()));
+    ImGui::BeginGroup();
     const auto mode = [&](const char* name, GizmoMode one, const char* tip) {
         const bool on = session.gizmo.mode == one;
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(on ? ImGuiCol_ButtonActive : ImGuiCol_Button));
@@ -259,6 +280,9 @@ void Viewport::toolbar(Session& session) {
         session.gizmo.snap = !session.gizmo.snap;
     ImGui::SameLine(0.0f, ui::unit());
     play_buttons(session);
+    ImGui::EndGroup();
+    toolbar_low_ = ImGui::GetItemRectMin();
+    toolbar_high_ = ImGui::GetItemRectMax();
 }
 
 void Viewport::overlay(Session& session) {
@@ -284,7 +308,7 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
     ImGui::InvisibleButton("picture", ImVec2(session.viewport_area.z, session.viewport_area.w),
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
     ImGui::SetItemAllowOverlap(); // by the switches over it
-    const bool hovered = ImGui::IsItemHovered();
+    const bool hovered = ImGui::IsItemHovered() && !ImGui::IsMouseHoveringRect(toolbar_low_, toolbar_high_);
     ui::note("picture", picture == nullptr ? "empty" : std::to_string(picture->number));
     const bool active = ImGui::IsItemActive();
     ImGui::PushClipRect(low, ImVec2(low.x + room.x, low.y + room.y), true);
@@ -305,6 +329,8 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
             press_inspects_ ? session.inspect(pointer_in_viewport(session)) : click(session);
     }
     toolbar(session);
+    if (session.document->entity_count() == 0 && session.opening == nullptr)
+        say_how_to_begin(low, room);
     if (const std::string error = session.scene.status().error; !error.empty()) {
         ImGui::SetCursorScreenPos(ImVec2(low.x + ui::unit(), low.y + 3.0f * ui::unit()));
         ImGui::PushTextWrapPos(room.x - ui::unit());

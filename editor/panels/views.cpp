@@ -68,7 +68,7 @@ void lighting_views(Session& session) {
 void look(Session& session) {
     static const viewer::PictureSettings usual;
     ui::heading("Look");
-    if (!begin_fields("look"))
+    if (!begin_fields("look", 0.5f))
         return;
     for (const Field& field : viewer::PictureSettings::description().fields) {
         FieldSource source;

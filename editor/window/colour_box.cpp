@@ -151,6 +151,7 @@ void colour_cell(Session& session, const FieldSource& source) {
     ui::tooltip("Choose a colour");
     if (!ImGui::BeginPopup("colour"))
         return;
+    ui::close_by_escape();
     ImGui::SetNextItemWidth(13.0f * ui::unit());
     hue_picker(session, source, value, intensity);
     if (!source.field->unit.empty()) {

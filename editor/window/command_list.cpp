@@ -52,9 +52,28 @@ void unparent(Session& session) {
     session.messages.check(reparent(*session.document, session.selected_tops(), ecs::null_entity));
 }
 
+// From where nothing stands between: in a room that is not so far off that all of a wall would be seen, but before the
+// wall behind.
 void look_at_selection(Session& session) {
-    session.camera.frame(has_selection(session) ? bounds_of(*session.document, session.selected_tops())
-                                                : bounds_of_all(*session.document));
+    Document& document = *session.document;
+    const Bounds bounds =
+        has_selection(session) ? bounds_of(document, session.selected_tops()) : bounds_of_all(document);
+    session.camera.frame(bounds);
+    if (!has_selection(session) || bounds.empty())
+        return;
+    scene::CameraView view = session.camera.view();
+    const vec3 back = view.position - view.target;
+    std::unordered_set<Entity> selected;
+    for (const Entity top : session.selected_tops())
+        for (const Entity entity : document.family(top))
+            selected.insert(entity);
+    const Picked hit = pick(document, view.target, glm::normalize(back),
+                            [&](Entity one) { return selected.count(one) > 0 || session.hidden.count(one) > 0; });
+    const float nearest = 0.1f * glm::length(bounds.extent()); // else something stands right before it
+    if (hit.entity.is_null() || 0.95f * hit.distance > glm::length(back) || 0.95f * hit.distance < nearest)
+        return;
+    view.position = view.target + glm::normalize(back) * (0.95f * hit.distance);
+    session.camera.set(view);
 }
 
 // All lamps but the selected ones are hidden; once more: all are shown.
@@ -189,6 +208,9 @@ void add_template_commands(std::vector<Command>& list) {
     for (const scene::EntityTemplate& source : scene::entity_templates())
         list.push_back({"Add", std::string(source.name), std::string(source.tooltip), {}, [&source](Session& session) {
                             add_from(*session.document, source, place_ahead(session), 0.1f * session.scene_size());
+                            session.front = "Inspector"; // where it is changed next, or by handles
+                            if (session.gizmo.mode == GizmoMode::none || session.gizmo.mode == GizmoMode::inspect)
+                                session.gizmo.mode = GizmoMode::move;
                         }});
 }
 

@@ -91,7 +91,8 @@ private:
 
 Status Program::start() {
     watch_stop_signals();
-    const NamedFile outputs[] = {{"--widgets", options_.widgets}, {"--report", options_.report}};
+    const NamedFile outputs[] = {
+        {"--settings", options_.state_file}, {"--widgets", options_.widgets}, {"--report", options_.report}};
     SUNFLECK_TRY(try_outputs(outputs));
     std::string problem;
     state_path_ = options_.state_file.empty() ? usual_state_file() : std::filesystem::path(options_.state_file);
@@ -208,8 +209,7 @@ void Program::finish_opening() {
     if (const auto known = state_.cameras.find(std::filesystem::absolute(path, code).string());
         known != state_.cameras.end())
         session_->camera.set(known->second);
-    session_->messages.say("Opened " + path.filename().string() + ", " +
-                           std::to_string(session_->document->entity_count()) + " entities");
+    session_->say_what_was_opened(path);
 }
 
 void Program::keep_camera() {
@@ -315,7 +315,7 @@ Status Program::draw(const app::InputState& input) {
     ui::begin_notes(!options_.widgets.empty());
     ui::begin_number_boxes();
     const VkExtent2D extent = display_->extent();
-    display_->gui().begin_frame(input, extent.width, extent.height, std::min(seconds, 0.1), scale());
+    display_->gui().begin_frame(input, extent.width, extent.height, seconds, scale());
     take_keys(input);
     layout_->draw(*session_, picture.get());
     display_->gui().end_frame();

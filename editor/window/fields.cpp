@@ -102,6 +102,7 @@ void choice_cell(Session& session, const FieldSource& source, float width) {
     ui::note("value", mixed ? "mixed" : now);
     if (!is_open)
         return;
+    ui::close_by_escape();
     for (const std::string_view choice : field.choices)
         if (ui::choice(readable_name(choice) + "##" + std::string(choice), choice == now))
             apply_field_text(session, source, [&](const void*) { return std::string(choice); });
@@ -205,11 +206,11 @@ std::string readable_name(std::string_view name) {
     return result;
 }
 
-bool begin_fields(const char* id) {
+bool begin_fields(const char* id, float names) {
     if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp))
         return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.40f);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.60f);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, names);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.0f - names);
     return true;
 }
 

@@ -43,6 +43,15 @@ vec3 ring_point(const mat3& axes, int axis, float angle) {
     return axes[(axis + 1) % 3] * std::cos(angle) + axes[(axis + 2) % 3] * std::sin(angle);
 }
 
+// Handles are where something is seen: at its origin, or where that is outside of it (geometry that was exported in
+// world coordinates has it in a corner of the level) in its middle.
+vec3 handles_of(const Placed& placed) {
+    const Bounds& bounds = placed.bounds;
+    const bool outside =
+        glm::any(glm::lessThan(vec3(0.0f), bounds.minimum)) || glm::any(glm::greaterThan(vec3(0.0f), bounds.maximum));
+    return vec3(placed.world * vec4(outside && !bounds.empty() ? bounds.centre() : vec3(0.0f), 1.0f));
+}
+
 bool snaps(const Session& session) {
     return session.gizmo.snap != ImGui::GetIO().KeyCtrl;
 }
@@ -64,7 +73,7 @@ Gizmo::Frame Gizmo::find_frame(Session& session) const {
     float count = 0.0f;
     for (const Entity entity : tops)
         if (const auto placed = place_of(document, entity)) {
-            frame.pivot += vec3(placed->world[3]);
+            frame.pivot += handles_of(*placed);
             count += 1.0f;
         }
     frame.pivot /= std::max(count, 1.0f);

@@ -101,6 +101,12 @@ void Session::inspect(vec2 place) {
     front = "Pixel";
 }
 
+void Session::say_what_was_opened(const std::filesystem::path& path) {
+    const std::size_t notes = document->notes().size();
+    messages.say("Opened " + path.filename().string() + ", " + std::to_string(document->entity_count()) + " entities" +
+                 (notes == 0 ? "" : "; " + std::to_string(notes) + " notes on what was left out: Messages"));
+}
+
 void Session::measure_cost(const std::string& setting) {
     if (cost == nullptr)
         cost = make_cost_thread();

@@ -143,6 +143,8 @@ public:
     // Begins to load; asks first if there is something to lose.
     void open(const std::filesystem::path& path);
     void open_now(const std::filesystem::path& path);
+    // How much, and whether something was left out.
+    void say_what_was_opened(const std::filesystem::path& path);
     // Begins to measure what the setting's value costs over its default.
     void measure_cost(const std::string& setting);
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program

@@ -19,6 +19,8 @@ inline void set_style(ImGuiStyle& style) {
     style.Colors[ImGuiCol_Header] = ImVec4(0.33f, 0.24f, 0.13f, 1.0f);
     style.Colors[ImGuiCol_TextDisabled] = ImVec4(0.62f, 0.60f, 0.57f, 1.0f);
     style.Colors[ImGuiCol_Tab] = ImVec4(0.16f, 0.15f, 0.14f, 1.0f);
+    style.Colors[ImGuiCol_TitleBg] = style.Colors[ImGuiCol_TitleBgActive] = ImVec4(0.33f, 0.24f, 0.13f, 1.0f);
+    style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0f, 0.0f, 0.0f, 0.55f);
     style.Colors[ImGuiCol_TabActive] = ImVec4(0.40f, 0.28f, 0.13f, 1.0f);
 }
 

@@ -98,7 +98,7 @@ bool menu_item(const std::string& name, const std::string& shortcut, bool enable
 }
 
 void close_by_escape() {
-    if (ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
+    if (!editing_number() && ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
         ImGui::CloseCurrentPopup();
 }
 
@@ -154,6 +154,12 @@ void heading(const std::string& text) {
     ImGui::Dummy(ImVec2(0.0f, 0.2f * unit()));
     ImGui::TextColored(ImVec4(0.95f, 0.72f, 0.38f, 1.0f), "%s", text.c_str());
     ImGui::Separator();
+}
+
+void hint(const char* text) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("%s", text);
+    ImGui::PopTextWrapPos();
 }
 
 void text(const std::string& name, const std::string& value) {

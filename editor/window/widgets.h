@@ -55,6 +55,7 @@ bool text_box(const std::string& name, std::string& text, const char* hint, floa
 // Text that does not fit is cut with dots; the whole is in the tooltip.
 void label(const std::string& text, std::string_view tip = {}, bool dim = false);
 void heading(const std::string& text);
+void hint(const char* text);                                  // dim, in as many lines as it needs
 void text(const std::string& name, const std::string& value); // a line whose value scripts may read
 
 // Text that is about to take the keys does so a frame or two after the click that asked for it: until then letters

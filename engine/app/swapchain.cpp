@@ -40,7 +40,7 @@ Status Swapchain::make_surface() {
                                                                surface_, &supported);
     if (!supported)
         return Error{"device '" + device_.traits().name +
-                     "' cannot present to this window; choose another with --device, or run with --headless"};
+                     "' cannot present to this window; choose another with --device"};
     surface_lost_ = false;
     return {};
 }

@@ -100,8 +100,9 @@ struct WindowEvents {
         ++of(handle).event_count_;
     }
     static void key(GLFWwindow* handle, int key, int, int action, int) {
-        if (action != GLFW_REPEAT)
-            add(handle, {Kind::key, key, action == GLFW_PRESS});
+        if (action == GLFW_REPEAT)
+            return redraw(handle); // who repeats keys that are held has to see the time pass
+        add(handle, {Kind::key, key, action == GLFW_PRESS});
     }
     static void letter(GLFWwindow* handle, unsigned int code) { add(handle, {Kind::letter, int(code)}); }
     static void button(GLFWwindow* handle, int button, int action, int) {
@@ -188,15 +189,15 @@ Result<std::unique_ptr<Window>> Window::create(const std::string& title, std::ui
         const char* why = nullptr;
         glfwGetError(&why);
         return Error{"no window system was found (is DISPLAY set?" + (why ? " " + std::string(why) : std::string()) +
-                     "); run with --headless, or under xvfb-run"};
+                     "); start it from a desktop, or under xvfb-run"};
     }
     std::unique_ptr<Window> window(new Window());
     if (!glfwVulkanSupported())
-        return Error{"the window system does not support Vulkan; run with --headless"};
+        return Error{"the window system does not support Vulkan"};
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window->handle_ = glfwCreateWindow(int(width), int(height), title.c_str(), nullptr, nullptr);
     if (window->handle_ == nullptr)
-        return Error{"a window could not be opened; run with --headless"};
+        return Error{"a window could not be opened"};
     GLFWwindow* handle = window->handle_;
     glfwSetWindowSizeLimits(handle, 160, 120, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(handle, window.get());

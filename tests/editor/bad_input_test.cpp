@@ -1,9 +1,7 @@
 // What is wrong is said, once, and changes nothing: files that are none, drops, texts, places that cannot be written
 // to, a window of no size, no display.
-#include "tests/editor/driven_editor.h"
+#include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
-
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <regex>
@@ -15,33 +13,16 @@ namespace {
 namespace fs = std::filesystem;
 using tests::DrivenEditor;
 
-class EditorWindowBadInput : public testing::Test {
+class EditorWindowBadInput : public tests::EditorWindowTest {
 protected:
-    void SetUp() override {
-        if (!DrivenEditor::possible())
-            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
-        folder = fs::path(testing::TempDir()) / ("sunfleck_bad_" + std::to_string(getpid()));
-        fs::remove_all(folder);
-        editor = std::make_unique<DrivenEditor>(folder);
-    }
-    void TearDown() override {
-        if (HasFailure() && editor != nullptr)
-            std::printf("%s\n", editor->log().c_str());
-        editor.reset();
-        fs::remove_all(folder);
-    }
     std::string write(const std::string& name, const std::string& text) const {
         std::ofstream(folder / name, std::ios::binary) << text;
         return editor->file(name);
     }
-    std::string message() const { return editor->value("status/message"); }
     // Through the dialog, by its whole path.
-    void open(const std::string& path) {
+    void open(const std::string& path) const {
         editor->key("ctrl+o");
-        ASSERT_TRUE(editor->click("dialog/name"));
-        editor->key("ctrl+a");
-        editor->type(path);
-        editor->key("Return");
+        ASSERT_NO_FATAL_FAILURE(name_file(path));
     }
     // Messages that --report lists from the one with this number on.
     static std::vector<std::string> messages(const nlohmann::json& report, std::size_t from) {
@@ -65,8 +46,6 @@ protected:
         }
         return bad;
     }
-    fs::path folder;
-    std::unique_ptr<DrivenEditor> editor;
 };
 
 constexpr const char* roughness = "inspector/Material/roughness/value";
@@ -78,10 +57,7 @@ TEST_F(EditorWindowBadInput, FilesThatAreNoScenesAreSaidAndLeaveTheScene) {
     ASSERT_TRUE(editor->enter(roughness, "0.25"));
     ASSERT_TRUE(editor->wait_for("menu/title", "cornell.scene.json *"));
     editor->key("ctrl+s"); // a built-in scene asks for a name
-    ASSERT_TRUE(editor->click("dialog/name"));
-    editor->key("ctrl+a");
-    editor->type(editor->file("mine.scene.json"));
-    editor->key("Return");
+    ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << message();
     const std::string kept = read_file(folder / "mine.scene.json").value();
 
@@ -197,20 +173,14 @@ TEST_F(EditorWindowBadInput, PlacesThatCannotBeWrittenTo) {
     ASSERT_TRUE(editor->wait_for("menu/title", "cornell.scene.json *"));
     for (const char* place : {"/proc/mine.scene.json", "/nowhere/at/all/mine.scene.json"}) {
         editor->key("ctrl+shift+s");
-        ASSERT_TRUE(editor->click("dialog/name"));
-        editor->key("ctrl+a");
-        editor->type(place);
-        editor->key("Return");
+        ASSERT_NO_FATAL_FAILURE(name_file(place));
         EXPECT_TRUE(editor->appears("dialog/problem")) << place;
         editor->key("Escape");
         EXPECT_EQ(editor->value("menu/title"), "cornell.scene.json *") << "it is unsaved still";
     }
     // A file that vanishes while it is open is said to be gone, and is written again.
     editor->key("ctrl+shift+s");
-    ASSERT_TRUE(editor->click("dialog/name"));
-    editor->key("ctrl+a");
-    editor->type(editor->file("mine.scene.json"));
-    editor->key("Return");
+    ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json"));
     fs::remove(folder / "mine.scene.json");
     editor->key("ctrl+r");
@@ -256,6 +226,19 @@ TEST(EditorBadInput, WithoutADisplayItSaysSo) {
     EXPECT_EQ(outcome.status, 1) << outcome.output;
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
     EXPECT_NE(outcome.output.find("DISPLAY"), std::string::npos) << outcome.output;
+    EXPECT_EQ(outcome.output.find("--headless"), std::string::npos) << "which it has not: " << outcome.output;
+}
+
+// Before a window opens, not when an evening's layout is to be kept.
+TEST(EditorBadInput, FilesThatItCannotWriteAreSaidAtOnce) {
+    for (const char* option : {"--settings", "--widgets", "--report"}) {
+        const tests::Outcome outcome =
+            tests::shell("env -u DISPLAY -u WAYLAND_DISPLAY timeout 30 " SUNFLECK_EDITOR " " + std::string(option) +
+                         " /nowhere/file.json");
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_NE(outcome.output.find("/nowhere/file.json"), std::string::npos) << option << ": " << outcome.output;
+        EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    }
 }
 
 } // namespace

@@ -1,11 +1,9 @@
 // The editor's window, driven by X events.
-#include "tests/editor/driven_editor.h"
+#include "tests/editor/window_fixture.h"
 
 #include "engine/scene/components.h"
 #include "gi_module/technique.h"
 #include "tests/support/test_size.h"
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
@@ -16,31 +14,8 @@ namespace sunfleck {
 namespace {
 
 namespace fs = std::filesystem;
-using tests::DrivenEditor;
 
-class EditorWindow : public testing::Test {
-protected:
-    void SetUp() override {
-        if (!DrivenEditor::possible())
-            GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
-        folder = fs::path(testing::TempDir()) / ("sunfleck_editor_" + std::to_string(getpid()));
-        fs::remove_all(folder);
-        editor = std::make_unique<DrivenEditor>(folder);
-    }
-    void TearDown() override {
-        if (HasFailure() && editor != nullptr)
-            std::printf("%s\n", editor->log().c_str());
-        editor.reset();
-        fs::remove_all(folder);
-    }
-    // Lets the menu fall and chooses.
-    void menu(const std::string& group, const std::string& entry) {
-        ASSERT_TRUE(editor->click("menu/" + group));
-        ASSERT_TRUE(editor->click("menu/" + group + "/" + entry)) << group << ": " << entry;
-    }
-    fs::path folder;
-    std::unique_ptr<DrivenEditor> editor;
-};
+using EditorWindow = tests::EditorWindowTest;
 
 // Small and quick: a room of some boxes, with few samples and small maps.
 constexpr const char* small_scene = "cornell";
@@ -70,10 +45,7 @@ TEST_F(EditorWindow, EditsUndoesSavesAndOpensAgain) {
     }
 
     menu("File", "Save as...");
-    ASSERT_TRUE(editor->click("dialog/name"));
-    editor->key("ctrl+a");
-    editor->type(editor->file("mine.scene.json"));
-    editor->key("Return");
+    ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
     EXPECT_TRUE(fs::exists(folder / "mine.scene.json"));
 
@@ -97,6 +69,12 @@ TEST_F(EditorWindow, AClickInThePictureSelectsAndAHandleMoves) {
     ASSERT_TRUE(editor->click("viewport/picture"));
     ASSERT_TRUE(editor->wait_until([&] { return editor->find("inspector/name").has_value(); }));
     ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->wait_for("inspector/name", "tall block"));
+    for (const char* tool : {"viewport/Rotate", "viewport/Move"}) { // and not what is behind the button
+        ASSERT_TRUE(editor->click(tool));
+        editor->let_events_arrive();
+        EXPECT_EQ(editor->value("inspector/name"), "tall block");
+    }
     ASSERT_TRUE(editor->appears("viewport/gizmo y"));
     const double height = std::stod(editor->value("inspector/Transform/position/y"));
     ASSERT_TRUE(editor->drag("viewport/gizmo y", 0, -60));
@@ -188,6 +166,26 @@ TEST_F(EditorWindow, RestsWhileNothingHappens) {
         editor->point_at(x, 200 + x);
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
     EXPECT_EQ(editor->value("viewport/picture"), picture) << "the pointer over panels draws no scene";
+    editor->end();
+}
+
+// While the GUI rests, time passes all the same: two clicks with a pause between them are no double click, and a key
+// that is held repeats.
+TEST_F(EditorWindow, TimePassesWhileItRests) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->wait_for("inspector/name", "tall block"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    editor->run("xdotool click 1");
+    editor->let_events_arrive();
+    EXPECT_FALSE(editor->find("hierarchy/rename").has_value());
+    editor->run("xdotool click --repeat 2 --delay 60 1");
+    EXPECT_TRUE(editor->appears("hierarchy/rename")) << "and this is one";
+    editor->key("End");
+    editor->run("xdotool keydown BackSpace sleep 1.5 keyup BackSpace");
+    EXPECT_TRUE(editor->wait_for("hierarchy/rename", ""));
+    editor->key("Escape");
     editor->end();
 }
 
