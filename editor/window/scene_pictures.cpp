@@ -8,6 +8,8 @@ namespace sunfleck::editor {
 namespace {
 
 constexpr std::size_t most_pictures = 8;
+// Of a usual frame: light for which one took longer is made behind the frames from then on.
+constexpr double longest_share = 1.5;
 
 } // namespace
 
@@ -79,7 +81,6 @@ Status SceneThread::draw(const viewer::FrameRequest& request, ScenePicture* pict
     build_began_ = Clock::now();
     told_ = 0.0;
     SUNFLECK_TRY(renderer.update(request));
-    light_is_slow_ = light_is_slow_ || seconds_since(build_began_) > patience;
     SUNFLECK_ASSIGN(const VkCommandBuffer commands, renderer.submission().begin());
     const std::uint64_t serial = renderer.submission().serial();
     SUNFLECK_TRY(renderer.record(commands, request, copy));
@@ -165,6 +166,9 @@ Status SceneThread::draw_picture() {
     picture->settled = frames_left_ <= 1 && !moves() && !light_pending_;
     picture->ev100 = request.ev100;
     picture->frame_ms = 1e3 * seconds_since(began);
+    longest_frame_ms_ = std::max(longest_frame_ms_, picture->frame_ms);
+    if (picture->settled) // such frames make no light
+        light_is_slow_ = light_is_slow_ || longest_frame_ms_ > longest_share * picture->frame_ms;
     picture->statistics = copy_->renderer().statistics();
     picture->pixels.reset();
     if (view_.read_back && picture->settled) {

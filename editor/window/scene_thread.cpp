@@ -103,7 +103,7 @@ void SceneThread::replace_shader(CompiledShader shader) {
 void SceneThread::inspect(std::optional<InspectRequest> request) {
     {
         const std::scoped_lock lock(mutex_);
-        next_inspection_ = std::move(request);
+        next_inspection_ = request;
         inspection_changed_ = true;
         inspected_.reset();
     }
@@ -220,13 +220,15 @@ void SceneThread::follow_light() {
         return fail(Error{"the lighting could not be made: " + changed.error().message});
     if (*changed) {
         use_shaders(std::vector(shaders_));
-        light_is_slow_ = seconds_since(edited_) > 2.0 * patience;
         frames_left_ = std::max(frames_left_, frames_after_edit);
     }
     note_light();
 }
 
 void SceneThread::note_light() {
+    // Begun by the scene's own accord, it would be at once, while a hand still drags.
+    if (copy_->renderer().lighting().outdated() && !light_->pending())
+        light_->request(copy_->renderer().lighting().settings());
     const bool pending = light_->pending() || copy_->renderer().lighting().outdated();
     bool tell = false;
     {
@@ -256,6 +258,7 @@ Status SceneThread::apply_change() {
         SUNFLECK_ASSIGN(copy_, SceneCopy::create(*device_));
         light_ = std::make_unique<viewer::LightingChanges>(*device_);
         light_is_slow_ = false;
+        longest_frame_ms_ = 0.0;
     }
     if (play_ != nullptr) {
         SUNFLECK_TRY(play_->edit(copy_->renderer().registry(), copy_->renderer().meshes(), change.updates,
@@ -266,7 +269,6 @@ Status SceneThread::apply_change() {
     if (change.everything)
         use_shaders(std::vector(shaders_));
     revision_ = change.revision;
-    edited_ = Clock::now();
     if (light_pending_) // what is being prepared is of the scene before
         light_->request(copy_->renderer().lighting().settings());
     return {};

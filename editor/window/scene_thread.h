@@ -205,9 +205,10 @@ private:
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
     bool failed_ = false, exposure_is_old_ = true;
-    // Light of its scene takes so long to make that it is made behind the frames; else the frame makes it.
+    // Light of its scene takes so long to make that it is made behind the frames; else the frame makes it. Once it is
+    // so, it stays: a frame that makes light is one that the window waits for.
     bool light_is_slow_ = false;
-    Clock::time_point edited_;
+    double longest_frame_ms_ = 0.0; // of the pictures of copy_
     std::atomic<bool> cancelled_{false};
     double told_ = 0.0; // s after the build began
     float automatic_ev100_ = 0.0f;

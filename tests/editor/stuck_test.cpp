@@ -1,0 +1,113 @@
+// The window answers while light is made: a static wall is dragged and let go, and dragged again while the new light is
+// being prepared.
+#include "tests/editor/window_fixture.h"
+#include "tests/support/test_size.h"
+
+#include <algorithm>
+
+namespace sunfleck {
+namespace {
+
+using tests::DrivenEditor;
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values.empty() ? 0.0 : values[values.size() / 2];
+}
+
+struct Window {
+    double begin = 0.0, end = 0.0;
+    bool has(double at) const { return at >= begin && at <= end; }
+};
+
+std::vector<double> scene_ms(const nlohmann::json& report, const Window& window) {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < report["scene_frames_at"].size(); ++i)
+        if (window.has(report["scene_frames_at"][i]))
+            result.push_back(report["scene_frame_ms"][i]);
+    return result;
+}
+
+double longest_gap_ms(const nlohmann::json& report, const Window& window) {
+    double longest = 0.0, last = window.begin;
+    for (const double at : report["gui_frames_at"])
+        if (window.has(at))
+            longest = std::max(longest, at - std::exchange(last, at));
+    return 1e3 * std::max(longest, window.end - last);
+}
+
+using EditorWindowStuck = tests::EditorWindowTest;
+
+// Of `atrium` (262,000 triangles) at full size, else of `gallery`. The pointer never rests, so that GUI frames are due
+// all the time, and a gap between two is the program's.
+TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
+    const bool whole = tests::by_size(0, 1) == 1;
+    editor->start({whole ? "atrium" : "gallery"});
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    ASSERT_TRUE(editor->click("hierarchy/search"));
+    editor->type("wall z-");
+    editor->let_events_arrive();
+    ASSERT_TRUE(editor->click("hierarchy/wall z-"));
+    ASSERT_TRUE(editor->wait_for("inspector/name", "wall z-", 60.0));
+    editor->point_at(*editor->find("viewport/picture"));
+    editor->key("f");
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    const auto move = [&](int steps, int x, int y) {
+        std::string command = "xdotool";
+        for (int i = 0; i < steps; ++i)
+            command += " mousemove_relative -- " + std::to_string(i % 2 == 0 ? x : -x / 2) + " " +
+                       std::to_string(i % 2 == 0 ? y : -y / 2) + " sleep 0.02";
+        editor->run(command);
+    };
+    // Scene frames as they are: the camera turns.
+    Window before{now(), 0.0};
+    editor->run("xdotool mousedown 3");
+    move(100, 2, 1);
+    editor->run("xdotool mouseup 3");
+    before.end = now();
+    ASSERT_TRUE(editor->settles());
+    editor->key("f");
+    ASSERT_TRUE(editor->settles());
+
+    const auto drag = [&] {
+        EXPECT_TRUE(editor->reach("viewport/gizmo y"));
+        const double begin = now();
+        editor->run("xdotool mousedown 1");
+        move(60, 0, -2);
+        editor->run("xdotool mouseup 1");
+        return Window{begin, now()};
+    };
+    const Window first = drag();
+    editor->point_at(*editor->find("viewport/picture"));
+    const bool prepares = DrivenEditor::wait_until([&] { return editor->find("status/building").has_value(); }, 10.0);
+    const Window second = drag(); // cancels what is prepared for the first
+    editor->point_at(*editor->find("viewport/picture"));
+    Window after{second.end, 0.0};
+    move(150, 3, 0);
+    after.end = now();
+    ASSERT_TRUE(editor->settles());
+    const auto report = editor->end();
+    ASSERT_TRUE(report.is_object()) << editor->log();
+
+    const double frame = median(scene_ms(report, before)), dragged = median(scene_ms(report, first));
+    double longest = 0.0;
+    for (const Window& window : {first, second, after})
+        longest = std::max(longest, longest_gap_ms(report, window));
+    std::printf(
+        "scene frame %.1f ms, %.1f ms while dragged; longest gap between GUI frames %.1f ms; new light %d times\n",
+        frame, dragged, longest, int(report["long_builds"]));
+    ASSERT_GT(frame, 0.0);
+    ASSERT_GT(dragged, 0.0);
+    // The short size shares its machine with whatever else runs there: twice the targets.
+    const double room = whole ? 1.0 : 2.0;
+    EXPECT_LE(longest, room * 3.0 * frame);
+    EXPECT_LE(dragged, room * 1.5 * frame);
+    EXPECT_TRUE(prepares || !whole) << "light is made behind the frames";
+}
+
+} // namespace
+} // namespace sunfleck
