@@ -107,8 +107,11 @@ float tile_visibility(TileLight light, Pixel pixel) {
         vote[i] = result.y;
     }
     const vec2 inside = position - corner;
-    return surface_votes(values, inside, receiver.place.z, receiver.reach, depth_step(map_bits),
-                         count_votes(lit, vote, inside));
+    const float share = count_votes(lit, vote, inside);
+    // A sun shines along walls of single sheets, where four texels show two of them: what lies between would be lit.
+    if (light_class == light_class_directional)
+        return share;
+    return surface_votes(values, inside, receiver.place.z, receiver.reach, depth_step(map_bits), share);
 }
 
 void main() {

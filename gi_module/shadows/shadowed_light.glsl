@@ -29,8 +29,7 @@ float filtered_visibility(uint slot, float scale, vec3 place, vec3 normal, float
                           float lag) {
     const vec2 position = map_texel(place.xy) - 0.5;
     const ivec2 corner = ivec2(floor(position));
-    const float step = depth_step(map_bits) + lag;
-    vec4 lit, vote, values;
+    vec4 lit, vote;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         const ivec2 texel = inside_map(corner + ivec2(i & 1, i >> 1));
         const vec2 uv = (vec2(texel) + 0.5) / map_side() * 2.0 - 1.0;
@@ -43,14 +42,12 @@ float filtered_visibility(uint slot, float scale, vec3 place, vec3 normal, float
                 centre = scale > 0.0 ? cone_direction(uv, scale) : sphere_direction(uv);
             on_plane = value_on_plane(normal, plane_distance, centre);
         }
-        values[i] = map_value(slot, texel);
         const vec2 result = texel_vote(on_plane, place.z, shadow_filter_window * bias, shadow_filter_slack * reach,
-                                       step, values[i]);
+                                       depth_step(map_bits) + lag, map_value(slot, texel));
         lit[i] = result.x;
         vote[i] = result.y;
     }
-    const vec2 inside = position - floor(position);
-    return surface_votes(values, inside, place.z, reach, step, count_votes(lit, vote, inside));
+    return count_votes(lit, vote, position - floor(position));
 }
 
 // The same on a hemisphere's map, which nearly all samples have: the plane's value at a texel centre, -k n.c with c =
