@@ -40,7 +40,8 @@ void main() {
                 sum += shining(ivec2(x, y), surface);
         }
     // A sky is nearly the same all over a block: one look-up, in its middle.
-    sum += sky_pixels * sky_radiance(0.5 * vec2(first + end));
+    if (sky_pixels > 0.0)
+        sum += sky_pixels * sky_radiance(0.5 * vec2(first + end));
     const ivec2 pixels = end - first;
     imageStore(target, block, vec4(min(sum / float(pixels.x * pixels.y), vec3(60000.0)), 1.0));
 }
