@@ -133,7 +133,8 @@ Status check_bindings(const Pipeline& pipeline, std::span<const Binding> binding
         if (bindings[i].kind == BindingKind::storage_buffer && bindings[i].buffer_info.range > most_bytes)
             return Error{"shader '" + pipeline.name() + "' needs " + std::to_string(bindings[i].buffer_info.range) +
                              " bytes in binding " + std::to_string(declared[i].number) + ", and this device allows " +
-                             std::to_string(most_bytes),
+                             std::to_string(most_bytes) +
+                             ": a smaller picture or level, or fewer light samples, need less",
                          ErrorCode::unsupported};
     return {};
 }

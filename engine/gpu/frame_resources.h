@@ -94,8 +94,8 @@ public:
     }
 
     // Binds `pipeline` with one entry for each of its bindings, by ascending binding number. An error if their number
-    // or kinds are not what the shaders declare, and one (ErrorCode::unsupported) if a storage buffer is
-    // larger than the device lets a shader see.
+    // or kinds are not what the shaders declare, and one (ErrorCode::unsupported) if a storage buffer is larger than
+    // the device lets a shader see.
     Status bind(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const Binding> bindings);
     // All of the pipeline's push constants. Bytes after those that the shaders declare are padding, and left out.
     Status push_bytes(VkCommandBuffer commands, const Pipeline& pipeline, std::span<const std::byte> constants);
