@@ -166,20 +166,34 @@ TEST_F(AnywhereSharpShadows, CostNothingWithoutSuchLights) {
     EXPECT_EQ(world.renderer->statistics().gpu_ms.count("punctual light"), 0u);
 }
 
+// The scene's one point light, made a mover.
+class CarriedLamp {
+public:
+    explicit CarriedLamp(GpuWorld& world) : registry_(world.renderer->registry()) {
+        registry_.view<scene::PointLight>().each([&](ecs::Entity entity, const scene::PointLight&) { lamp_ = entity; });
+        registry_.emplace<scene::Mover>(lamp_, {});
+    }
+    // Along x, in m.
+    void move(float by) const {
+        scene::Transform place = *registry_.try_get<scene::Transform>(lamp_);
+        place.position.x += by;
+        registry_.update<scene::Transform>(lamp_, place);
+        scene::update_world_transforms(registry_);
+    }
+
+private:
+    ecs::Registry& registry_;
+    ecs::Entity lamp_;
+};
+
 // A lamp that is carried lights with the shadows of where it is, in every frame; once it rests, with all detail.
 TEST_F(AnywhereSharpShadows, FollowALampThatIsCarried) {
     GpuWorld world(make_pole, "view");
     world.request.width = 640;
     world.request.height = 360;
-    ecs::Registry& registry = world.renderer->registry();
-    ecs::Entity lamp;
-    registry.view<scene::PointLight>().each([&](ecs::Entity entity, const scene::PointLight&) { lamp = entity; });
-    registry.emplace<scene::Mover>(lamp, {});
+    const CarriedLamp lamp(world);
     for (int step = 0; step < 4; ++step) {
-        scene::Transform place = *registry.try_get<scene::Transform>(lamp);
-        place.position.x += 0.1f;
-        registry.update<scene::Transform>(lamp, place);
-        scene::update_world_transforms(registry);
+        lamp.move(0.1f);
         const Mistakes moving = compare(world, punctual_only());
         EXPECT_GT(moving.shadow, 500);
         EXPECT_LE(moving.lit_in_shadow + moving.dark_in_light, moving.shadow / 4) << "step " << step;
@@ -206,17 +220,11 @@ TEST_F(AnywhereSharpShadows, ACarriedLampDrawsNoBlotsBesideAFrame) {
     GpuWorld world(make_door_frame, "view");
     world.request.width = 640;
     world.request.height = 360;
-    ecs::Registry& registry = world.renderer->registry();
-    ecs::Entity lamp;
-    registry.view<scene::PointLight>().each([&](ecs::Entity entity, const scene::PointLight&) { lamp = entity; });
-    registry.emplace<scene::Mover>(lamp, {});
+    const CarriedLamp lamp(world);
     gi::Settings settings = punctual_only();
     settings.with("moving_light_tiles", "1");
     for (int step = 0; step < 3; ++step) {
-        scene::Transform place = *registry.try_get<scene::Transform>(lamp);
-        place.position.x += 0.07f;
-        registry.update<scene::Transform>(lamp, place);
-        scene::update_world_transforms(registry);
+        lamp.move(0.07f);
         settings.shadows = true;
         world.set(settings);
         const io::Picture picture = world.picture();
