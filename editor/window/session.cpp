@@ -104,7 +104,9 @@ void Session::inspect(vec2 place) {
 void Session::say_what_was_opened(const std::filesystem::path& path) {
     const std::size_t notes = document->notes().size();
     messages.say("Opened " + path.filename().string() + ", " + std::to_string(document->entity_count()) + " entities" +
-                 (notes == 0 ? "" : "; " + std::to_string(notes) + " notes on what was left out: Messages"));
+                 (notes == 0 ? ""
+                             : "; " + std::to_string(notes) + (notes == 1 ? " note" : " notes") +
+                                   " on what was left out: Messages"));
 }
 
 void Session::measure_cost(const std::string& setting) {

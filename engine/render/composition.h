@@ -50,9 +50,9 @@ private:
 
     const gpu::Pipeline* views_[2][2] = {};    // [emission has an image][the sky has a picture]
     const gpu::Pipeline* final_[2][2][2] = {}; // [emission has an image][alpha is brightness][glare]
+    const gpu::Pipeline* emission_[2][2] = {}; // [alpha is brightness][glare]
     // [alpha is brightness][glare]. A picture of the sky is drawn where it shows, by a depth test: looked up for every
     // pixel, it takes a CPU device as long as all the rest.
-    const gpu::Pipeline* emission_[2][2] = {};
     const gpu::Pipeline* sky_[2][2] = {};
     VkSampler sampler_ = VK_NULL_HANDLE, linear_ = VK_NULL_HANDLE;
 };

@@ -1,4 +1,5 @@
-// Radiance where no surface is, at a place of the picture, in pixels. The including shader declares constants, camera, sky_image and sky_has_picture.
+// Radiance where no surface is, at a place of the picture, in pixels. The including shader declares constants, camera,
+// sky_image and sky_has_picture.
 
 const float pi = 3.14159265358979;
 

@@ -18,8 +18,8 @@ layout(constant_id = 2) const uint repairs_contacts = 1;
 // and blending would extrapolate.
 const float min_weight_sum = 0.3;
 
-// A surface that stands before another by less than this, in tolerances (about two low-resolution pixels in all), darkens
-// it where they seem to meet: under a shelf, beside a frame.
+// A surface that stands before another by less than this, in tolerances (about two low-resolution pixels in all),
+// darkens it where they seem to meet: under a shelf, beside a frame.
 const float contact_reach = 14.0;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
@@ -108,7 +108,8 @@ bool at_contact(ivec2 pixel, ivec2 inside, float depth, vec3 plane, float height
         const vec3 normal = unpack_normal(texelFetch(normals_image, beside, 0).g);
         const vec3 to_other = camera_ray(camera, vec2(beside) + 0.5) * (camera.position.w / max(other, 1e-7));
         const float before = height * (other - dot(plane, vec3(1.0, vec2(inside + beside - pixel))));
-        contact = contact || (before > tolerance && before < contact_reach * tolerance && dot(normal, place - to_other) < 0.0);
+        contact = contact || (before > tolerance && before < contact_reach * tolerance &&
+                              dot(normal, place - to_other) < 0.0);
     }
     return contact;
 }

@@ -78,7 +78,8 @@ void LightMapJobs::split(std::uint32_t invocations) {
 }
 
 std::vector<LightMapJobs::Piece> LightMapJobs::pieces(std::uint64_t most_bytes) const {
-    const std::uint64_t most_jobs = most_bytes / sizeof(shared::LightMapJob), most_changes = most_bytes / 4;
+    const std::uint64_t most_jobs = most_bytes / sizeof(shared::LightMapJob);
+    const std::uint64_t most_changes = most_bytes / sizeof(std::uint32_t);
     std::vector<Piece> pieces;
     std::uint32_t first = 0; // of the piece's changes
     for (shared::LightMapJob job : jobs_) {
