@@ -9,6 +9,8 @@
 namespace sunfleck::host {
 namespace {
 
+constexpr std::uint64_t most_serial = std::uint64_t(1) << 63;
+
 std::string text_of(float value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.6g", double(value));
@@ -224,6 +226,9 @@ Status Serials::check(const Frame& frame) const {
     if (frame.serial < least)
         return wrong("Frame::serial is " + std::to_string(frame.serial) +
                      "; after the frames that were recorded it must be " + std::to_string(least) + " or more");
+    // Beyond that, numbers would begin again some day.
+    if (frame.serial > most_serial)
+        return wrong("Frame::serial is " + std::to_string(frame.serial) + "; it may be 2^63 at most");
     if (frame.completed_serial < completed || frame.completed_serial >= frame.serial)
         return wrong("Frame::completed_serial is " + std::to_string(frame.completed_serial) + "; it must lie between " +
                      std::to_string(completed) + ", which was finished before, and the frame that begins, " +

@@ -1,6 +1,7 @@
 // One frame of a foreign host: the CPU's part, and the passes recorded into the host's command buffer.
 #include "gi_module/host_context.h"
 
+#include "engine/core/memory_limit.h"
 #include "engine/scene/camera_view.h"
 #include "gi_module/frame_times.h"
 
@@ -33,6 +34,10 @@ glm::dmat4 world_to_clip_of(const View& view) {
 }
 
 } // namespace
+
+void set_memory_limit(std::uint64_t bytes) {
+    sunfleck::set_memory_limit(bytes);
+}
 
 Matrix4 view_projection(const Camera& camera, std::uint32_t width, std::uint32_t height) {
     if (!check_camera(camera) || width == 0 || height == 0)

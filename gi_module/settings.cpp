@@ -98,6 +98,17 @@ std::vector<const TypeDescription*> all_types() {
     return types;
 }
 
+// One shadow map must fit into what all may have.
+Status check_memory_of_maps(const ShadowSettings& shadows) {
+    const std::uint64_t side = shadows.shadow_map_resolution, bytes = side * side * shadows.shadow_map_bits / 8;
+    if (double(bytes) <= double(shadows.shadow_memory) * 1048576.0)
+        return {};
+    return Error{"a shadow map of shadow_map_resolution " + std::to_string(side) + " takes " +
+                     std::to_string(bytes >> 20) + " MiB, more than shadow_memory lets all of them take: lower " +
+                     "shadow_map_resolution, or raise shadow_memory",
+                 ErrorCode::argument};
+}
+
 } // namespace
 
 const TypeDescription& TermSettings::description() {
@@ -218,7 +229,7 @@ Status Settings::validate() const {
     for (const ConstPart& part : parts())
         SUNFLECK_TRY(sunfleck::validate(*part.type, part.values));
     SUNFLECK_ASSIGN([[maybe_unused]] const LightPlan checked, light_plan());
-    return {};
+    return check_memory_of_maps(*this);
 }
 
 } // namespace sunfleck::gi

@@ -1,5 +1,7 @@
 #include "engine/core/memory_limit.h"
 
+#include "engine/core/control_groups.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -13,13 +15,6 @@ namespace {
 
 std::atomic<std::uint64_t> chosen_limit{0};
 
-// Of a file that starts with a number ("max" is none).
-std::uint64_t number_in(const char* path, std::uint64_t otherwise) {
-    std::ifstream file(path);
-    std::uint64_t value = 0;
-    return file >> value ? value : otherwise;
-}
-
 std::uint64_t free_memory() {
     constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max() / 4;
     std::uint64_t available = unknown;
@@ -27,9 +22,7 @@ std::uint64_t free_memory() {
     for (std::string word; file >> word;)
         if (word == "MemAvailable:" && file >> available)
             available *= 1024;
-    const std::uint64_t group = number_in("/sys/fs/cgroup/memory.max", unknown);
-    const std::uint64_t taken = number_in("/sys/fs/cgroup/memory.current", 0);
-    return std::min(available, group > taken ? group - taken : 0);
+    return std::min(available, free_in_control_groups("/sys/fs/cgroup", "/proc/self/cgroup", unknown));
 }
 
 std::string in_gibibytes(std::uint64_t bytes) {
@@ -68,7 +61,7 @@ Status check_memory(std::uint64_t bytes, std::string_view what, std::string_view
         return {};
     return Error{std::string(what) + " would take " + in_gibibytes(bytes) + " of memory beside the " +
                      in_gibibytes(used) + " in use; the limit is " + in_gibibytes(limit) + ". Lower " +
-                     std::string(setting) + ", or raise the limit (--memory)",
+                     std::string(setting) + ", or raise the limit (--memory; in a host: set_memory_limit)",
                  ErrorCode::memory};
 }
 

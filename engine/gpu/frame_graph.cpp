@@ -314,7 +314,7 @@ Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compile
     SUNFLECK_TRY(add_slow_work(context, compiled.name));
 #endif
     const Status status = pass.execute ? pass.execute(context) : Status();
-    return status ? status : Error{"pass '" + pass.name + "': " + status.error().message};
+    return status ? status : Error{"pass '" + pass.name + "': " + status.error().message, status.error().code};
 }
 
 Status FrameGraph::execute(VkCommandBuffer commands, FrameResources& resources, Timers* timers) {

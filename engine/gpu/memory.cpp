@@ -1,5 +1,6 @@
 #include "engine/gpu/memory.h"
 
+#include "engine/core/memory_limit.h"
 #include "engine/gpu/device.h"
 
 #include <algorithm>
@@ -41,11 +42,15 @@ Result<std::uint32_t> Memory::choose_type(std::uint32_t allowed, MemoryUse use) 
         for (std::uint32_t type = 0; type < properties_.memoryTypeCount; ++type)
             if ((allowed & (1u << type)) && (properties_.memoryTypes[type].propertyFlags & wanted) == wanted)
                 return type;
-    return Error{"the device has no memory type for this use"};
+    return Error{"the device has no memory type for this use", ErrorCode::unsupported};
 }
 
 Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, bool linear, bool dedicated, bool map,
                                          const std::string& what) {
+    // Elsewhere the device has memory of its own, and refuses what does not fit.
+    if (device_.traits().software)
+        SUNFLECK_TRY(check_memory(size, "'" + what + "'",
+                                  "the picture's size, the level's, the light samples (lights) or shadow_memory"));
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = size;
     info.memoryTypeIndex = type;

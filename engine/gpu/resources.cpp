@@ -82,7 +82,8 @@ Result<Image> Image::create(Device& device, const ImageDescription& description)
                               "x" + std::to_string(description.height);
     if (std::max(description.width, description.height) > device.traits().max_image_size)
         return Error{doing + " failed: this device's limit is " + std::to_string(device.traits().max_image_size) +
-                     " in each direction"};
+                         " in each direction",
+                     ErrorCode::argument};
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = description.format;

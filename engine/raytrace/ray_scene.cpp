@@ -50,7 +50,7 @@ Result<std::unique_ptr<RayScene>> RayScene::create() {
     std::unique_ptr<RayScene> scene(new RayScene());
     scene->implementation_->device.reset(rtcNewDevice(nullptr));
     if (!scene->implementation_->device)
-        return Error{"Embree could not be started on this processor"};
+        return Error{"Embree could not be started on this processor", ErrorCode::unsupported};
     scene->implementation_->static_scene = scene->implementation_->new_scene();
     rtcCommitScene(scene->implementation_->static_scene.get());
     scene->implementation_->top_scene = scene->implementation_->new_scene();

@@ -87,8 +87,9 @@ Status LowResolution::make_buffer(gpu::Buffer& buffer, const char* name, std::ui
         return {};
     if (const std::uint64_t most = device_.traits().max_storage_range; bytes > most)
         return Error{"this picture needs " + std::to_string(bytes >> 20) + " MiB for '" + name +
-                     "', but the device binds buffers of at most " + std::to_string(most >> 20) +
-                     " MiB: raise low_resolution or draw fewer pixels"};
+                         "', but the device binds buffers of at most " + std::to_string(most >> 20) +
+                         " MiB: raise low_resolution or draw fewer pixels",
+                     ErrorCode::memory};
     if (buffer)
         resources.retire(std::move(buffer));
     SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device_, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage,

@@ -81,7 +81,8 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
     const std::uint32_t slots = std::uint32_t(std::min<std::uint64_t>(most_maps(resolution), wanted));
     if (slots == 0)
         return Error{"one shadow map of " + std::to_string(resolution) +
-                     " texels a side does not fit shadow_memory or this device; lower shadow_map_resolution"};
+                         " texels a side does not fit shadow_memory or this device; lower shadow_map_resolution",
+                     ErrorCode::memory};
     if (texels_ && resolution == resolution_ && layout.bits == bits_ && slots <= slots_ &&
         layout.keep_static == layout_.keep_static)
         return false;

@@ -26,7 +26,7 @@ strays=$(find "$work/prefix" -name 'libsunfleck_*.a' -exec nm -g --defined-only 
 # Of the shared library, nothing can be seen but what sunfleck/host.h declares.
 if library=$(find "$work/prefix" -name 'libsunfleck.so' | grep .); then
     strays=$(nm -DC --defined-only "$library" | cut -d' ' -f3- |
-        grep -vE '^sunfleck::host::(Context::(~Context|[a-z_]+)\(|(missing_features|enable_features|view_projection)(\[abi:[a-z0-9]+\])?\()' || true)
+        grep -vE '^sunfleck::host::(Context::(~Context|[a-z_]+)\(|(missing_features|enable_features|view_projection|set_memory_limit)(\[abi:[a-z0-9]+\])?\()' || true)
     [[ -z $strays ]] || { echo "the shared library shows more than it should:"; head -20 <<<"$strays"; exit 1; }
     echo "shared library: $(nm -D --defined-only "$library" | wc -l) symbols"
     if readelf -d "$work/build/embedding_shared" | grep -E 'NEEDED.*(embree|tbb|meshopt)'; then
@@ -56,6 +56,7 @@ if ldd "$work/build/embedding" | grep -iE 'OpenImageIO|glfw|imgui|tinygltf|draco
 fi
 echo "links: $(readelf -d "$work/build/embedding" | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | tr '\n' ' ')"
 "$work/build/embedding"
+[[ ! -e $work/build/embedding_volk ]] || "$work/build/embedding_volk"
 [[ ! -e $work/build/embedding_shared ]] || "$work/build/embedding_shared" --own-loader
 # Two pairs tell nothing yet, but every row is there, the program's own one too, and no counter differs.
 status=0

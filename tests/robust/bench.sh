@@ -26,11 +26,13 @@ while (($#)); do
     esac
     shift || true
 done
+tests=$build/bin/robust_tests
+[[ -x $tests ]] || tests=$build/bin/sanitizer_tests # of the parts that builds with sanitizers have
 case $part in
-1) run=("$build/bin/robust_tests" "--gtest_filter=RobustHostCalls.AreRightOrRefused") last=20000 piece=100 ;;
+1) run=("$tests" "--gtest_filter=RobustHostCalls.AreRightOrRefused") last=20000 piece=100 ;;
 2) run=("$build/bin/robust_tests" "--gtest_filter=RobustHostFaults.EveryCallOfVulkanMayFail") last=1000000 piece=50 ;;
 3) run=("$build/bin/robust_tests" "--gtest_filter=RobustHostFaults.EveryAllocationMayFail") last=1000 piece=50 ;;
-4) run=("$build/bin/robust_tests" "--gtest_filter=RobustDamagedFiles.MutationsAreRefusedOrTraced") last=20000 piece=500 ;;
+4) run=("$tests" "--gtest_filter=RobustDamagedFiles.MutationsAreRefusedOrTraced") last=20000 piece=500 ;;
 5) run=(python3 "$here/kills.py" "$build") last=300 piece=25 ;;
 6) run=(python3 "$here/scale.py" "$build") last=9 piece=3 ;;
 7) run=(python3 "$here/memory.py" "$build" "${frames:-20000}") last=1 piece=1 ;;

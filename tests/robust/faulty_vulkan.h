@@ -5,6 +5,7 @@
 #include "engine/gpu/functions.h"
 
 #include <array>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +25,9 @@ struct State {
     VkResult code = VK_ERROR_OUT_OF_HOST_MEMORY;
     std::string failed; // the function that failed
     std::int64_t live = 0;
-    std::vector<std::uint8_t> sequence; // which function each call is
-    int within = 0;                     // calls under way, on this thread
+    std::vector<std::uint8_t> sequence;                   // which function each call is
+    std::set<std::pair<std::uint8_t, const void*>> sites; // functions, and where calls of them return to
+    int within = 0;                                       // calls under way, on this thread
     std::array<void*, fallible_names.size()> real{};
     std::array<void*, destroying_names.size()> real_destroying{};
     PFN_vkGetDeviceProcAddr get_device = nullptr;
@@ -42,6 +44,7 @@ template <std::size_t Index, typename... Arguments>
 VKAPI_ATTR VkResult VKAPI_CALL call(Arguments... arguments) {
     ++state.within;
     state.sequence.push_back(std::uint8_t(Index));
+    state.sites.emplace(std::uint8_t(Index), __builtin_return_address(0));
     if (++state.calls == state.fail_at) {
         state.failed = fallible_names[Index];
         --state.within;

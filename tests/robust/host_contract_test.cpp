@@ -2,6 +2,8 @@
 // leaves all as it was.
 #include "tests/support/host_program.h"
 
+#include <thread>
+
 namespace sunfleck::tests {
 namespace {
 
@@ -164,6 +166,57 @@ TEST_F(RobustHost, AbandonedContextsCallNothingOfVulkan) {
     EXPECT_EQ(update.error().code, ErrorCode::device_lost);
     EXPECT_TRUE(context->statistics().memory.empty());
     context.reset();
+}
+
+// Contexts share nothing: frames of two threads, each with a device of its own, are as those of one.
+TEST_F(RobustHost, TwoThreadsHaveContextsOfTheirOwn) {
+    const auto light_a_story = [](gpu::Device& device, HostPicture& picture) {
+        HostProgram program(device);
+        const auto context = make_context(program);
+        describe_room(*context);
+        for (int i = 0; i < 10; ++i) {
+            const float x = 0.1f * float(i);
+            ASSERT_TRUE(context->set_transform(1, box_matrix(vec3(x, 0.6f, 0), vec3(0.6f))));
+            ASSERT_TRUE(program.frame(*context, 0));
+        }
+        picture = picture_of_room(program, *context);
+    };
+    HostPicture alone, beside[2];
+    light_a_story(device(), alone);
+    std::unique_ptr<gpu::Device> devices[2];
+    for (auto& device : devices)
+        device = gpu::Device::create({}).value();
+    std::thread other([&] { light_a_story(*devices[1], beside[1]); });
+    light_a_story(*devices[0], beside[0]);
+    other.join();
+    EXPECT_EQ(beside[0], alone);
+    EXPECT_EQ(beside[1], alone);
+}
+
+TEST_F(RobustHost, MemoryLimitsAreTheHosts) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    describe_room(*context);
+    ASSERT_TRUE(context->set("shadow_map_resolution", "2048"));
+    host::set_memory_limit(std::uint64_t(1) << 20);
+    const Status refused = program.frame(*context, 0);
+    host::set_memory_limit(0);
+    if (device().traits().software) { // others have memory of their own
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, ErrorCode::memory);
+        EXPECT_NE(refused.error().message.find("set_memory_limit"), std::string::npos) << refused.error().message;
+    }
+    ASSERT_TRUE(context->set("shadow_map_resolution", "32"));
+    EXPECT_TRUE(program.settle(*context, 0));
+}
+
+TEST_F(RobustHost, SettingsThatNeverFitAreRefusedAtOnce) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    ASSERT_TRUE(context->set("shadow_map_resolution", "2048"));
+    expect_argument(context->set("shadow_memory", "1"), "shadow_map_resolution");
+    describe_room(*context);
+    EXPECT_TRUE(context->set("shadow_memory", "64"));
 }
 
 TEST_F(RobustHost, ExceptionsOfCallbacksEndTheUpdateAlone) {

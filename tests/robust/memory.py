@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Memory while frames go on: resident memory and the bytes that are allocated, over the last half of a long run.
 
-Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool
+Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool, and of
+32x32 of a host
 Resident memory may grow by less than 1 MiB in the last half, and allocated bytes, as counted by count_allocations.c, by
 less than 64 kB: buffers that keep the most that any frame needed grow now and then. Both are compared as the least of a
 tenth of the run with the least of another: what frames in flight hold comes and goes.
@@ -42,14 +43,15 @@ def main():
     build, frames = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else "20000"
     runs = {"demo": ["sunfleck_demo", "--headless", "--size", "64x36", "--pictures", "0", "--frames", frames, "-o", "out"],
             "tool": ["sunfleck", "render", "four_pillars", "--size", "64x36", "--lights", "64", "--frames", frames, "--orbit",
-                     "0.25", "-o", "out.png"]}
+                     "0.25", "-o", "out.png"],
+            "host": ["robust_tests", "--gtest_filter=RobustHostMemory.*"]}
     wrong = 0
     print("| program | frames | s | resident, MB | grows, kB | allocated, MB | grows, kB |\n|---|---|---|---|---|---|---|")
     for name, (program, *rest) in runs.items():
         with tempfile.TemporaryDirectory() as folder:
             counter = pathlib.Path(folder) / "allocated"
             environment = dict(os.environ, LD_PRELOAD=str(build / "lib/libsunfleck_count_allocations.so"),
-                               SUNFLECK_ALLOCATED=str(counter))
+                               SUNFLECK_ALLOCATED=str(counter), SUNFLECK_FRAMES=frames)
             begin = time.time()
             os.chdir(folder)
             samples, status, output = watch([str(build / "bin" / program), *rest], counter, environment)

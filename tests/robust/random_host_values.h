@@ -14,6 +14,8 @@ public:
 
 protected:
     std::uint32_t pick(std::size_t count) { return std::uint32_t(random_() % count); }
+    // As large as the contract allows, now and then.
+    float place(float low, float high) { return pick(200) == 0 ? (chance() ? 0x1p60f : -0x1p60f) : real(low, high); }
     float real(float low, float high) { return low + (high - low) * float(random_() % 1000) / 999.0f; }
     bool chance() { return pick(2) == 0; }
     float bad_number() {
@@ -25,21 +27,32 @@ protected:
     // A value that was good, with one of its numbers replaced.
     void spoil(std::span<float> values) { values[pick(values.size())] = bad_number(); }
     struct Mesh {
-        std::vector<float> positions, normals;
+        std::vector<float> positions, normals, texture_coordinates;
         std::vector<std::uint32_t> indices;
     };
     Mesh mesh() {
         const host::MeshData good = cube(chance());
         Mesh result{{good.positions.begin(), good.positions.end()},
                     {good.normals.begin(), good.normals.end()},
+                    {},
                     {good.indices.begin(), good.indices.end()}};
         if (chance())
             result.normals.clear();
+        if (chance())
+            for (std::size_t i = 0; i < result.positions.size() / 3 * 2; ++i)
+                result.texture_coordinates.push_back(real(-2, 2));
         if (wrong_)
             spoil_mesh(result);
         return result;
     }
     void spoil_mesh(Mesh& mesh) {
+        if (!mesh.texture_coordinates.empty() && pick(4) == 0) {
+            if (chance())
+                spoil(mesh.texture_coordinates);
+            else
+                mesh.texture_coordinates.pop_back();
+            return;
+        }
         switch (pick(mesh.normals.empty() ? 4 : 6)) {
         case 0:
             spoil(mesh.positions);
@@ -105,8 +118,8 @@ protected:
     host::LightData light() {
         host::LightData data;
         data.kind = host::LightKind(pick(4));
-        data.strength = {real(0, 8), real(0, 8), real(0, 8)};
-        data.position = {real(-1.5f, 1.5f), real(0.2f, 2.3f), real(-1.5f, 1.5f)};
+        data.strength = {real(0, 8), pick(200) == 0 ? 0x1p60f : real(0, 8), real(0, 8)};
+        data.position = {place(-1.5f, 1.5f), place(0.2f, 2.3f), real(-1.5f, 1.5f)};
         data.direction = {real(-1, 1), -1, real(-1, 1)};
         data.outer_angle = real(0.2f, 1.5f);
         data.inner_angle = real(0, 1) * data.outer_angle;

@@ -1,3 +1,4 @@
+#include "engine/core/control_groups.h"
 #include "engine/core/description.h"
 #include "engine/core/file.h"
 #include "engine/core/jobs.h"
@@ -167,6 +168,37 @@ TEST(MemoryLimit, CountsWhatIsAskedForBesideWhatIsThere) {
     for (const char* word : {"a picture of 16384x16384", "3.0 GiB", "--size", "--memory"})
         EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
     EXPECT_EQ(memory_limit(), by_default);
+}
+
+// Files as Linux has them: a group of 1,000 bytes in one of 700, of which 100 and 600 are taken and 250 can be dropped.
+TEST(MemoryLimit, FollowsControlGroupsAndThoseTheyLieIn) {
+    namespace fs = std::filesystem;
+    const fs::path mount = fs::temp_directory_path() / ("control_groups_" + std::to_string(::getpid()));
+    const auto write = [&](const char* name, const char* text) {
+        fs::create_directories((mount / name).parent_path());
+        ASSERT_TRUE(write_file(mount / name, text));
+    };
+    const auto free = [&](const char* membership) {
+        write("membership", membership);
+        return free_in_control_groups(mount, mount / "membership", 5000);
+    };
+    write("outer/memory.max", "700\n");
+    write("outer/memory.current", "600\n");
+    write("outer/memory.stat", "anon 350\nfile 250\ninactive_file 250\n");
+    write("outer/inner/memory.max", "1000\n");
+    write("outer/inner/memory.current", "100\n");
+    write("outer/endless/memory.max", "max\n");
+    write("outer/endless/memory.current", "100\n");
+    write("memory/old/memory.limit_in_bytes", "400\n");
+    write("memory/old/memory.usage_in_bytes", "300\n");
+    write("memory/old/memory.stat", "cache 50\ntotal_inactive_file 50\n");
+    EXPECT_EQ(free("0::/outer/inner\n"), 350u);
+    EXPECT_EQ(free("0::/outer/endless\n"), 350u);
+    EXPECT_EQ(free("0::/elsewhere\n"), 5000u) << "a mount that shows less";
+    EXPECT_EQ(free("8:pids:/x\n4:memory:/old\n0::/\n"), 150u);
+    EXPECT_EQ(free("4:cpu,memory:/old\n"), 150u);
+    EXPECT_EQ(free(""), 5000u);
+    fs::remove_all(mount);
 }
 
 } // namespace

@@ -26,6 +26,7 @@
 //   device_lost  Only destroying or abandoning the context makes sense.
 //   unsupported  The driver, the instance or the device lacks what missing_features names.
 //   stopped      Frame::progress returned false; the next update begins again.
+//   other        What should not happen: an exception of a callback's or a library's. Afterwards as after `memory`.
 //
 // Units. World space is right-handed, in metres; matrices are column-major, 16 floats. Strengths are radiometric RGB,
 // linear Rec. 709. Coordinates and strengths may be as large as 2^60: squares of them still fit into a float.
@@ -57,6 +58,12 @@ Result<std::vector<std::string>> missing_features(VkInstance instance, VkPhysica
                                                   PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan12Features* features12,
                      VkPhysicalDeviceVulkan13Features* features13);
+
+// How much memory the process may take, in bytes; 0, the default: three quarters of what is free when the module first
+// asks (of the machine, or of the control group), and what the process has by then. What would go over it is refused
+// before it is taken (ErrorCode::memory), with a message that says what asked for how much. Of all contexts; from any
+// thread.
+void set_memory_limit(std::uint64_t bytes);
 
 struct VulkanHandles {
     VkInstance instance = VK_NULL_HANDLE;
@@ -212,7 +219,7 @@ struct FrameImages {
 
 struct Frame {
     // Of this frame: greater than those of all frames that were recorded, or that of the frame that was dropped.
-    std::uint64_t serial = 1;
+    std::uint64_t serial = 1;           // 2^63 at most
     std::uint64_t completed_serial = 0; // all frames up to this one are finished on the GPU; never falls
     // Shadow maps redrawn in this frame at most. A light sample without one yet shines only where nothing is in the
     // way.
