@@ -3,25 +3,12 @@
 #include "tests/robust/random_host_values.h"
 #include "tests/support/test_size.h"
 
-#include <map>
-
 namespace sunfleck::tests {
 namespace {
 
 using host::Mobility;
 
 class RobustHostCalls : public GpuTest {};
-
-struct Tally {
-    std::uint64_t tried = 0, refused = 0, right = 0, wrong = 0;
-    std::map<std::string, std::uint64_t> calls; // how often each was tried
-
-    void add(const Tally& other) {
-        tried += other.tried, refused += other.refused, right += other.right, wrong += other.wrong;
-        for (const auto& [call, times] : other.calls)
-            calls[call] += times;
-    }
-};
 
 // Calls a host might make, half of them with a value that makes no sense.
 class Sequence : RandomHostValues {

@@ -4,9 +4,22 @@
 #include "tests/support/host_program.h"
 
 #include <limits>
+#include <map>
 #include <random>
 
 namespace sunfleck::tests {
+
+// What became of calls.
+struct Tally {
+    std::uint64_t tried = 0, refused = 0, right = 0, wrong = 0;
+    std::map<std::string, std::uint64_t> calls; // how often each was tried
+
+    void add(const Tally& other) {
+        tried += other.tried, refused += other.refused, right += other.right, wrong += other.wrong;
+        for (const auto& [call, times] : other.calls)
+            calls[call] += times;
+    }
+};
 
 class RandomHostValues {
 public:
