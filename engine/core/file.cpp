@@ -1,7 +1,6 @@
 #include "engine/core/file.h"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -41,14 +40,6 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t siz
     if (filled != content.size())
         return file_error("cannot read all of", path);
     return content;
-}
-
-std::filesystem::path user_cache_folder() {
-    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder != nullptr && folder[0] == '/')
-        return std::filesystem::path(folder) / "sunfleck";
-    const char* home = std::getenv("HOME");
-    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".cache/sunfleck"
-                                             : std::filesystem::path();
 }
 
 } // namespace sunfleck
