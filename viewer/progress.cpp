@@ -1,6 +1,10 @@
 #include "viewer/progress.h"
 
+#include "engine/core/stop_signals.h"
+
+#include <chrono>
 #include <cstdio>
+#include <memory>
 #include <unistd.h>
 
 namespace sunfleck::viewer {
@@ -21,6 +25,14 @@ void Progress::show(double share, const std::string& detail) {
         std::fprintf(stderr, "%s: %d %%  %s\n", what_.c_str(), tenth * 10, detail.c_str());
     }
     last_tenth_ = tenth;
+}
+
+std::function<bool(float)> progress_until_stopped(const std::string& what) {
+    return [progress = std::make_shared<Progress>(what), start = std::chrono::steady_clock::now()](float share) {
+        if (std::chrono::steady_clock::now() - start > std::chrono::milliseconds(500))
+            progress->show(double(share), "");
+        return !stop_requested();
+    };
 }
 
 } // namespace sunfleck::viewer

@@ -1,6 +1,7 @@
 // How far a program's work is, for people who watch it.
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace sunfleck::viewer {
@@ -21,5 +22,9 @@ private:
     int last_tenth_ = -1;
     bool drawn_ = false;
 };
+
+// For work that may be quick: shows the share that is done from half a second on. False once a signal has asked for the
+// end (engine/core/stop_signals.h).
+std::function<bool(float)> progress_until_stopped(const std::string& what);
 
 } // namespace sunfleck::viewer

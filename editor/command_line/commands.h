@@ -19,6 +19,10 @@ struct RenderOptions {
 std::vector<std::string> view_names();
 Status render(const RenderOptions& options);
 
+// Of the path tracer and of all that it sees that is made by code (patterns, skies): raised with whatever makes its
+// pictures differ, so that a saved state of the method before is not gone on with. A test has pictures of this one.
+inline constexpr int reference_method = 4;
+
 struct ReferenceOptions {
     SceneOptions scene;
     std::string output;
@@ -46,7 +50,8 @@ struct BenchOptions {
     std::uint32_t views = 8, samples = 64; // of the suite picture: views, and samples a pixel of the path tracer
     bool as_json = false;
     std::uint32_t repeat = 5;
-    std::uint32_t turns = 15; // of contenders whose ratio is taken
+    std::uint32_t memory_mib = 0; // that may be taken; 0: memory_limit's default
+    std::uint32_t turns = 15;     // of contenders whose ratio is taken
 };
 // Names of the thesis's experiments, for BenchOptions::part.
 std::vector<std::string> thesis_parts();

@@ -30,13 +30,7 @@ Status apply_environment(const SceneOptions& options, ecs::Registry& registry, s
 
 io::ImportOptions import_options(const SceneOptions& options) {
     io::ImportOptions result = options.import;
-    const auto progress = std::make_shared<Progress>("loading");
-    const auto start = std::chrono::steady_clock::now();
-    result.progress = [progress, start](float share) {
-        if (std::chrono::steady_clock::now() - start > std::chrono::milliseconds(500))
-            progress->show(double(share), "");
-        return !interrupted();
-    };
+    result.progress = viewer::progress_until_stopped("loading");
     return result;
 }
 

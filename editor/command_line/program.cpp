@@ -3,7 +3,9 @@
 
 #include "editor/command_line/commands.h"
 #include "editor/command_line/gate_commands.h"
-#include "engine/core/output.h"
+#include "engine/core/caught.h"
+#include "engine/core/memory_limit.h"
+#include "engine/core/program_end.h"
 #include "engine/core/stop_signals.h"
 #include "gi_module/settings_reference.h"
 
@@ -234,7 +236,10 @@ Command make_bench_command(CLI::App& program) {
     viewer::add_name(*app, "--folder", options->folder,
                      "Of the suite picture: keeps there what is finished, and goes on with what is not", "FOLDER");
     viewer::add_name(*app, "--device", options->device, "Vulkan device by number or part of its name");
+    viewer::add_whole(*app, "--memory", options->memory_mib, 0, 1 << 30,
+                      "Memory that may be taken, in MiB; 0: three quarters of what is free");
     return {app, [options, run_gate] {
+                set_memory_limit(std::uint64_t(options->memory_mib) << 20);
                 if (int gate_status = 0; run_gate(gate_status))
                     return gate_status;
                 if (options->suite.empty()) {
@@ -268,12 +273,6 @@ Command make_info_command(CLI::App& program) {
                 return exit_status(scene->empty() ? describe_device(*device, *as_json)
                                                   : describe_scene(*scene, *allow_outside, *as_json));
             }};
-}
-
-// What a command printed is part of what was asked for.
-int printed(int status) {
-    const Status flushed = flush_standard_output();
-    return flushed || status != exit_done ? status : fail(flushed.error());
 }
 
 class Program {
@@ -334,11 +333,8 @@ private:
 int run_program(int argc, const char* const* argv) {
     Program program;
     const std::optional<int> status = program.parse(argc, argv, std::cout, std::cerr);
-    try {
-        return printed(status ? *status : program.run());
-    } catch (const std::bad_alloc&) {
-        return fail({"out of memory; lower --size or --lights"});
-    }
+    const Result<int> ended = status ? Result<int>(*status) : caught([&] { return Result<int>(program.run()); });
+    return ended ? printed(*ended) : fail(ended.error());
 }
 
 int check_command_line(int argc, const char* const* argv, std::string& message) {

@@ -116,9 +116,8 @@ Result<ReferenceSettings> settings_of(const ReferenceOptions& options) {
 // Of all that decides the picture: a state with another key is not resumed. The bytes of all files are in content_hash.
 std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettings& settings,
                           const TracedScene& scene) {
-    constexpr int method = 3; // raised with whatever makes the tracer's pictures differ
     const SceneOptions& of = options.scene;
-    Json json = {{"method", method},
+    Json json = {{"method", reference_method},
                  {"content", scene.content_hash},
                  {"scene", of.import.scene},
                  {"variant", of.import.variant},
