@@ -1,10 +1,10 @@
 #include "game_demo/demo_settings.h"
 
 #include "engine/core/file.h"
+#include "engine/core/user_folders.h"
 #include "viewer/picture_settings.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::demo {
@@ -87,11 +87,8 @@ const TypeDescription& DemoSettings::description() {
 }
 
 std::filesystem::path settings_path() {
-    if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder != nullptr && folder[0] == '/')
-        return std::filesystem::path(folder) / "sunfleck/demo.json";
-    const char* home = std::getenv("HOME");
-    return home != nullptr && home[0] == '/' ? std::filesystem::path(home) / ".config/sunfleck/demo.json"
-                                             : std::filesystem::path();
+    const std::filesystem::path folder = user_settings_folder();
+    return folder.empty() ? folder : folder / "demo.json";
 }
 
 namespace {

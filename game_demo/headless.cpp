@@ -77,6 +77,10 @@ Status write_numbered(const std::string& folder, std::uint32_t frame, const io::
     return io::write_picture(std::filesystem::path(folder) / name, picture);
 }
 
+Error stopped() {
+    return Error{std::string("stopped by ") + signal_name(stop_signal()), ErrorCode::stopped};
+}
+
 // Plays a level from a recording, or else from the built-in walk.
 class Playback {
 public:
@@ -101,9 +105,13 @@ public:
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
+            if (frame == 0) // with all of the light
+                request.progress = viewer::progress_until_stopped("lighting");
             SUNFLECK_TRY(level.renderer().render_and_wait(request));
             if (stop_requested())
-                return Error{std::string("stopped by ") + signal_name(stop_signal())};
+                return stopped();
+            if (frame == 0)
+                watch_stop_signals(); // from now on there is something to save
             times_.add(level.renderer().statistics());
             log_hitch(level.renderer().statistics());
             recording_.save_if_due();
@@ -188,8 +196,11 @@ Result<std::size_t> walk_length(const LevelSource& source) {
     const bool solvable = Solution::exists(*game);
     Solution solution(*game);
     WalkThrough walk;
-    while (solvable ? !solution.ended() : !walk.finished())
+    while (solvable ? !solution.ended() : !walk.finished()) {
         SUNFLECK_TRY(game->step(solvable ? solution.next() : walk.next(game->simulation())));
+        if (stop_requested())
+            return stopped();
+    }
     return std::size_t(game->simulation().steps());
 }
 
@@ -208,8 +219,8 @@ Status play(const Options& options, const std::vector<simulation::StepInput>& re
     settings.preset = options.preset.value_or(default_preset(device->traits().software));
     apply_preset(settings);
     settings.transfer = options.transfer.value_or(settings.transfer);
-    SUNFLECK_ASSIGN(const auto level, Level::load(*device, source_of(options), settings, 2));
-    watch_stop_signals();
+    SUNFLECK_ASSIGN(const auto level,
+                    Level::load(*device, source_of(options), settings, 2, viewer::progress_until_stopped("loading")));
     std::size_t steps = recorded.size();
     if (options.frames == 0 && recorded.empty()) {
         SUNFLECK_ASSIGN(steps, walk_length(source_of(options)));

@@ -1,5 +1,7 @@
 #include "game_demo/level_loader.h"
 
+#include "engine/core/caught.h"
+
 #include <algorithm>
 
 namespace sunfleck::demo {
@@ -27,7 +29,7 @@ LevelLoader::~LevelLoader() {
 
 void LevelLoader::start() {
     thread_ = std::thread([this] {
-        loaded_ = load();
+        loaded_ = caught([&] { return load(); });
         finished_ = true;
     });
 }

@@ -1,129 +1,23 @@
-// The demo's command line.
-#include "engine/core/exit_status.h"
-#include "engine/core/log.h"
+// The demo as a program.
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "engine/core/program_end.h"
 #include "engine/core/stop_signals.h"
-#include "game_demo/options.h"
-#include "game_demo/presets.h"
-#include "viewer/exposure.h"
-#include "viewer/options.h"
+#include "game_demo/command_line.h"
 
-#include <cstdio>
-
-namespace sunfleck {
-namespace {
-
-constexpr int most_frames = 10'000'000;
-
-// Options that are parsed as text and then translated.
-struct TextOptions {
-    viewer::PictureSize size{1280, 720};
-    std::string preset, movers, sensors = "all";
-    bool no_indirect = false;
-};
-
-void add_run_options(CLI::App& program, demo::Options& options) {
-    program.add_flag("--headless", options.headless, "Run without a window and write to the folder given by -o");
-    viewer::add_whole(program, "--frames", options.frames, 0, most_frames,
-                      "Stop after this many frames (0: at the end of the input)");
-    viewer::add_name(program, "-o,--output", options.output, "Folder for images and stats.json", "FOLDER");
-    viewer::add_name(program, "--input", options.input,
-                     "Recorded input to replay when headless (default: the built-in walk)", "FILE");
-    viewer::add_name(program, "--record", options.record,
-                     "Record the input to this file, which is written every second", "FILE");
-    viewer::add_name(program, "--state", options.state,
-                     "With a window: keeps what the game does in this file, as JSON, for programs that press its keys",
-                     "FILE");
-    viewer::add_whole(program, "--pictures", options.pictures, 0, most_frames,
-                      "Number of images that a headless run writes, evenly spaced from its first frame to its last");
-    viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,
-                      "Simulation steps of 1/60 s per frame of a headless run");
-    program.add_flag("--hitches", options.hitches,
-                     "Print which frames take more than twice the median of the 30 before, and why");
-    viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
-    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
-}
-
-void add_options(CLI::App& program, demo::Options& options, TextOptions& text) {
-    program.footer("Examples: sunfleck_demo\n"
-                   "          sunfleck_demo --headless --frames 300 -o out\n"
-                   "          sunfleck_demo --headless --input walk.txt --preset high -o out\n"
-                   "Exit status: 0 done, 1 failed, 2 the command line is wrong, 128 + N ended by signal N.");
-    add_run_options(program, options);
-    viewer::add_size(program, "--size", text.size, "Window or image size; the preset sets the render scale");
-    viewer::add_name(program, "--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
-        ->capture_default_str();
-    program.add_flag("--allow-outside", options.allow_outside,
-                     "The scene may read files outside of its folder: for scenes that you trust");
-    viewer::add_choice(program, "--preset", text.preset, {"software", "low", "medium", "high", "ultra"},
-                       "Quality (default: chosen for the device)");
-    viewer::add_choice(program, "--movers", text.movers,
-                       demo::has_transfer() ? std::vector<std::string>{"per_pixel", "prt"}
-                                            : std::vector<std::string>{"per_pixel"},
-                       "Lighting of complex moving objects; prt: precomputed (default: set by the preset)");
-    viewer::add_whole(program, "--memory", options.memory_mib, 0, 1 << 30,
-                      "Memory that may be taken, in MiB; 0: three quarters of what is free");
-    viewer::add_name(program, "--settings", options.settings_file,
-                     "Settings file (default: sunfleck/demo.json in the configuration folder)", "FILE");
-    viewer::add_real(program, "--ev100", options.ev100, viewer::lowest_exposure, viewer::highest_exposure,
-                     "Exposure, in place of the scene's; it stays, wherever one looks");
-    viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
-                     "FOLDER")
-        ->default_str("the current folder");
-    program.add_flag("--simulate", options.simulate,
-                     "Headless: steps only, without pictures or a device; plays lantern_game's solution, or --input");
-    viewer::add_choice(program, "--sensors", text.sensors, {"all", "direct"}, "The light that light sensors measure");
-    viewer::add_whole(program, "--sensor-rays", options.sensors.sensor_rays, 1, most_frames,
-                      "Rays that light sensors trace at a step, about");
-    program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");
-}
-
-void translate(const TextOptions& text, demo::Options& options) {
-    options.width = text.size.width;
-    options.height = text.size.height;
-    options.indirect = !text.no_indirect;
-    options.sensors.sensors = text.sensors == "direct" ? gi::SensedLight::direct : gi::SensedLight::all;
-    if (!text.movers.empty())
-        options.transfer = text.movers == "prt";
-    const char* names[] = {"software", "low", "medium", "high", "ultra"};
-    for (std::uint32_t i = 0; i < 5; ++i)
-        if (text.preset == names[i])
-            options.preset = demo::Preset(i);
-}
-
-int flushed(int status) {
-    const Status written = flush_standard_output();
-    if (!written)
-        log_error(written.error().message);
-    return written ? status : exit_failed;
-}
-
-} // namespace
-} // namespace sunfleck
+#include <iostream>
 
 int main(int argc, char** argv) {
     using namespace sunfleck;
     hold_standard_streams();
     demo::Options options;
-    TextOptions text;
-    CLI::App program("Lantern House, the Sunfleck demo: a house to walk through. Doors, lamps and a lantern move, and\n"
-                     "indirect light follows. Escape pauses; Help in the menu lists the keys.");
-    add_options(program, options, text);
-    try {
-        program.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return program.exit(error) == 0 ? flushed(exit_done) : exit_usage;
-    }
-    translate(text, options);
+    if (const std::optional<int> status = demo::read_command_line(argc, argv, options, std::cout, std::cerr))
+        return printed(*status);
     set_memory_limit(std::uint64_t(options.memory_mib) << 20);
-    watch_interrupts();
-    const Status status = options.headless && options.simulate ? demo::run_simulation(options)
-                          : options.headless                   ? demo::run_headless(options)
-                                                               : demo::run_window(options);
-    if (!status)
-        log_error(status.error().message);
-    if (stop_requested())
-        return exit_stopped_by(stop_signal());
-    return status ? flushed(exit_done) : exit_failed;
+    end_at_interrupts(); // until there is something to save
+    return run_to_end([&] {
+        return options.headless && options.simulate ? demo::run_simulation(options)
+               : options.headless                   ? demo::run_headless(options)
+                                                    : demo::run_window(options);
+    });
 }

@@ -1,6 +1,7 @@
 // The demo in a window: real time, the simulation on its fixed step.
 #include "engine/core/log.h"
 #include "engine/core/stop_signals.h"
+#include "engine/core/user_folders.h"
 #include "game_demo/controls.h"
 #include "game_demo/frame_pace.h"
 #include "game_demo/game_display.h"
@@ -40,7 +41,6 @@ public:
     Status run() {
         SUNFLECK_TRY(check_window_files(options_));
         SUNFLECK_TRY(start());
-        watch_stop_signals();
         const Status played = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
             if (!std::exchange(first, false))
                 SUNFLECK_TRY(take_new_device());
@@ -68,9 +68,7 @@ private:
             ++frame;
             pace_.worked(1e3 * seconds_since(began));
             const double shortest = std::max(1.0 / frame_rate(), pace_.shortest_frame());
-            const double rest = shortest - seconds_since(began);
-            if (rest > 0.0)
-                std::this_thread::sleep_for(std::chrono::duration<double>(rest));
+            std::this_thread::sleep_for(std::chrono::duration<double>(shortest - seconds_since(began)));
         }
         return {};
     }
@@ -131,6 +129,7 @@ private:
         if (!level_)
             return {};
         loading_.reset();
+        watch_stop_signals(); // from now on there is something to save
         SUNFLECK_ASSIGN(const bool another_device, display_->begin_renderer());
         if (another_device)
             menu_.say("The GPU stopped answering; a new device goes on with the picture", 8.0);
@@ -355,9 +354,9 @@ private:
     }
 
     Status finish(const Status& played) {
-        loading_.reset();
         hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
+        loading_.reset(); // may take a moment
         if (played)
             SUNFLECK_TRY(display_->device().wait_idle());
         if (kept_.differ_from_start(settings_)) // else nothing is lost
@@ -378,7 +377,7 @@ private:
     Menu menu_;
     GameSounds sounds_;
     StateFile state_;
-    GameSession session_{options_.scene, checkpoint_folder()};
+    GameSession session_{options_.scene, user_data_folder()};
     Controls controls_;
     WindowHitches hitches_;
     Clock::time_point last_;

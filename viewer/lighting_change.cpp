@@ -1,5 +1,6 @@
 #include "viewer/lighting_change.h"
 
+#include "engine/core/caught.h"
 #include "engine/core/jobs.h"
 #include "viewer/preparation.h"
 
@@ -47,7 +48,7 @@ bool LightingChange::wait_while(Stage stage) {
 }
 
 void LightingChange::run() {
-    status_ = prepare();
+    status_ = caught([&] { return prepare(); });
     renderer_.reset();
     copy_.reset();
     go_to(Stage::ended);

@@ -2,8 +2,6 @@
 
 #include "engine/core/file.h"
 
-#include <cstdlib>
-
 namespace sunfleck::demo {
 namespace {
 
@@ -53,14 +51,6 @@ bool CheckpointFiles::load(GameWorld& world, std::string& message) const {
             message = "The checkpoint '" + path.string() + "' was set aside: " + loaded.error().message;
     }
     return false;
-}
-
-std::filesystem::path checkpoint_folder() {
-    if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data != '\0')
-        return std::filesystem::path(data) / "sunfleck";
-    if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-        return std::filesystem::path(home) / ".local/share/sunfleck";
-    return {};
 }
 
 } // namespace sunfleck::demo

@@ -30,7 +30,4 @@ private:
     std::filesystem::path newest_, older_;
 };
 
-// Where the game keeps its checkpoints: $XDG_DATA_HOME/sunfleck or ~/.local/share/sunfleck; empty without either.
-std::filesystem::path checkpoint_folder();
-
 } // namespace sunfleck::demo
