@@ -74,11 +74,12 @@ Document::Document() {
 }
 
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
-                                                 const std::function<bool(float)>& progress) {
+                                                 const std::function<bool(float)>& progress, bool allow_outside) {
     auto document = std::make_unique<Document>();
     document->stamp_ = stamp_of(path);
     io::ImportOptions options;
     options.progress = progress;
+    options.allow_outside = allow_outside;
     SUNFLECK_ASSIGN(const io::ImportReport report,
                     io::load_scene(path, document->registry_, document->meshes_, document->textures_, options));
     document->notes_ = report.notes;

@@ -35,9 +35,11 @@ public:
     Document(const Document&) = delete;
     Document& operator=(const Document&) = delete;
 
-    // A .gltf, .glb or .scene.json file, as a document without history. `progress`: io::ImportOptions::progress.
+    // A .gltf, .glb or .scene.json file, as a document without history. `progress`, `allow_outside`: of
+    // io::ImportOptions.
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
-                                                  const std::function<bool(float)>& progress = {});
+                                                  const std::function<bool(float)>& progress = {},
+                                                  bool allow_outside = false);
     // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace geometry
     // that belongs to another scene, and, once, a file that file_changed(): the next save replaces it.
     Status save(const std::filesystem::path& path);

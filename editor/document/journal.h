@@ -1,6 +1,8 @@
-// Every edit as a line of JSON, appended to a file when it is made: a crash takes at most the one that was being
-// written. Read beside the scene that it goes on from, whose handles and numbers it speaks of; the scene that is read
-// has others, so that entities are found by their names, and geometry by an entity that has it.
+// Every edit as a line of JSON, appended to a file when it is made: a crash of the program takes at most the one that
+// was being written. Lines are not flushed to the disk, since edits of a moving hand cannot wait for that: when the
+// machine itself stops, what was done since the last whole scene (editor/window/recovery.h flushes those) may be lost.
+// Read beside the scene that it goes on from, whose handles and numbers it speaks of; the scene that is read has
+// others, so that entities are found by their names, and geometry by an entity that has it.
 //
 // A line has all that changed, as values after the edit: undone and redone edits are edits. What has no description
 // (textures, animations) is in no line: whoever reads stops there, and takes a whole scene that was kept later.
@@ -34,7 +36,7 @@ public:
     JournalWriter(const JournalWriter&) = delete;
     JournalWriter& operator=(const JournalWriter&) = delete;
 
-    // An empty file.
+    // An empty file; no link is followed.
     Status create(const std::filesystem::path& path);
     // Another document, or the same after a save: what was noted is forgotten.
     void start_over(const gi::Settings& settings, std::uint32_t meshes);

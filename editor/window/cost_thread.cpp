@@ -1,5 +1,6 @@
 #include "editor/window/cost_thread.h"
 
+#include "engine/core/caught.h"
 #include "engine/statistics/clipped_sum.h"
 #include "engine/statistics/summary.h"
 #include "viewer/preparation.h"
@@ -233,7 +234,7 @@ void CostThread::run() {
             work = std::move(next_);
             abandoned_ = false;
         }
-        const Status status = measure(*work);
+        const Status status = caught([&] { return measure(*work); });
         if (!status && !abandoned_) {
             const std::scoped_lock lock(mutex_);
             cost_.error = status.error().message;

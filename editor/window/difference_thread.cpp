@@ -1,6 +1,7 @@
 #include "editor/window/difference_thread.h"
 
 #include "editor/window/picture_upload.h"
+#include "engine/core/caught.h"
 #include "engine/core/log.h"
 
 namespace sunfleck::editor {
@@ -60,7 +61,7 @@ void DifferenceThread::run() {
             a = a_;
             b = b_;
         }
-        auto made = make(*a, *b, submission);
+        auto made = caught([&] { return make(*a, *b, submission); });
         if (!made) {
             log_warning("pictures could not be compared: " + made.error().message);
             continue;

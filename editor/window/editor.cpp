@@ -73,7 +73,8 @@ private:
     std::unique_ptr<Session> session_;
     std::unique_ptr<Layout> layout_;
     EditorState state_;
-    std::filesystem::path state_path_;
+    std::filesystem::path state_path_; // empty: nothing is kept
+    bool may_save_state_ = true;
     ChangeCollector collector_;
     HiddenFilter hidden_;
     std::unique_ptr<Recovery> recovery_;
@@ -96,7 +97,7 @@ Status Program::start() {
     SUNFLECK_TRY(try_outputs(outputs));
     std::string problem;
     state_path_ = options_.state_file.empty() ? usual_state_file() : std::filesystem::path(options_.state_file);
-    state_ = load_state(state_path_, problem);
+    state_ = load_state(state_path_, problem, may_save_state_);
     SUNFLECK_ASSIGN(display_, Display::create(options_));
     SUNFLECK_TRY(start_scene());
     if (!problem.empty())
@@ -111,12 +112,12 @@ void Program::wake() {
 
 // What earlier runs left, and what this one keeps.
 void Program::start_recovery() {
-    const std::filesystem::path folder = state_path_.parent_path() / "recovery";
+    const std::filesystem::path folder = state_path_.empty() ? state_path_ : state_path_.parent_path() / "recovery";
     session_->recovered = Recovery::left_behind(folder);
     if (!session_->recovered.empty())
         session_->dialog = Dialog::recover;
     recovery_ = std::make_unique<Recovery>(folder);
-    if (!recovery_->problem().empty())
+    if (!recovery_->problem().empty() && !folder.empty()) // else it has been said
         session_->messages.say(recovery_->problem(), Message::Kind::warning);
 }
 
@@ -131,7 +132,8 @@ Status Program::start_scene() {
         session_->shaders =
             std::make_unique<ShaderWatch>(options_.shaders, viewer::SceneRenderer::shader_paths(), wakes);
     session_->comparison = std::make_unique<Comparison>(display_->device(), *scene_, wakes);
-    session_->preset_folder = state_path_.parent_path() / "presets";
+    session_->preset_folder = state_path_.empty() ? state_path_ : state_path_.parent_path() / "presets";
+    session_->allow_outside = options_.allow_outside;
     session_->make_cost_thread = [this, wakes] {
         return std::make_unique<CostThread>(
             display_->device(), [this] { return scene_->busy(); }, wakes);
@@ -205,17 +207,14 @@ void Program::finish_opening() {
                                       " unsaved edits; save them under a name of your choice");
     }
     session_->take(std::move(*opened));
-    std::error_code code;
-    if (const auto known = state_.cameras.find(std::filesystem::absolute(path, code).string());
-        known != state_.cameras.end())
+    if (const auto known = state_.cameras.find(full_name(path)); known != state_.cameras.end())
         session_->camera.set(known->second);
     session_->say_what_was_opened(path);
 }
 
 void Program::keep_camera() {
-    std::error_code code;
     if (const std::filesystem::path& path = session_->document->path(); !path.empty())
-        state_.cameras[std::filesystem::absolute(path, code).string()] = session_->camera.view();
+        state_.cameras[full_name(path)] = session_->camera.view();
 }
 
 void Program::take_dropped(const app::InputState& input) {
@@ -368,7 +367,7 @@ Status Program::finish(bool whole, bool edits_wait) {
         if (const Command* known = usual.find(command.path());
             known == nullptr || !(known->shortcut == command.shortcut))
             state_.keys[command.path()] = shortcut_text(command.shortcut);
-    const Status kept = save_state(state_path_, state_);
+    const Status kept = may_save_state_ ? save_state(state_path_, state_) : Status();
     const Status reported = options_.report.empty()
                                 ? Status()
                                 : write_report(options_.report, figures_, *session_, display_->validation_messages());

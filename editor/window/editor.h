@@ -14,6 +14,8 @@ struct Options {
     float scale = 0.0f; // of text; 0: the screen's
     std::string device;
     bool validation = false;
+    std::uint32_t memory_mib = 0; // that may be taken; 0: three quarters of what is free
+    bool allow_outside = false;   // io::ImportOptions::allow_outside, of all scenes
     std::string shaders;    // the project's folder: its shaders are compiled again when they change; empty: they stay
     std::string state_file; // empty: sunfleck/editor.json in the configuration folder
     std::string widgets;    // file for the visible widgets, written whenever the GUI has come to rest

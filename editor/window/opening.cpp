@@ -1,14 +1,18 @@
 #include "editor/window/opening.h"
 
+#include "engine/core/caught.h"
 #include "viewer/built_in_scenes.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace sunfleck::editor {
-Opening::Opening(std::filesystem::path path, std::function<void()> wake)
+Opening::Opening(std::filesystem::path path, bool allow_outside, std::function<void()> wake)
     : Opening(
-          path, [path](const std::function<bool(float)>& progress) { return Document::open(path, progress); },
+          path,
+          [path, allow_outside](const std::function<bool(float)>& progress) {
+              return Document::open(path, progress, allow_outside);
+          },
           std::move(wake)) {}
 
 Opening::Opening(std::filesystem::path path, Load load, std::function<void()> wake)
@@ -20,7 +24,7 @@ Opening::Opening(std::filesystem::path path, Load load, std::function<void()> wa
                   wake();
               return !stop_;
           };
-          result_ = load(progress);
+          result_ = caught([&] { return load(progress); });
           finished_ = true;
           wake();
       }) {}

@@ -12,7 +12,8 @@ class Opening {
 public:
     using Load = std::function<Result<std::unique_ptr<Document>>(const std::function<bool(float)>& progress)>;
     // `wake` is called from the thread when there is something to show.
-    Opening(std::filesystem::path path, std::function<void()> wake);
+    // `allow_outside`: io::ImportOptions::allow_outside.
+    Opening(std::filesystem::path path, bool allow_outside, std::function<void()> wake);
     // The same by another way than Document::open.
     Opening(std::filesystem::path path, Load load, std::function<void()> wake);
     // Cancels it.

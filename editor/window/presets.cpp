@@ -30,6 +30,8 @@ Status save_preset(const std::filesystem::path& folder, const std::string& name,
     });
     if (name.empty() || name.size() > 60 || !plain)
         return Error{"'" + name + "' cannot be a preset's name: up to 60 letters, digits, spaces, '-' and '_' are"};
+    if (folder.empty())
+        return Error{"the preset '" + name + "' has no place to be kept: neither HOME nor XDG_CONFIG_HOME is set"};
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     for (const auto& [setting, value] : viewer::unusual_lighting(settings))
         json[setting] = value;

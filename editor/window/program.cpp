@@ -2,10 +2,12 @@
 
 #include "editor/window/editor.h"
 #include "engine/core/exit_status.h"
-#include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
-#include "engine/core/stop_signals.h"
+#include "engine/core/program_end.h"
 #include "viewer/options.h"
+
+#include <iostream>
 
 namespace sunfleck::editor {
 namespace {
@@ -19,6 +21,10 @@ void add_options(CLI::App& program, Options& options, viewer::PictureSize& size)
     viewer::add_size(program, "--size", size, "Size of the window");
     viewer::add_real(program, "--scale", options.scale, 0.0, 4.0, "Size of text; 0: as the screen asks for");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
+    viewer::add_whole(program, "--memory", options.memory_mib, 0, 1 << 30,
+                      "Memory that may be taken, in MiB; 0: three quarters of what is free");
+    program.add_flag("--allow-outside", options.allow_outside,
+                     "Scenes may read files outside of their folders: for scenes that you trust");
     program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
     viewer::add_name(program, "--shaders", options.shaders,
                      "The project's folder: shaders whose sources change are compiled and used at once", "FOLDER")
@@ -34,25 +40,28 @@ void add_options(CLI::App& program, Options& options, viewer::PictureSize& size)
 
 } // namespace
 
-int run_program(int argc, char** argv) {
-    hold_standard_streams();
-    Options options;
+std::optional<int> read_command_line(int argc, const char* const* argv, Options& options, std::ostream& out,
+                                     std::ostream& errors) {
     viewer::PictureSize size{options.width, options.height};
     CLI::App program("The Sunfleck editor: opens a level, lights it, and shows what each choice costs.");
     add_options(program, options, size);
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return program.exit(error) == 0 ? exit_done : exit_usage;
+        return program.exit(error, out, errors) == 0 ? exit_done : exit_usage;
     }
     options.width = size.width;
     options.height = size.height;
-    const Status status = run(options);
-    if (!status)
-        log_error(status.error().message);
-    if (stop_requested())
-        return exit_stopped_by(stop_signal());
-    return status ? exit_done : exit_failed;
+    return std::nullopt;
+}
+
+int run_program(int argc, char** argv) {
+    hold_standard_streams();
+    Options options;
+    if (const std::optional<int> status = read_command_line(argc, argv, options, std::cout, std::cerr))
+        return printed(*status);
+    set_memory_limit(std::uint64_t(options.memory_mib) << 20);
+    return run_to_end([&] { return run(options); });
 }
 
 } // namespace sunfleck::editor

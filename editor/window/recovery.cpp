@@ -1,5 +1,6 @@
 #include "editor/window/recovery.h"
 
+#include "engine/core/caught.h"
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 #include "engine/io/scene_file.h"
@@ -108,6 +109,10 @@ std::optional<Recovered> read_about(const fs::path& folder) {
 struct Recovery::Copy : PlainCopy {};
 
 Recovery::Recovery(const fs::path& folder) {
+    if (folder.empty()) {
+        problem_ = "unsaved edits are not kept: there is no folder for them";
+        return;
+    }
     std::error_code code;
     for (int number = 0; number < 1000 && lock_ < 0; ++number) {
         own_ = folder / (std::to_string(::getpid()) + "." + std::to_string(number));
@@ -266,7 +271,12 @@ void Recovery::run() {
             has_work_ = false;
         }
         const auto began = RecoveryClock::now();
-        write(copy);
+        const Status written = caught([&] {
+            write(copy);
+            return Status();
+        });
+        if (!written)
+            log_warning("unsaved edits could not be kept: " + written.error().message);
         const auto pause = std::max<RecoveryClock::duration>(
             shortest_pause,
             std::chrono::duration_cast<RecoveryClock::duration>((RecoveryClock::now() - began) * pause_share));
@@ -300,11 +310,11 @@ std::vector<Recovered> Recovery::left_behind(const fs::path& folder) {
     return result;
 }
 
-Result<std::unique_ptr<Document>> Recovery::load(const Recovered& recovered,
-                                                 const std::function<bool(float)>& progress) {
+Result<std::unique_ptr<Document>> Recovery::load(const Recovered& recovered, const std::function<bool(float)>& progress,
+                                                 bool allow_outside) {
     auto document = std::make_unique<Document>();
     if (!recovered.scene.empty()) {
-        SUNFLECK_ASSIGN(document, Document::open(recovered.scene, progress));
+        SUNFLECK_ASSIGN(document, Document::open(recovered.scene, progress, allow_outside));
     }
     static_cast<void>(replay(*document, recovered.journal, recovered.base));
     document->forget_file();

@@ -32,7 +32,8 @@ struct Recovered {
 
 class Recovery {
 public:
-    // Makes a folder of its own in `folder`; where that cannot be, nothing is kept, and problem() says why.
+    // Makes a folder of its own in `folder`; where that cannot be, or has no name, nothing is kept, and problem() says
+    // why.
     explicit Recovery(const std::filesystem::path& folder);
     // The program ends as it should: what was kept is removed.
     ~Recovery();
@@ -54,8 +55,8 @@ public:
     static std::vector<Recovered> left_behind(const std::filesystem::path& folder);
     static void discard(const Recovered& recovered);
     // The scene with all edits, as a document without a file.
-    static Result<std::unique_ptr<Document>> load(const Recovered& recovered,
-                                                  const std::function<bool(float)>& progress = {});
+    static Result<std::unique_ptr<Document>>
+    load(const Recovered& recovered, const std::function<bool(float)>& progress = {}, bool allow_outside = false);
 
 private:
     struct Copy;

@@ -1,6 +1,7 @@
 #include "editor/window/reference_thread.h"
 
 #include "editor/window/picture_upload.h"
+#include "engine/core/caught.h"
 #include "engine/render/tone_map.h"
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
@@ -167,9 +168,11 @@ void ReferenceThread::run() {
         }
         copy->sums = {};
         samples_ = 0;
-        Status status = change.source != nullptr ? copy->apply(change) : Status();
-        if (status)
-            status = trace(*copy);
+        const Status status = caught([&]() -> Status {
+            if (change.source != nullptr)
+                SUNFLECK_TRY(copy->apply(change));
+            return trace(*copy);
+        });
         if (!status) {
             const std::scoped_lock lock(mutex_);
             error_ = status.error().message;

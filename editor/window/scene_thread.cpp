@@ -1,5 +1,6 @@
 #include "editor/window/scene_thread.h"
 
+#include "engine/core/caught.h"
 #include "engine/simulation/path_movers.h"
 
 #include <algorithm>
@@ -180,22 +181,24 @@ bool SceneThread::take_work() {
 }
 
 void SceneThread::run() {
-    while (take_work()) {
-        if (change_.source != nullptr)
-            if (const Status applied = apply_change(); !applied) {
-                fail(applied.error());
-                continue;
-            }
-        use_shaders(std::exchange(new_shaders_, {}));
-        if (copy_ == nullptr || failed_ || view_.width == 0 || view_.height == 0)
-            continue;
-        follow_play();
-        follow_light();
-        take_actions(std::exchange(actions_, {}));
-        if (frames_left_ > 0 || moves())
-            frame();
-        follow_inspection();
-    }
+    while (take_work())
+        if (const Status done = caught([this] { return work(); }); !done)
+            fail(done.error());
+}
+
+Status SceneThread::work() {
+    if (change_.source != nullptr)
+        SUNFLECK_TRY(apply_change());
+    use_shaders(std::exchange(new_shaders_, {}));
+    if (copy_ == nullptr || failed_ || view_.width == 0 || view_.height == 0)
+        return {};
+    follow_play();
+    follow_light();
+    take_actions(std::exchange(actions_, {}));
+    if (frames_left_ > 0 || moves())
+        frame();
+    follow_inspection();
+    return {};
 }
 
 // Also by renderers and lightings that come later.

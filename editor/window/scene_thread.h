@@ -141,6 +141,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
     void run();
+    Status work();
     void end();
     bool moves() const { return view_.playing && !view_.paused; }
     std::uint64_t steps() const { return play_ != nullptr ? play_->steps() : 0; }

@@ -21,6 +21,12 @@ bool is_gltf(const std::filesystem::path& path) {
 
 } // namespace
 
+std::string full_name(const std::filesystem::path& path) {
+    std::error_code code;
+    const std::filesystem::path full = std::filesystem::absolute(path, code);
+    return (code ? path : full).string();
+}
+
 void Messages::say(std::string text, Message::Kind kind) {
     all_.push_back({kind, std::move(text), ++count_});
     if (all_.size() > most_messages)
@@ -69,7 +75,7 @@ void Session::take(std::shared_ptr<Document> opened) {
     for (const std::string& note : document->notes())
         messages.say(note, Message::Kind::warning);
     if (!document->path().empty()) {
-        const std::string path = std::filesystem::absolute(document->path()).string();
+        const std::string path = full_name(document->path());
         std::erase(recent_files, path);
         recent_files.insert(recent_files.begin(), path);
         recent_files.resize(std::min(recent_files.size(), most_recent));
@@ -82,7 +88,7 @@ void Session::open(const std::filesystem::path& path) {
 
 void Session::open_now(const std::filesystem::path& path) {
     recovering.reset();
-    opening = std::make_unique<Opening>(path, wake);
+    opening = std::make_unique<Opening>(path, allow_outside, wake);
 }
 
 void Session::inspect(vec2 place) {
@@ -123,11 +129,14 @@ void Session::measure_cost(const std::string& setting) {
 void Session::recover(const Recovered& one) {
     recovering = one;
     opening = std::make_unique<Opening>(
-        one.scene, [one](const std::function<bool(float)>& progress) { return Recovery::load(one, progress); }, wake);
+        one.scene,
+        [one, outside = allow_outside](const std::function<bool(float)>& progress) {
+            return Recovery::load(one, progress, outside);
+        },
+        wake);
 }
 
 bool Session::save(const std::filesystem::path& path) {
-    std::error_code code;
     const bool same_file = path == document->path();
     if (!messages.check(document->save(path)))
         return false;
@@ -137,7 +146,7 @@ bool Session::save(const std::filesystem::path& path) {
         source_content_ = FileContent::of(*document);
     }
     if (!same_file) {
-        recent_files.insert(recent_files.begin(), std::filesystem::absolute(path, code).string());
+        recent_files.insert(recent_files.begin(), full_name(path));
         recent_files.resize(std::min(recent_files.size(), most_recent));
     }
     return true;
@@ -145,7 +154,7 @@ bool Session::save(const std::filesystem::path& path) {
 
 void Session::reload_file() {
     if (can_reload())
-        reloading_ = std::make_unique<Opening>(source_, wake);
+        reloading_ = std::make_unique<Opening>(source_, allow_outside, wake);
 }
 
 void Session::finish_reload() {

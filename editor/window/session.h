@@ -95,6 +95,9 @@ struct Budgets {
 // Questions that stand in the way of everything else until they are answered.
 enum class Dialog { none, open, save_as, unsaved, recover };
 
+// Of a file, for lists that last; the name as it is where the current folder is gone.
+std::string full_name(const std::filesystem::path& path);
+
 class Session {
 public:
     Session(app::Window& the_window, SceneThread& the_scene);
@@ -110,10 +113,11 @@ public:
     CopiedComponent copied;
     std::unique_ptr<Commands> commands;
     std::unique_ptr<Comparison> comparison; // from the program
-    std::filesystem::path preset_folder;
-    std::unique_ptr<CostThread> cost;     // null before something was measured
-    std::unique_ptr<ShaderWatch> shaders; // null: none are watched
-    std::unique_ptr<Opening> opening;     // a file that loads; null: none does
+    std::filesystem::path preset_folder;    // empty: presets are not kept
+    bool allow_outside = false;             // io::ImportOptions::allow_outside, of all that is opened
+    std::unique_ptr<CostThread> cost;       // null before something was measured
+    std::unique_ptr<ShaderWatch> shaders;   // null: none are watched
+    std::unique_ptr<Opening> opening;       // a file that loads; null: none does
     std::vector<std::string> recent_files;
     std::deque<ProfiledFrame> frames; // newest last
     bool profiling = true;            // further frames are kept

@@ -1,5 +1,6 @@
 #include "editor/window/shader_watch.h"
 
+#include "engine/core/caught.h"
 #include "engine/core/file.h"
 #include "engine/shader_compiler/shader_compiler.h"
 
@@ -81,8 +82,10 @@ std::vector<std::string> ShaderWatch::changed_shaders() {
 
 void ShaderWatch::compile(const std::string& path) {
     const auto source = read_file(root_ / path);
-    auto words =
-        source ? shader_compiler::compile(path, *source, root_) : Result<std::vector<std::uint32_t>>(source.error());
+    auto words = caught([&] {
+        return source ? shader_compiler::compile(path, *source, root_)
+                      : Result<std::vector<std::uint32_t>>(source.error());
+    });
     {
         const std::scoped_lock lock(mutex_);
         if (words)

@@ -1,10 +1,10 @@
 #include "editor/window/state_file.h"
 
 #include "engine/core/file.h"
+#include "engine/core/user_folders.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::editor {
@@ -68,21 +68,29 @@ void read_layout(const Json& json, Layout::State& layout) {
 } // namespace
 
 std::filesystem::path usual_state_file() {
-    if (const char* folder = std::getenv("XDG_CONFIG_HOME"); folder != nullptr && folder[0] == '/')
-        return std::filesystem::path(folder) / "sunfleck/editor.json";
-    const char* home = std::getenv("HOME");
-    return std::filesystem::path(home != nullptr ? home : "/tmp") / ".config/sunfleck/editor.json";
+    const std::filesystem::path folder = user_settings_folder();
+    return folder.empty() ? folder : folder / "editor.json";
 }
 
-EditorState load_state(const std::filesystem::path& path, std::string& problem) {
+EditorState load_state(const std::filesystem::path& path, std::string& problem, bool& may_save) {
     EditorState state;
     std::error_code code;
-    if (!std::filesystem::exists(path, code))
+    may_save = !path.empty();
+    if (path.empty())
+        problem = "Layout, keys and unsaved edits are not kept: neither HOME nor XDG_CONFIG_HOME is set "
+                  "(--settings FILE names a file)";
+    if (path.empty() || !std::filesystem::exists(path, code))
         return state;
     const auto text = read_file(path, 1u << 20);
-    const Json json = text ? Json::parse(*text, nullptr, false) : Json();
+    if (!text) { // what can't be read may be fine
+        problem = text.error().message + "; layout and keys are the usual ones, and will not be kept";
+        may_save = false;
+        return state;
+    }
+    const Json json = Json::parse(*text, nullptr, false);
     if (!json.is_object()) {
-        problem = "'" + path.string() + "' cannot be read; layout and keys are the usual ones";
+        problem = "'" + path.string() + "' is damaged; layout and keys are the usual ones";
+        std::filesystem::rename(path, path.string() + ".damaged", code);
         return state;
     }
     if (const auto found = json.find("layout"); found != json.end() && found->is_object())

@@ -17,9 +17,11 @@ struct EditorState {
     Budgets budgets;
 };
 
+// In user_settings_folder(); empty if there is none: nothing is kept from run to run then.
 std::filesystem::path usual_state_file();
-// `problem`: why it could not be read; the rest is as usual then.
-EditorState load_state(const std::filesystem::path& path, std::string& problem);
+// `problem`: why it could not be read; the rest is as usual then. A damaged file is renamed, with ".damaged" appended;
+// one that could not be read at all stays, and `may_save` says that it is not to be replaced.
+EditorState load_state(const std::filesystem::path& path, std::string& problem, bool& may_save);
 Status save_state(const std::filesystem::path& path, const EditorState& state);
 
 } // namespace sunfleck::editor
