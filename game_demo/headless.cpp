@@ -1,4 +1,5 @@
 // Playback without a window: recorded input or the built-in walk, rendered frame by frame, with statistics as JSON.
+#include "engine/core/caught.h"
 #include "engine/core/file.h"
 #include "engine/core/log.h"
 #include "engine/core/output.h"
@@ -226,7 +227,7 @@ Status play(const Options& options, const std::vector<simulation::StepInput>& re
         SUNFLECK_ASSIGN(steps, walk_length(source_of(options)));
     }
     Playback playback(options, settings, recorded, steps);
-    const Status played = playback.run(*level);
+    const Status played = caught([&] { return playback.run(*level); });
     SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
     const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);

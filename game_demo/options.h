@@ -26,6 +26,7 @@ struct Options {
     std::string screenshots = "."; // folder
     bool allow_outside = false;
     std::optional<float> ev100; // a fixed exposure
+    bool operator==(const Options&) const = default;
 };
 
 inline LevelSource source_of(const Options& options) {

@@ -24,7 +24,8 @@ Status StateFile::write(const GameState& state) {
                                          {"subtitles", state.subtitles},
                                          {"message", state.message},
                                          {"saved", state.saved}};
-    const std::string text = json.dump() + "\n";
+    // Names of files in messages need not be UTF-8.
+    const std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (text == written_)
         return {};
     SUNFLECK_TRY(write_file(path_, text));

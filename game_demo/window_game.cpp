@@ -1,4 +1,5 @@
 // The demo in a window: real time, the simulation on its fixed step.
+#include "engine/core/caught.h"
 #include "engine/core/log.h"
 #include "engine/core/stop_signals.h"
 #include "engine/core/user_folders.h"
@@ -44,7 +45,7 @@ public:
         const Status played = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
             if (!std::exchange(first, false))
                 SUNFLECK_TRY(take_new_device());
-            return play();
+            return caught([&] { return play(); });
         });
         const Status finished = finish(played);
         return played ? finished : played;
