@@ -5,6 +5,7 @@
 #include "editor/window/opening.h"
 #include "editor/window/script_files.h"
 #include "editor/window/state_file.h"
+#include "engine/core/caught.h"
 #include "engine/core/log.h"
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
@@ -33,7 +34,7 @@ public:
         const Status drawn = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
             if (!std::exchange(first, false))
                 SUNFLECK_TRY(take_new_device());
-            return loop();
+            return caught([&] { return loop(); });
         });
         const bool edits_wait = !session_->quit && session_->document->unsaved(); // a signal, or an error
         const Status finished = finish(bool(drawn), edits_wait);

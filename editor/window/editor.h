@@ -20,6 +20,7 @@ struct Options {
     std::string state_file; // empty: sunfleck/editor.json in the configuration folder
     std::string widgets;    // file for the visible widgets, written whenever the GUI has come to rest
     std::string report;     // file for counters, written at the end
+    bool operator==(const Options&) const = default;
 };
 
 // Until the user quits, or a signal asks for the end.

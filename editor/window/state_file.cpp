@@ -16,7 +16,8 @@ using Json = nlohmann::ordered_json;
 template <typename T>
 void read_number(const Json& json, const char* name, T& value) {
     if (const auto found = json.find(name); found != json.end() && found->is_number())
-        if (const double number = found->get<double>(); std::isfinite(number) && std::abs(number) < 1e9)
+        if (const double number = found->get<double>();
+            std::isfinite(number) && std::abs(number) < 1e9 && (std::is_signed_v<T> || number >= 0.0))
             value = T(number);
 }
 
