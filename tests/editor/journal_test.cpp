@@ -203,6 +203,26 @@ TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
     }
 }
 
+// What was kept is from the future then.
+TEST_F(EditorJournal, AClockThatWasSetBack) {
+    for (const int pause : {0, 9000}) {
+        edit_and_die(5, 20, pause);
+        for (const auto& entry : fs::recursive_directory_iterator(folder_ / "recovery"))
+            fs::last_write_time(entry, fs::file_time_type::clock::now() + std::chrono::years(20));
+        const std::shared_ptr<Document> wanted = open();
+        tests::RandomEdits edits(*wanted, 5);
+        ChangeCollector collector;
+        for (int i = 0; i < 20; ++i)
+            edit(wanted, edits, collector, nullptr);
+        const std::vector<Recovered> left = Recovery::left_behind(folder_ / "recovery");
+        ASSERT_EQ(left.size(), 1u);
+        auto found = Recovery::load(left[0]);
+        ASSERT_TRUE(found) << found.error().message;
+        EXPECT_EQ(content(**found), content(*wanted));
+        Recovery::discard(left[0]);
+    }
+}
+
 // Killed at random moments, a third of the runs while they save all the time: the file is always one that was saved
 // whole, and file and journal together have all edits but the one that was being made.
 TEST_F(EditorJournal, KeepsFileAndEditsWheneverTheProgramIsKilled) {

@@ -45,6 +45,21 @@ TEST(GameCheckpoints, AWorldIsTheSameAfterLoading) {
     EXPECT_EQ(other.world->simulation().carries_lantern(), played.world->simulation().carries_lantern());
 }
 
+// Files are from the future then; which of the two is newer, their names say.
+TEST(GameCheckpoints, AClockThatWasSetBack) {
+    const Folder folder;
+    const CheckpointFiles files(folder.path, "lantern_game");
+    Played played, other;
+    ASSERT_TRUE(files.save(*played.world));
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path))
+        std::filesystem::last_write_time(entry, std::filesystem::file_time_type::clock::now() + std::chrono::years(20));
+    played.step({50, 0, 30, 0, 0});
+    ASSERT_TRUE(files.save(*played.world));
+    std::string message;
+    ASSERT_TRUE(files.load(*other.world, message)) << message;
+    EXPECT_EQ(hash_of(other), hash_of(played));
+}
+
 // Damages the newest of two checkpoints by `harm`; the older one is loaded, and the newest set aside.
 void expect_older(const std::function<std::string(std::string)>& harm, const std::string& why) {
     const Folder folder;

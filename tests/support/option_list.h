@@ -3,6 +3,7 @@
 
 #include "editor/command_line/program.h"
 
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -52,10 +53,16 @@ struct Command {
     std::vector<std::string> words, rest; // before and after the option
 };
 
-inline std::vector<Option> options_of(const Command& command) {
+// Reads a command line, without its first word.
+using Parse = std::function<Verdict(const std::vector<std::string>&)>;
+
+inline std::vector<Option> options_of(const Parse& parse, const Command& command) {
     std::vector<std::string> words = command.words;
     words.emplace_back("--help");
     return options_of(parse(words).message);
+}
+inline std::vector<Option> options_of(const Command& command) {
+    return options_of(parse, command);
 }
 
 } // namespace sunfleck::tests
