@@ -80,7 +80,7 @@ void expect_older(const std::function<std::string(std::string)>& harm, const std
 }
 
 TEST(GameCheckpoints, WhatIsNotGoodIsSetAside) {
-    expect_older([](std::string text) { return text.substr(0, text.size() / 2); }, "not a saved game");
+    expect_older([](const std::string& text) { return text.substr(0, text.size() / 2); }, "not a saved game");
     expect_older(
         [](std::string text) {
             char& digit = text[text.find("\"steps\"") + 9];

@@ -31,6 +31,7 @@ protected:
         if (process != 0)
             return DrivenDisplay::end(process, 0);
         std::vector<char*> pointers;
+        pointers.reserve(all.size() + 1);
         for (std::string& word : all)
             pointers.push_back(word.data());
         pointers.push_back(nullptr);
@@ -136,14 +137,15 @@ TEST(RobustDemoSettings, NumbersOfAnySize) {
     std::size_t tried = 0, refused = 0;
     for (const Field& field : demo::DemoSettings::description().fields)
         for (const std::string& value : tests::hostile_values()) {
-            const std::string name = "\"" + std::string(field.name) + "\": ";
-            if (!nlohmann::json::accept("{" + name + value + "}"))
+            std::string text = "{\"";
+            text.append(field.name).append("\": ").append(value).append("}");
+            if (!nlohmann::json::accept(text))
                 continue;
-            ASSERT_TRUE(write_file(folder / "demo.json", "{" + name + value + "}"));
+            ASSERT_TRUE(write_file(folder / "demo.json", text));
             const demo::LoadedSettings loaded = demo::load_settings(folder / "demo.json");
-            EXPECT_TRUE(validate(demo::DemoSettings::description(), &loaded.settings)) << name << value.substr(0, 40);
+            EXPECT_TRUE(validate(demo::DemoSettings::description(), &loaded.settings)) << text.substr(0, 60);
             const bool kept = field_to_text(field, &loaded.settings) == field_to_text(field, &usual);
-            EXPECT_TRUE(loaded.problem.empty() || kept) << name << value.substr(0, 40);
+            EXPECT_TRUE(loaded.problem.empty() || kept) << text.substr(0, 60);
             ++tried;
             refused += loaded.problem.empty() ? 0 : 1;
         }
