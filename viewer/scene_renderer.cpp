@@ -115,6 +115,7 @@ Status SceneRenderer::take_scene(std::unique_ptr<SceneCopy> copy) {
 void SceneRenderer::exchange_lighting(SceneRenderer& other) {
     std::swap(gpu_scene_, other.gpu_scene_);
     std::swap(rays_, other.rays_);
+    std::swap(geometry_outdated_, other.geometry_outdated_);
     std::swap(lighting_, other.lighting_);
     std::swap(lighting_shaders_, other.lighting_shaders_);
     std::swap(lighting_pipelines_, other.lighting_pipelines_);
@@ -141,15 +142,19 @@ Status SceneRenderer::update(const FrameRequest& request) {
         has_previous_camera_ = has_previous_camera_ && changes->space == space_;
         space_ = changes->space;
     }
-    {
-        const StageTimer timer(stages_, "ray scene");
-        SUNFLECK_TRY(rays_->update(*changes, meshes_, &textures_));
-    }
+    SUNFLECK_TRY(update_rays(request, *changes));
     {
         const StageTimer timer(stages_, "gpu scene");
         SUNFLECK_TRY(gpu_scene_->update(*changes, meshes_, *resources_));
     }
     return update_lighting(request, *changes, completed);
+}
+
+Status SceneRenderer::update_rays(const FrameRequest& request, const scene::SceneChanges& changes) {
+    const StageTimer timer(stages_, "ray scene");
+    geometry_outdated_ = request.keep_samples && request.keep_geometry && !changes.everything &&
+                         (geometry_outdated_ || changes.static_geometry);
+    return geometry_outdated_ ? Status() : rays_->update(changes, meshes_, &textures_);
 }
 
 Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::SceneChanges& changes,

@@ -41,6 +41,9 @@ struct FrameRequest {
     std::uint32_t strength_budget = 0xffffffffu; // gi::FrameInput::strength_budget
     std::optional<double> milliseconds;          // gi::FrameInput::milliseconds
     bool keep_samples = false;                   // gi::FrameInput::keep_samples
+    // Rays and shadows of static geometry stay as they are while that changes, which costs such frames next to nothing:
+    // light falls as if it stood where it was. The first frame without this follows. Needs keep_samples.
+    bool keep_geometry = false;
     // gi::FrameInput::progress
     std::function<bool(float)> progress;
 
@@ -81,6 +84,8 @@ public:
     gpu::ShaderLibrary& shader_library() { return *shaders_; }
     gpu::PipelineStore& pipelines() { return *pipelines_; }
     const scene::GpuScene& gpu_scene() const { return *gpu_scene_; }
+    // The last update left static geometry as it was (FrameRequest::keep_geometry).
+    bool geometry_outdated() const { return geometry_outdated_; }
     // Where the GPU scene, the ray scene and light samples lie since the last update.
     const scene::SceneSpace& space() const { return space_; }
 
@@ -130,6 +135,7 @@ public:
 private:
     explicit SceneRenderer(gpu::Device& device) : device_(device) {}
     Status make_output(const FrameRequest& request);
+    Status update_rays(const FrameRequest& request, const scene::SceneChanges& changes);
     Status update_lighting(const FrameRequest& request, const scene::SceneChanges& changes, std::uint64_t completed);
     // From the light to output(): composition, anti-aliasing, enlargement.
     struct Light {
@@ -149,6 +155,7 @@ private:
     scene::TextureStore textures_;
     scene::ChangeTracker change_tracker_{scene::ChangeTracker::Space::of_scene};
     scene::SceneSpace space_; // of the last update
+    bool geometry_outdated_ = false;
     std::shared_ptr<gpu::ShaderLibrary> shaders_;
     std::shared_ptr<gpu::PipelineStore> pipelines_;
     std::shared_ptr<gpu::ShaderLibrary> lighting_shaders_; // of lighting_pipelines_, which lighting_ was made with

@@ -19,6 +19,7 @@ void SceneChange::add(SceneChange later) {
     if (later.settings)
         settings = std::move(later.settings);
     revision = later.revision;
+    dragged = later.dragged;
 }
 
 namespace {
@@ -41,14 +42,6 @@ void tell_all(Document& document, Entity entity, SceneChange& change) {
     for (const ecs::PoolBase* pool : document.registry().all_pools())
         if (!pool->is_derived() && pool->is_copyable() && pool->contains(entity))
             change.updates.push_back({entity, pool, document.registry().value(*pool, entity)});
-}
-
-SceneChange nothing_of(const std::shared_ptr<Document>& document) {
-    SceneChange change;
-    change.source = document;
-    change.handles = document->handle_count();
-    change.revision = document->revision();
-    return change;
 }
 
 // A mover stands where its path has brought it. The document knows where it starts.
@@ -89,7 +82,7 @@ void HiddenFilter::hide(const std::unordered_set<Entity>& hidden, SceneChange& c
 void HiddenFilter::apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
                          std::optional<SceneChange>& change) {
     if (hidden != hidden_ && !change)
-        change = nothing_of(document);
+        change = ChangeCollector::nothing(document);
     if (!change)
         return;
     if (!change->everything) {
@@ -104,8 +97,16 @@ void HiddenFilter::apply(const std::shared_ptr<Document>& document, const std::u
     hidden_ = hidden;
 }
 
+SceneChange ChangeCollector::nothing(const std::shared_ptr<Document>& document) {
+    SceneChange change;
+    change.source = document;
+    change.handles = document->handle_count();
+    change.revision = document->revision();
+    return change;
+}
+
 SceneChange ChangeCollector::everything(const std::shared_ptr<Document>& document) {
-    SceneChange change = nothing_of(document);
+    SceneChange change = nothing(document);
     change.everything = true;
     for (const Entity entity : document->registry().entities())
         tell_all(*document, entity, change);
@@ -118,9 +119,11 @@ SceneChange ChangeCollector::everything(const std::shared_ptr<Document>& documen
 }
 
 std::optional<SceneChange> ChangeCollector::collect(const std::shared_ptr<Document>& document) {
-    if (known_ == document.get() && revision_ == document->revision())
+    const bool let_go = dragged_ && !document->in_gesture();
+    if (known_ == document.get() && revision_ == document->revision() && !let_go)
         return std::nullopt;
-    SceneChange change = nothing_of(document);
+    SceneChange change = nothing(document);
+    change.dragged = document->in_gesture();
     change.everything = known_ != document.get();
     if (change.everything)
         *this = {};
@@ -133,6 +136,7 @@ std::optional<SceneChange> ChangeCollector::collect(const std::shared_ptr<Docume
         change.settings = document->settings();
     settings_revision_ = document->settings_revision();
     revision_ = document->revision();
+    dragged_ = change.dragged;
     known_ = document.get();
     return change;
 }

@@ -17,22 +17,29 @@ struct SceneChange {
     std::vector<scene::Texture> textures; // likewise
     std::optional<gi::Settings> settings; // where they changed
     std::uint64_t revision = 0;           // of the document
+    bool dragged = false;                 // the gesture that it is of has not ended
 
     void add(SceneChange later);
+    // It tells of no change of the scene, only, perhaps, of the end of a gesture.
+    bool is_empty() const { return updates.empty() && meshes.empty() && textures.empty() && !settings && !everything; }
 };
 
 // Gathers what a document has not told yet.
 class ChangeCollector {
 public:
-    // Nothing if nothing changed.
+    // Nothing if nothing changed, and no gesture ended whose changes were collected before.
     std::optional<SceneChange> collect(const std::shared_ptr<Document>& document);
     // Everything there is, for a copy that knows nothing yet.
     static SceneChange everything(const std::shared_ptr<Document>& document);
+
+    // Where a document is as it was told.
+    static SceneChange nothing(const std::shared_ptr<Document>& document);
 
 private:
     const Document* known_ = nullptr;
     std::uint64_t revision_ = 0, settings_revision_ = 0;
     std::uint32_t meshes_ = 0, textures_ = 0;
+    bool dragged_ = false;
 };
 
 // Hides entities from copies that show the scene: they are told where those are, and nothing else.

@@ -25,6 +25,7 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.antialiasing = view_.look.antialiasing;
     request.glare = view_.look.glare;
     request.keep_samples = light_is_slow_;
+    request.keep_geometry = hand_moves();
     request.simulate = play_ == nullptr;
     request.progress = [this](float share) { return go_on(share); };
     return request;
@@ -154,6 +155,7 @@ void SceneThread::follow_inspection() {
 Status SceneThread::draw_picture() {
     viewer::FrameRequest request = frame_request();
     const auto began = Clock::now();
+    const bool was_behind = copy_->renderer().geometry_outdated();
     SUNFLECK_TRY(expose(request));
     SUNFLECK_ASSIGN(std::shared_ptr<ScenePicture> picture, free_picture());
     SUNFLECK_TRY(draw(request, picture.get()));
@@ -161,6 +163,8 @@ Status SceneThread::draw_picture() {
     picture->revision = revision_;
     picture->number = ++number_;
     picture->step = steps();
+    if (was_behind && !copy_->renderer().geometry_outdated()) // shadows begin to follow
+        frames_left_ = std::max(frames_left_, frames_after_edit);
     fill_listing();
     note_light();
     picture->settled = frames_left_ <= 1 && !moves() && !light_pending_;

@@ -10,9 +10,8 @@
 namespace sunfleck::editor {
 namespace {
 
-// After an edit as many frames as `sunfleck render` draws, so that both show the same; after a movement of the camera
-// one for the picture, and one for what is told a frame later.
-constexpr int frames_after_edit = 4, frames_after_view = 2;
+// After a movement of the camera one for the picture, and one for what is told a frame later.
+constexpr int frames_after_view = 2;
 constexpr double longest_silence = 3.0; // s: edits do not cancel lighting while the picture has been old for so long
 constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
@@ -218,6 +217,8 @@ void SceneThread::use_shaders(const std::vector<CompiledShader>& shaders) {
 
 // New light that is ready is in use from the next frame on.
 void SceneThread::follow_light() {
+    if (light_->pending() && hand_moves())
+        light_->request(copy_->renderer().lighting().settings());
     const Result<bool> changed = light_->advance(copy_->renderer());
     if (!changed)
         return fail(Error{"the lighting could not be made: " + changed.error().message});
@@ -232,7 +233,8 @@ void SceneThread::note_light() {
     // Begun by the scene's own accord, it would be at once, while a hand still drags.
     if (copy_->renderer().lighting().outdated() && !light_->pending())
         light_->request(copy_->renderer().lighting().settings());
-    const bool pending = light_->pending() || copy_->renderer().lighting().outdated();
+    const bool pending =
+        light_->pending() || copy_->renderer().lighting().outdated() || copy_->renderer().geometry_outdated();
     bool tell = false;
     {
         const std::scoped_lock lock(mutex_);
@@ -272,7 +274,8 @@ Status SceneThread::apply_change() {
     if (change.everything)
         use_shaders(std::vector(shaders_));
     revision_ = change.revision;
-    if (light_pending_) // what is being prepared is of the scene before
+    dragged_ = change.dragged;
+    if (light_pending_ && !change.is_empty()) // what is being prepared is of the scene before
         light_->request(copy_->renderer().lighting().settings());
     return {};
 }

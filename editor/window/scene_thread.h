@@ -3,7 +3,8 @@
 // the thread sleeps.
 //
 // Where light takes long to make, edits that need new light (a wall moves, another number of samples) show at once in
-// the old one, while the new one is prepared behind the frames (lighting_change.h); a further edit cancels that.
+// the old one, while the new one is prepared behind the frames (lighting_change.h); a further edit cancels that. While
+// a hand drags, shadows of what stands still wait, too: they follow when it rests.
 //
 // All functions may be called from the GUI thread; none of them waits for a frame.
 #pragma once
@@ -137,6 +138,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     static constexpr double patience = 0.3; // s: lighting that takes longer is cancelled by the next edit
+    // As many as `sunfleck render` draws, so that both show the same.
+    static constexpr int frames_after_edit = 4;
     static double seconds_since(Clock::time_point start) {
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
@@ -163,6 +166,8 @@ private:
     void publish(std::shared_ptr<ScenePicture> picture);
     void fail(const Error& error);
     void follow_light();
+    // What a hand moves lets light be until it rests.
+    bool hand_moves() const { return dragged_ && frames_left_ > 1; }
     void use_shaders(const std::vector<CompiledShader>& shaders);
     void note_light();
 
@@ -191,6 +196,7 @@ private:
     std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
     std::unique_ptr<ScenePlay> play_;                // of copy_; null: it stands as edited
     bool light_pending_ = false;                     // the picture has not got all of its light yet
+    bool dragged_ = false;                           // the gesture of the last change has not ended
     std::vector<CompiledShader> shaders_;            // in place of those of the program
     std::vector<CompiledShader> new_shaders_;        // not in use yet
     SceneChange change_;                             // not applied yet

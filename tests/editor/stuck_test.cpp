@@ -71,6 +71,7 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     before.end = now();
     ASSERT_TRUE(editor->settles());
     editor->key("f");
+    editor->let_events_arrive();
     ASSERT_TRUE(editor->settles());
 
     const auto drag = [&] {
@@ -87,7 +88,9 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     const Window second = drag(); // cancels what is prepared for the first
     editor->point_at(*editor->find("viewport/picture"));
     Window after{second.end, 0.0};
-    move(150, 3, 0);
+    do // until all light is there
+        move(100, 3, 0);
+    while (now() - after.begin < 120.0 && editor->value("status/settled") != "yes");
     after.end = now();
     ASSERT_TRUE(editor->settles());
     const auto report = editor->end();
@@ -102,8 +105,8 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
         frame, dragged, longest, int(report["long_builds"]));
     ASSERT_GT(frame, 0.0);
     ASSERT_GT(dragged, 0.0);
-    // The short size shares its machine with whatever else runs there: twice the targets.
-    const double room = whole ? 1.0 : 2.0;
+    // The short size shares its machine with whatever else runs there.
+    const double room = whole ? 1.0 : 1.2;
     EXPECT_LE(longest, room * 3.0 * frame);
     EXPECT_LE(dragged, room * 1.5 * frame);
     EXPECT_TRUE(prepares || !whole) << "light is made behind the frames";

@@ -154,6 +154,35 @@ TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
     EXPECT_FALSE(dim(0.25f)) << "the second change is none to remember";
 }
 
+// While a hand drags a wall, nothing is made anew of it; the first frame of the resting hand follows, and then light.
+TEST_F(LightingChangeTest, GeometryIsKeptUntilTheHandRests) {
+    MovingBox world(lights(60));
+    world.settled(0);
+    world.request.keep_samples = world.request.keep_geometry = true;
+    const std::uint32_t builds = world.renderer->rays().static_builds();
+    for (int i = 0; i < 3; ++i) {
+        move_pillar(world);
+        world.render();
+        EXPECT_TRUE(world.renderer->geometry_outdated());
+        EXPECT_FALSE(world.renderer->lighting().outdated());
+    }
+    world.render(); // nothing moved, but it is still old
+    EXPECT_TRUE(world.renderer->geometry_outdated());
+    EXPECT_EQ(world.renderer->rays().static_builds(), builds);
+    world.request.keep_geometry = false;
+    world.render();
+    EXPECT_FALSE(world.renderer->geometry_outdated());
+    EXPECT_EQ(world.renderer->rays().static_builds(), builds + 1);
+    EXPECT_TRUE(world.renderer->lighting().outdated());
+    viewer::LightingChanges changes(device());
+    EXPECT_GT(world.frames_until_changed(changes, counter_of(world, "light_samples")), 0);
+    const io::Picture changed = world.settled(37);
+    MovingBox fresh(lights(60));
+    for (int i = 0; i < 3; ++i)
+        move_pillar(fresh);
+    expect_same_picture(changed, fresh.settled(37));
+}
+
 TEST_F(LightingChangeTest, AFailureLeavesTheLightAsItWas) {
     MovingBox world(lights(40));
     world.settled(0);
