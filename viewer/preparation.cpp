@@ -26,7 +26,8 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
     for (bool more = true; more;) {
         SUNFLECK_TRY(renderer.render_and_wait(request));
         const gi::Report& counters = renderer.statistics().counters;
-        more = counters["shadow_maps_stale"] > 0 && counters["shadow_map_updates"] > 0;
+        more = (counters["shadow_maps_stale"] > 0 && counters["shadow_map_updates"] > 0) ||
+               (counters["baked_light_waiting"] > 0 && counters["baked_light_updates"] > 0);
         const float stale =
             float(counters["shadow_maps_stale"]) / float(std::max<std::uint64_t>(counters["light_samples"], 1));
         if (!options.progress(samples_until + (1.0f - samples_until) * (1.0f - stale)))

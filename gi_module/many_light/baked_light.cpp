@@ -14,6 +14,8 @@ constexpr std::uint32_t texels_at_a_time = 64; // of a work group: baked_light.c
 // Samples times texels that a frame evaluates at most, and one patch more: 30 to 60 ms on two cores. More at first: the
 // frame that builds the visibility database is long anyway.
 constexpr std::uint64_t max_evaluations = 16000000, max_first_evaluations = 400000000;
+// In portions: as long with filtered shadow maps, which take some eight times as long, beside the frames of others.
+constexpr std::uint64_t max_portion_evaluations = 2000000;
 // Of the light: by so much may second differences of neighbouring texels exceed a straight line. Interpolation is off
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
@@ -218,7 +220,7 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<cons
 }
 
 Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed,
-                          gpu::FrameResources& resources) {
+                          bool in_portions, gpu::FrameResources& resources) {
     const VisibilityDatabase& database = scene.database;
     if (light_maps.counters().texels + scene.curved.points().size() > device_.traits().max_texel_elements) {
         forget();
@@ -239,7 +241,8 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
         follow_strengths(database, scene.rows, changed);
     else
         SUNFLECK_TRY(start_anew(database, light_maps, scene.curved, scene.rows, resources));
-    bake_waiting(database, scene.samples, first ? max_first_evaluations : max_evaluations);
+    const std::uint64_t usual = first ? max_first_evaluations : max_evaluations;
+    bake_waiting(database, scene.samples, in_portions ? max_portion_evaluations : usual);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(texels_at_a_time);
     finish_.split(texels_at_a_time);

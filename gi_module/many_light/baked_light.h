@@ -35,8 +35,9 @@ public:
 
     // Follows the light maps, whose update comes first. Not in use afterwards if the device's texel buffers are too
     // small for them. `curved` are charts of the database's generation. `static_maps_changed`: a static shadow map of a
-    // held sample is redrawn in this frame, and everything is baked again.
-    Status update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed,
+    // held sample is redrawn in this frame, and everything is baked again. `in_portions`: not most of it at once, as in
+    // the first frame of a database, which is long anyway.
+    Status update(const ManyLightScene& scene, const LightMaps& light_maps, bool static_maps_changed, bool in_portions,
                   gpu::FrameResources& resources);
     // Nothing is baked, nor used until the next update: shadow maps do not hold what is needed.
     void forget();

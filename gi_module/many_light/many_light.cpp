@@ -41,7 +41,8 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
     if (std::exchange(baked_with_filter_, options.filter) != options.filter)
         baked_light_->forget(); // it holds what the other look-up said
     if (options.baked_light && options.light_maps && options.visibility && options.shadows)
-        SUNFLECK_TRY(baked_light_->update(scene, *light_maps_, options.static_maps_changed, resources));
+        SUNFLECK_TRY(baked_light_->update(scene, *light_maps_, options.static_maps_changed, options.bake_in_portions,
+                                          resources));
     else
         baked_light_->forget();
     shared::NodeRow bare{};

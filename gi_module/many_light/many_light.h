@@ -24,6 +24,7 @@ struct ManyLightOptions {
     bool light_maps = true;
     bool baked_light = true;                   // the static shadow maps of all samples are kept and complete
     bool static_maps_changed = false;          // one of them is redrawn in this frame
+    bool bake_in_portions = false;             // also at first: no frame may take long
     bool simplified_movers = false;            // in the maps
     bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
     std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance

@@ -96,6 +96,7 @@ void ManyLightTechnique::find_static_maps(const Services& services, ManyLightOpt
     options.baked_light = options.baked_light && services.settings.static_maps && waiting == drawn &&
                           shadows.maps().slots() >= services.samples.size();
     options.static_maps_changed = drawn > 0;
+    options.bake_in_portions = services.input.map_budget != FrameInput().map_budget;
 }
 
 Status ManyLightTechnique::update(const SceneView& scene, Services& services, CellSet cells) {
