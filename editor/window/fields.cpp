@@ -14,6 +14,7 @@ namespace sunfleck::editor {
 namespace {
 
 using Phase = ui::NumberEdit::Phase;
+constexpr float room_for_name = 6.5f; // of ui::unit()
 constexpr ImU32 changed_colour = IM_COL32(240, 178, 80, 255);
 
 bool same_text(const FieldSource& source) {
@@ -206,9 +207,13 @@ std::string readable_name(std::string_view name) {
     return result;
 }
 
+// Where there is no room for both, names stand above their values.
 bool begin_fields(const char* id, float names) {
-    if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp))
+    const bool beside = names * ImGui::GetContentRegionAvail().x >= room_for_name * ui::unit();
+    if (!ImGui::BeginTable(id, beside ? 2 : 1, ImGuiTableFlags_SizingStretchProp))
         return false;
+    if (!beside)
+        return true;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, names);
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 1.0f - names);
     return true;

@@ -23,7 +23,7 @@ void apply_field_text(Session& session, const FieldSource& source,
 // "base_colour" -> "Base colour"
 std::string readable_name(std::string_view name);
 
-// Rows go between these two. `names`: their share of the width.
+// Rows go between these two. `names`: their share of the width, where that is enough for both.
 bool begin_fields(const char* id, float names = 0.4f);
 void end_fields();
 void field_row(Session& session, const FieldSource& source);
