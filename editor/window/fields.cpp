@@ -147,7 +147,7 @@ void text_cell(Session& session, const FieldSource& source, float width) {
 void reset_cell(Session& session, const FieldSource& source) {
     if (source.defaults == nullptr)
         return;
-    const std::string usual = field_to_text(*source.field, source.defaults);
+    std::string usual = field_to_text(*source.field, source.defaults);
     if (same_text(source) && field_to_text(*source.field, source.objects[0]) == usual)
         return;
     ImGui::SameLine(0.0f, 0.2f * ui::unit());
