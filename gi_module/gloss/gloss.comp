@@ -87,7 +87,7 @@ vec4 light_seen_from(LightRow light, vec3 position) {
         return vec4(-light.normal_offset.xyz, light.position_bound.w * light.position_bound.w);
     const vec3 v = light.position_bound.xyz - position;
     const float squared_distance = max(dot(v, v), 1e-12);
-    const float radius = light_class == light_class_surface ? light.tangent_scale.w : 0.0;
+    const float radius = light_class == light_class_surface ? light.tangent_scale.w : max(-light.position_bound.w, 0.0);
     return vec4(v * inversesqrt(squared_distance), radius * radius / squared_distance);
 }
 

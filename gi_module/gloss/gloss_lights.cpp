@@ -34,7 +34,8 @@ float size_of_direct(const LightSample& sample, const Emitter& emitter) {
     if (emitter.is_delta())
         return 0.0f;
     if (emitter.kind != EmitterKind::environment)
-        return radius_of_area(emitter.area * share_of(sample.flux, emitter.flux));
+        return sample.radius > 0.0f ? sample.radius
+                                    : radius_of_area(emitter.area * share_of(sample.flux, emitter.flux));
     const float radiance = luminance(emitter.environment_radiance(-sample.normal));
     const float solid_angle = radiance > 0.0f ? luminance(sample.flux) / radiance : 0.0f;
     return std::tan(std::min(radius_of_area(solid_angle), 1.0f));
@@ -73,6 +74,8 @@ void write_sizes(const SampleSet& samples, std::span<const float> sizes, LightBa
             const bool reflected = samples.samples()[sample].bounce > 0;
             row.tangent_scale.w = sizes[sample];
             row.normal_offset.w = reflected ? least_alpha_of_reflected * least_alpha_of_reflected : 0.0f;
+        } else if (batch.light_class == shared::light_class_point && row.position_bound.w == 0.0f) {
+            row.position_bound.w = -sizes[sample]; // positive is the scale of a cone's map
         } else if (batch.light_class == shared::light_class_directional) {
             row.position_bound.w = sizes[sample];
         }

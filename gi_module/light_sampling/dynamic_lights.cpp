@@ -61,10 +61,10 @@ void DynamicLights::add_light(const Emitter& emitter, std::uint32_t number, std:
     Light light;
     light.emitter = emitter;
     light.first = std::uint32_t(samples_.size());
-    if (settings_.direct && emitter.is_delta())
-        light.direct = 1;
+    if (settings_.direct && !indirect && !emitter.is_delta())
+        light.direct = count;
     else if (settings_.direct)
-        light.direct = indirect ? std::max(1u, std::uint32_t(float(count) * settings_.direct_share)) : count;
+        light.direct = useful_samples(emitter, std::uint32_t(float(count) * settings_.direct_share));
     const std::uint32_t paths = indirect ? count - std::min(light.direct, count) : 0;
     light.paths.reset(EmitterSource(light.emitter), paths, hash_combine(settings_.seed, 0xd1a0u + number));
     samples_.resize(samples_.size() + light.direct + paths);

@@ -20,6 +20,13 @@ void warn_once(ecs::Entity entity, const char* what) {
         log_warning("light of entity " + std::to_string(entity.index) + " is ignored: " + what);
 }
 
+bool is_uniform(const mat4& scaling) {
+    constexpr float tolerance = 1e-3f;
+    const float first = glm::length(vec3(scaling[0]));
+    return std::abs(glm::length(vec3(scaling[1])) - first) <= tolerance * first &&
+           std::abs(glm::length(vec3(scaling[2])) - first) <= tolerance * first;
+}
+
 Emitter area_light(const scene::AreaLight& light, const mat4& matrix) {
     Emitter emitter;
     const float scale_x = glm::length(vec3(matrix[0])), scale_y = glm::length(vec3(matrix[1]));
@@ -40,6 +47,8 @@ Emitter area_light(const scene::AreaLight& light, const mat4& matrix) {
         emitter.kind = EmitterKind::sphere;
         emitter.radius = light.radius * scale_x;
         emitter.area = 4.0f * pi * emitter.radius * emitter.radius;
+        emitter.ball = is_uniform(matrix);
+        emitter.closed = true;
         break;
     }
     return emitter;
@@ -51,17 +60,21 @@ Emitter mesh_light(const scene::Mesh& mesh, const scene::Material& material, con
     emitter.radiance = material.emission;
     const bool mirrored = glm::determinant(mat3(matrix)) < 0.0f;
     double sum = 0;
+    vec3 facing(0.0f); // of all triangles, by area
     for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
         vec3 p[3];
         for (std::size_t k = 0; k < 3; ++k)
             p[k] = vec3(matrix * vec4(mesh.positions[mesh.indices[i + k]], 1.0f));
         if (mirrored)
             std::swap(p[1], p[2]);
-        sum += 0.5 * double(glm::length(glm::cross(p[1] - p[0], p[2] - p[0])));
+        const vec3 area = 0.5f * glm::cross(p[1] - p[0], p[2] - p[0]);
+        sum += double(glm::length(area));
+        facing += area;
         emitter.corners.insert(emitter.corners.end(), {p[0], p[1], p[2]});
         emitter.cumulative_area.push_back(float(sum));
     }
     emitter.area = float(sum);
+    emitter.closed = glm::length(facing) < 0.5f * emitter.area;
     return emitter;
 }
 
@@ -95,7 +108,11 @@ public:
                 if (light.shape == scene::AreaShape::sphere && instance != nullptr && instance->mesh < meshes_.size()) {
                     scene::Material material;
                     material.emission = light.radiance;
-                    add(entity, mesh_light(meshes_[instance->mesh], material, place(world)), place(world));
+                    Emitter emitter = mesh_light(meshes_[instance->mesh], material, place(world));
+                    const Emitter sphere = area_light(light, place(world));
+                    emitter.ball = sphere.ball;
+                    emitter.radius = sphere.radius;
+                    add(entity, std::move(emitter), place(world));
                     return;
                 }
                 add(entity, area_light(light, place(world)), place(world));

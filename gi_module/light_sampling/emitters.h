@@ -32,6 +32,8 @@ struct Emitter {
     std::vector<vec3> corners; // three a triangle
     std::vector<float> cumulative_area;
     bool textured = false; // `radiance` is a mean
+    bool ball = false;   // all of its surface is a sphere of `radius` about its origin: shines alike in all directions
+    bool closed = false; // its surface looks to every side
     // Kind environment, with an image: `radiance` is the mean, `map_scale` multiplies the image.
     scene::EnvironmentMap map;
     vec3 map_scale{1.0f};

@@ -32,6 +32,9 @@ LightSample delta_sample(const Emitter& emitter) {
     return sample;
 }
 
+// Fewer samples lie on one side of a closed emitter's middle, or in a plane with it.
+constexpr std::uint32_t least_around = 4;
+
 // One of `count` samples that share the flux of an emitter.
 LightSample shared_sample(const Emitter& emitter, float count, const RandomSequence& random,
                           const raytrace::RayScene& rays) {
@@ -55,6 +58,27 @@ LightSample shared_sample(const Emitter& emitter, float count, const RandomSeque
     sample.position = offset_from_surface(point.position, point.normal, rays, raytrace::Scope::everything);
     sample.normal = point.normal;
     sample.flux = emitter.flux / count;
+    if (!emitter.closed || count >= float(least_around))
+        sample.radius = std::sqrt(emitter.area / (pi * count));
+    return sample;
+}
+
+// A sample on the surface of a ball lights one side alone, and not what the ball touches: few samples miss what is next
+// to it. Points within it that shine in all directions light as the ball does wherever all of it is above the horizon,
+// as a shell's gravity is that of its centre; spread as the first three coordinates of points on a sphere in four
+// dimensions, they look like a disc of even brightness from everywhere, so that penumbrae are right, too. Few points
+// stay near the centre: none gives what the ball touches more light than the whole ball does.
+LightSample ball_sample(const Emitter& emitter, float count, const RandomSequence& random) {
+    LightSample sample;
+    sample.kind = SampleKind::point;
+    sample.emitter = emitter.entity;
+    sample.on_mover = true;
+    const float inner = std::sqrt(random.at(0)), outer = std::sqrt(1.0f - random.at(0));
+    const float first = 2.0f * pi * random.at(1), second = 2.0f * pi * random.at(2);
+    const vec3 place(outer * std::cos(first), outer * std::sin(first), inner * std::cos(second));
+    sample.position = vec3(emitter.matrix[3]) + emitter.radius * (1.0f - 1.0f / std::sqrt(count)) * place;
+    sample.flux = emitter.flux / count;
+    sample.radius = emitter.radius / std::sqrt(count);
     return sample;
 }
 
@@ -132,8 +156,16 @@ LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std:
                                const SampleRequest& settings, const raytrace::RayScene& rays) {
     if (emitter.is_delta())
         return delta_sample(emitter);
-    return shared_sample(emitter, float(count),
-                         {sequence_kind(settings), hash_combine(settings.seed, emitter.entity.index), index}, rays);
+    const RandomSequence random(sequence_kind(settings), hash_combine(settings.seed, emitter.entity.index), index);
+    if (emitter.ball && emitter.moves)
+        return ball_sample(emitter, float(count), random);
+    return shared_sample(emitter, float(count), random, rays);
+}
+
+std::uint32_t useful_samples(const Emitter& emitter, std::uint32_t share) {
+    if (emitter.is_delta() || (emitter.ball && emitter.moves && share < least_around))
+        return 1;
+    return std::max(share, 1u);
 }
 
 vec3 offset_from_surface(vec3 position, vec3 normal, const raytrace::RayScene& rays, raytrace::Scope scope) {

@@ -30,9 +30,12 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
                                          const SampleRequest& settings, const raytrace::RayScene& rays);
 
-// Sample `index` of `count` on one emitter. Its position on the emitter does not change when the emitter moves.
+// Sample `index` of `count` of one emitter's direct light. Its position on the emitter does not change when the emitter
+// moves. Those of a ball that moves are points within it, which its own surface does not shadow.
 LightSample make_direct_sample(const Emitter& emitter, std::uint32_t index, std::uint32_t count,
                                const SampleRequest& settings, const raytrace::RayScene& rays);
+// How many of `share` samples make_direct_sample can use; the rest may serve reflected light.
+std::uint32_t useful_samples(const Emitter& emitter, std::uint32_t share);
 
 // Of a path that holds as many as it can, the oldest vertex is dropped.
 void add_path_vertex(LightSample& sample, vec3 point);

@@ -314,6 +314,9 @@ void SampleSet::update_bounds(const SceneView& scene, const LightSettings& setti
 
 float SampleSet::bound_of(const LightSample& sample, const LightSettings& settings) const {
     const bool alone = sample.dynamic && sample.bounce > 0;
+    // Texels of light maps are as fine as the highest bound of the samples in them asks for.
+    if (sample.bounce == 0 && sample.dynamic)
+        return emitter_bound_of(sample.radius, bound_, settings.clamp_scale);
     if (sample.on_mover)
         return geometry_bound_of(sample.radius, 1e30f, settings.clamp_scale);
     return geometry_bound_of(sample.radius, alone ? dynamic_bound_ : bound_, settings.clamp_scale);

@@ -29,4 +29,10 @@ inline float geometry_bound_of(float radius, float bound, float scale) {
     return radius > 0.0f ? std::min(bound, scale / (2.0f * radius * radius)) : bound;
 }
 
+// For a sample on an emitter that moves or varies: of N, each stands for the area A/N of the emitter, a disc of
+// `radius`, however large the scene is; 0: `bound`, which all other samples have, and which is never undercut.
+inline float emitter_bound_of(float radius, float bound, float scale) {
+    return radius > 0.0f ? std::max(bound, scale / (2.0f * radius * radius)) : bound;
+}
+
 } // namespace sunfleck::gi

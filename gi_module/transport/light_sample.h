@@ -36,7 +36,8 @@ struct LightSample {
     bool punctual = false;
     // Its emitter moves or varies: it is never in light maps, and its visibility is computed for whole charts only.
     bool dynamic = false;
-    // It lies on a mover, `emitter`, which casts no shadow in this light: the sample follows some frames behind.
+    // It lies on a mover, `emitter`, and follows some frames behind, or within one that shines: the mover casts no
+    // shadow in this light.
     bool on_mover = false;
 
     static const TypeDescription& description();

@@ -165,7 +165,9 @@ void VisibilityDatabase::find_footprints(FootprintWalk& walk, const Mover& mover
     std::uint32_t active = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         walk.footprints[i].clear();
-        if (mover.blocks && reaches(mover, samples[i]))
+        const LightSample& sample = samples_[samples[i]];
+        const bool own = sample.on_mover && sample.emitter == mover.entity;
+        if (mover.blocks && !own && reaches(mover, samples[i]))
             active |= 1u << i;
     }
     if (active == 0)

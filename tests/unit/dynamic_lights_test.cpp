@@ -170,5 +170,67 @@ TEST(DynamicLights, AreTheSameEveryTime) {
     }
 }
 
+// A ball at the origin that moves, of radius 1 and radiance 1.
+Emitter ball_of_light() {
+    Emitter ball;
+    ball.kind = EmitterKind::sphere;
+    ball.radiance = vec3(1.0f);
+    ball.radius = 1.0f;
+    ball.area = 4.0f * pi;
+    ball.flux = vec3(pi * ball.area);
+    ball.moves = ball.ball = true;
+    return ball;
+}
+
+std::vector<LightSample> samples_of(const Emitter& emitter, std::uint32_t count) {
+    const auto rays = raytrace::RayScene::create().value();
+    std::vector<LightSample> samples;
+    for (std::uint32_t i = 0; i < count; ++i)
+        samples.push_back(make_direct_sample(emitter, i, count, {}, *rays));
+    return samples;
+}
+
+// pi R^2 / d^2 times the cosine, wherever the whole ball is above the horizon: from one radius above the surface, where
+// a sample is no further away than its neighbours, to a hundred.
+TEST(DynamicLights, ABallLightsAsInTheClosedForm) {
+    for (const std::uint32_t count : {1u, 6u, 64u, 1024u}) {
+        const std::vector<LightSample> samples = samples_of(ball_of_light(), count);
+        std::mt19937 random(3);
+        std::normal_distribution<float> coordinate;
+        double worst = 0.0;
+        for (const float distance : {2.0f, 5.0f, 100.0f})
+            for (int place = 0; place < 20; ++place) {
+                const vec3 normal = -glm::normalize(vec3(coordinate(random), coordinate(random), coordinate(random)));
+                const vec3 at = -distance * normal;
+                double found = 0.0;
+                for (const LightSample& sample : samples) {
+                    ASSERT_EQ(sample.kind, SampleKind::point);
+                    const vec3 to_light = sample.position - at;
+                    const float squared = glm::dot(to_light, to_light);
+                    found += double(sample.flux.x / (4.0f * pi) * glm::dot(normal, to_light) /
+                                    (squared * std::sqrt(squared)));
+                }
+                worst = std::max(worst, std::abs(found * double(distance * distance / pi) - 1.0));
+            }
+        // One sample is exact. N points, well spread in three dimensions, err by about N^(-2/3) of a smooth function.
+        EXPECT_LT(worst, count == 1 ? 1e-5 : std::pow(double(count), -2.0 / 3.0)) << count;
+    }
+}
+
+// From far away, a ball is a disc of even brightness: its share beyond a straight edge is that of the disc. Points on a
+// shell, or evenly in the ball, would be off by 0.06 or 0.04.
+TEST(DynamicLights, ABallCastsThePenumbraOfADisc) {
+    constexpr std::uint32_t count = 16384;
+    const std::vector<LightSample> samples = samples_of(ball_of_light(), count);
+    const double shrunk = 1.0 - 1.0 / std::sqrt(double(count)); // few samples stay near the centre
+    for (const vec3 direction : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1), glm::normalize(vec3(1, -2, 3))})
+        for (const double edge : {-0.9, -0.5, 0.0, 0.3, 0.7}) {
+            double beyond = 0.0;
+            for (const LightSample& sample : samples)
+                beyond += double(glm::dot(sample.position, direction)) > shrunk * edge ? 1.0 / count : 0.0;
+            EXPECT_NEAR(beyond, (std::acos(edge) - edge * std::sqrt(1.0 - edge * edge)) / double(pi), 0.01) << edge;
+        }
+}
+
 } // namespace
 } // namespace sunfleck::gi
