@@ -45,18 +45,21 @@ bool lies_across(Neighbourhood n) {
     return rows >= columns;
 }
 
-// From the middle of a pixel to the end of its line of the edge. x: distance; y: by how much the end is brighter than
-// the edge, 0 if none was found.
-vec2 walk(ivec2 pixel, ivec2 along, ivec2 over, float edge, float limit) {
+// From the middle of a pixel, of brightness `centre`, to the end of its line of the edge to what is as bright as
+// `beyond`. x: distance; y: 1 if the edge moves into the pixel's row there, -1 if it moves over the neighbour's, 0 if no
+// end was found. One of the two sides may go on while a speck takes the other's place, as where a side face thinner than
+// a pixel lies between them: the edge then moves towards the speck.
+vec2 walk(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond) {
+    const float edge = 0.5 * (centre + beyond), limit = 0.25 * abs(beyond - centre);
     vec2 found = vec2(float(walk_lengths[walk_steps - 1]), 0.0);
     bool on = true;
     int i = 0;
     do { // tested at its end, as below
         const ivec2 place = pixel + along * walk_lengths[i];
-        const float difference = 0.5 * (at(place) + at(place + over)) - edge;
-        on = abs(difference) < limit;
+        const float own = at(place), other = at(place + over);
+        on = abs(0.5 * (own + other) - edge) < limit;
         if (!on)
-            found = vec2(float(walk_lengths[i]) - 0.5, difference);
+            found = vec2(float(walk_lengths[i]) - 0.5, abs(own - centre) > abs(other - beyond) ? 1.0 : -1.0);
     } while (++i < walk_steps && on);
     return found;
 }
@@ -71,11 +74,10 @@ struct Cover {
 // The edge crosses from the middle of one end of its line to the other's, so only the half of the line at the nearer
 // end is covered.
 Cover cover_of(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond) {
-    const float edge = 0.5 * (centre + beyond), limit = 0.25 * abs(beyond - centre);
-    const vec2 before = walk(pixel, -along, over, edge, limit), after = walk(pixel, along, over, edge, limit);
+    const vec2 before = walk(pixel, -along, over, centre, beyond), after = walk(pixel, along, over, centre, beyond);
     const vec2 end = before.x < after.x ? before : after;
     const float run = before.x + after.x;
-    const bool covered = end.y != 0.0 && (end.y > 0.0) == (beyond > centre);
+    const bool covered = end.y > 0.0;
     return Cover(covered ? max(0.5 - end.x / run, 0.0) : 0.0, covered ? (before.x < after.x ? -1.0 : 1.0) / run : 0.0,
                  run);
 }
