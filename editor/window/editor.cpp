@@ -299,8 +299,11 @@ void Program::tell_scene() {
 }
 
 Status Program::draw(const app::InputState& input) {
-    SUNFLECK_ASSIGN(const bool visible, display_->acquire());
-    if (!visible) { // minimised, or resized just now
+    const Result<bool> visible = display_->acquire();
+    if ((!visible || !*visible) && &input == &window().input())
+        window().repeat(); // a letter that was typed meanwhile is not lost
+    SUNFLECK_TRY(visible ? Status() : Status(visible.error()));
+    if (!*visible) { // minimised, or resized just now
         frames_due_ = std::max(frames_due_, 1);
         window().wait(0.05);
         return {};

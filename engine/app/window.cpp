@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sunfleck::app {
 namespace {
@@ -233,8 +234,15 @@ std::vector<const char*> Window::instance_extensions() const {
     return {names, names + count};
 }
 
+void Window::repeat() {
+    repeats_ = true;
+    input_.dropped.clear();
+}
+
 const InputState& Window::poll() {
     glfwPollEvents();
+    if (std::exchange(repeats_, false))
+        return input_;
     read_gamepad();
     take_events();
     input_ = pending_;

@@ -72,6 +72,9 @@ public:
     // Handles pending events. All keys count as released while the window is not focused.
     const InputState& poll();
     const InputState& input() const { return input_; }
+    // The next poll finds what the last one found once more, files that were dropped left out, and whatever came since
+    // waits for the one after: for a frame that could not be drawn, in which it would be lost.
+    void repeat();
     // One thing after the other: from now on a poll ends before the next key, button or movement once a key or button
     // changed, so that a click between two frames is seen where it happened. The rest comes with the next poll.
     void one_by_one(bool on) { one_by_one_ = on; }
@@ -124,6 +127,7 @@ private:
     Pointer pointer_ = Pointer::arrow;
     std::deque<Event> events_;
     bool one_by_one_ = false;
+    bool repeats_ = false;
     std::uint64_t event_count_ = 0;
     int windowed_[4] = {};
     InputState input_, pending_;
