@@ -37,7 +37,7 @@ public:
             return caught([&] { return loop(); });
         });
         const bool edits_wait = !session_->quit && session_->document->unsaved(); // a signal, or an error
-        const Status finished = finish(bool(drawn), edits_wait);
+        Status finished = finish(bool(drawn), edits_wait);
         if (drawn)
             return finished;
         return edits_wait ? Error{drawn.error().message + "; the unsaved edits are offered by the next run",
@@ -302,15 +302,15 @@ Status Program::draw(const app::InputState& input) {
     const Result<bool> visible = display_->acquire();
     if ((!visible || !*visible) && &input == &window().input())
         window().repeat(); // a letter that was typed meanwhile is not lost
-    SUNFLECK_TRY(visible ? Status() : Status(visible.error()));
+    if (!visible)
+        return visible.error();
     if (!*visible) { // minimised, or resized just now
         frames_due_ = std::max(frames_due_, 1);
         window().wait(0.05);
         return {};
     }
     const auto began = Clock::now();
-    const double seconds = std::chrono::duration<double>(began - last_frame_).count();
-    last_frame_ = began;
+    const double seconds = std::chrono::duration<double>(began - std::exchange(last_frame_, began)).count();
     session_->input = &input;
     const std::shared_ptr<ScenePicture> picture = scene_->picture();
     session_->note_frame(picture.get());
@@ -394,8 +394,7 @@ Status Program::finish(bool whole, bool edits_wait) {
 } // namespace
 
 Status run(const Options& options) {
-    Program program(options);
-    return program.run();
+    return Program(options).run();
 }
 
 } // namespace sunfleck::editor
