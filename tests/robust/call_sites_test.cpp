@@ -120,7 +120,7 @@ TEST_F(RobustCallSites, AreAllReachedByTheStoriesOfFaults) {
         EXPECT_EQ(is_reached(site, reached), is_for_hosts(site))
             << site.file << ":" << site.line << ": " << site.function;
     }
-    EXPECT_GT(sites, 20) << "calls are written in another way than the test looks for";
+    EXPECT_GE(sites, 27) << "calls are written in another way than the test looks for";
     std::printf("%d places where hosts' calls can fail, all reached; %d of windows and viewers\n", sites, of_others);
 }
 

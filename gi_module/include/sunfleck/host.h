@@ -222,7 +222,7 @@ struct Frame {
     std::uint64_t serial = 1;           // 2^63 at most
     std::uint64_t completed_serial = 0; // all frames up to this one are finished on the GPU; never falls
     // Shadow maps redrawn in this frame at most. A light sample without one yet shines only where nothing is in the
-    // way.
+    // way. With a budget, light is baked in small portions, too, over more frames.
     std::uint32_t map_budget = 0xffffffffu;
     // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the
     // first one of a level); from any thread, but by one at a time. Returning false ends the update with an error; the
