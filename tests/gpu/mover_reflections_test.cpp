@@ -1,10 +1,9 @@
 // What movers reflect: the picture minus the one with the mover black, against the same of the path tracer.
-#include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
+#include "tests/support/traced_picture.h"
 
 #include "assets/mesh_parts.h"
-#include "gi_module/reference/path_tracer.h"
 
 #include <cstdio>
 
@@ -57,18 +56,8 @@ protected:
     }
     // Irradiance by paths; the same random numbers whatever the mover's colour.
     static std::vector<vec3> traced(GpuWorld& world, std::uint32_t samples) {
-        ecs::Registry& registry = world.renderer->registry();
-        const scene::MeshStore& meshes = world.renderer->meshes();
-        const auto rays = raytrace::RayScene::create().value();
-        EXPECT_TRUE(rays->update(registry, meshes));
-        const gi::reference::PathTracer tracer(
-            *rays, gi::collect_emitters(registry, meshes, viewer::scene_bounds(registry, meshes)));
-        gi::reference::ReferenceSettings settings;
-        settings.width = world.request.width;
-        settings.height = world.request.height;
-        settings.view = gi::reference::ReferenceView::irradiance;
-        gi::reference::Accumulation sums;
-        tracer.accumulate(sums, world.request.camera, settings, samples, {});
+        const gi::reference::Accumulation sums =
+            trace_picture(world, gi::reference::ReferenceView::irradiance, samples);
         std::vector<vec3> result(sums.covered.size(), vec3(0.0f));
         for (std::size_t i = 0; i < result.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c)

@@ -1,8 +1,6 @@
 // Lamps that are small for their distance, with few samples: what is near to them must not go without their light.
-#include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
-
-#include "gi_module/reference/path_tracer.h"
+#include "tests/support/traced_picture.h"
 
 #include <cstdio>
 
@@ -20,18 +18,7 @@ protected:
     }
     // Direct light by paths; alpha 0 where nothing is lit.
     static std::vector<vec4> traced(GpuWorld& world) {
-        ecs::Registry& registry = world.renderer->registry();
-        const scene::MeshStore& meshes = world.renderer->meshes();
-        const auto rays = raytrace::RayScene::create().value();
-        EXPECT_TRUE(rays->update(registry, meshes));
-        const gi::reference::PathTracer tracer(
-            *rays, gi::collect_emitters(registry, meshes, viewer::scene_bounds(registry, meshes)));
-        gi::reference::ReferenceSettings settings;
-        settings.width = world.request.width;
-        settings.height = world.request.height;
-        settings.view = gi::reference::ReferenceView::direct;
-        gi::reference::Accumulation sums;
-        tracer.accumulate(sums, world.request.camera, settings, paths);
+        const gi::reference::Accumulation sums = trace_picture(world, gi::reference::ReferenceView::direct, paths);
         std::vector<vec4> result;
         for (std::size_t i = 0; i < sums.covered.size(); ++i)
             result.emplace_back(vec3(sums.sums[3 * i], sums.sums[3 * i + 1], sums.sums[3 * i + 2]) / float(paths),
