@@ -160,7 +160,7 @@ public:
     Tracing(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
             SavedAccumulation& state)
         : options_(options), scene_(scene), settings_(settings), state_(state), clock_(options.save_interval),
-          tracer_(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds),
+          tracer_(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds, {}, {}, &warned_of_),
                   gi::collect_backgrounds(scene.registry)) {}
 
     // Takes up the saved state, if there is one.
@@ -231,6 +231,7 @@ private:
     const ReferenceSettings& settings_;
     SavedAccumulation& state_;
     SaveClock clock_;
+    std::set<ecs::Entity> warned_of_; // lights that are ignored
     PathTracer tracer_;
     Accumulation accumulation_;
     std::uint32_t goal_ = 0;

@@ -14,6 +14,8 @@ namespace sunfleck {
 namespace {
 
 std::atomic<std::uint64_t> chosen_limit{0};
+// Asked for in small pieces since somebody last looked at what is in use.
+std::atomic<std::uint64_t> small_pieces{0};
 
 std::uint64_t free_memory() {
     constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max() / 4;
@@ -25,9 +27,13 @@ std::uint64_t free_memory() {
     return std::min(available, free_in_control_groups("/sys/fs/cgroup", "/proc/self/cgroup", unknown));
 }
 
-std::string in_gibibytes(std::uint64_t bytes) {
+std::string size_text(std::uint64_t bytes) {
+    constexpr std::uint64_t gibibyte = 1u << 30, mebibyte = 1u << 20;
     char text[32];
-    std::snprintf(text, sizeof text, "%.1f GiB", double(bytes) / double(1u << 30));
+    if (bytes < gibibyte)
+        std::snprintf(text, sizeof text, "%.1f MiB", double(bytes) / double(mebibyte));
+    else
+        std::snprintf(text, sizeof text, "%.1f GiB", double(bytes) / double(gibibyte));
     return text;
 }
 
@@ -52,16 +58,18 @@ std::uint64_t memory_in_use() {
 }
 
 Status check_memory(std::uint64_t bytes, std::string_view what, std::string_view setting) {
-    // Nothing of this size is worth a look at files of the system.
+    // No smaller piece is worth a look at files of the system, but all of them together are: a level has hundreds of
+    // textures.
     constexpr std::uint64_t small = std::uint64_t(64) << 20;
-    if (bytes < small)
+    if (bytes < small && small_pieces.fetch_add(bytes) + bytes < small)
         return {};
+    small_pieces = 0;
     const std::uint64_t used = memory_in_use(), limit = memory_limit();
     if (used <= limit && bytes <= limit - used)
         return {};
-    return Error{std::string(what) + " would take " + in_gibibytes(bytes) + " of memory beside the " +
-                     in_gibibytes(used) + " in use; the limit is " + in_gibibytes(limit) + ". Lower " +
-                     std::string(setting) + ", or raise the limit (--memory; in a host: set_memory_limit)",
+    return Error{std::string(what) + " would take " + size_text(bytes) + " of memory beside the " + size_text(used) +
+                     " in use; the limit is " + size_text(limit) + ". Lower " + std::string(setting) +
+                     ", or raise the limit (--memory; in a host: set_memory_limit)",
                  ErrorCode::memory};
 }
 

@@ -16,7 +16,8 @@ std::uint64_t memory_limit();
 // What the process has now; 0 where the system does not say.
 std::uint64_t memory_in_use();
 
-// An error, if `bytes` more would be over the limit: "WHAT would take 12.3 GiB ... lower SETTING".
+// An error, if `bytes` more would be over the limit: "WHAT would take 12.3 GiB ... lower SETTING". Pieces under 64 MiB
+// are let through until they add up to as much, so that what they name may be over the limit by that.
 Status check_memory(std::uint64_t bytes, std::string_view what, std::string_view setting);
 
 } // namespace sunfleck

@@ -179,7 +179,7 @@ void note_factors(const std::vector<tinygltf::Material>& materials, std::vector<
 Result<std::vector<BytePicture>> decode_images(const GltfDocument& document, const std::vector<bool>& wanted,
                                                const std::function<bool(float)>& progress) {
     std::vector<BytePicture> pictures(document.images.size());
-    std::vector<std::string> failures(document.images.size());
+    std::vector<Status> decoded(document.images.size());
     std::atomic<bool> stop{false};
     std::size_t done = 0;
     std::mutex mutex;
@@ -191,7 +191,7 @@ Result<std::vector<BytePicture>> decode_images(const GltfDocument& document, con
             if (picture)
                 pictures[i] = std::move(*picture);
             else
-                failures[i] = picture.error().message;
+                decoded[i] = picture.error();
             const std::scoped_lock lock(mutex);
             ++done;
             if (progress && !progress(float(done) / float(document.images.size())))
@@ -200,9 +200,9 @@ Result<std::vector<BytePicture>> decode_images(const GltfDocument& document, con
     });
     if (stop)
         return Error{"stopped"};
-    for (std::size_t i = 0; i < failures.size(); ++i)
-        if (!failures[i].empty())
-            return Error{"image " + std::to_string(i) + ": " + failures[i]};
+    for (std::size_t i = 0; i < decoded.size(); ++i)
+        if (!decoded[i])
+            return Error{"image " + std::to_string(i) + ": " + decoded[i].error().message, decoded[i].error().code};
     return pictures;
 }
 

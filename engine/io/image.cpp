@@ -1,6 +1,7 @@
 #include "engine/io/image.h"
 
 #include "engine/core/file.h"
+#include "engine/core/memory_limit.h"
 #include "engine/io/draco_mesh.h"
 #include "engine/io/image_codec.h"
 
@@ -28,6 +29,10 @@ Result<const ImageCodec*> load_codec() {
 Result<const ImageCodec*> codec() {
     static const Result<const ImageCodec*> loaded = load_codec();
     return loaded;
+}
+
+Status allow_memory(std::uint64_t bytes, const std::string& what) {
+    return check_memory(bytes, what, "the size or number of pictures");
 }
 
 Result<PictureKind> kind_of(std::string_view bytes) {
@@ -74,13 +79,13 @@ std::optional<PictureKind> sniff_picture(std::string_view bytes) {
 Result<Picture> decode_picture(std::string_view bytes) {
     SUNFLECK_ASSIGN(const PictureKind kind, kind_of(bytes));
     SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
-    return images->decode(bytes, kind);
+    return images->decode(bytes, kind, allow_memory);
 }
 
 Result<BytePicture> decode_bytes(std::string_view bytes) {
     SUNFLECK_ASSIGN(const PictureKind kind, kind_of(bytes));
     SUNFLECK_ASSIGN(const ImageCodec* const images, codec());
-    return images->decode_bytes(bytes, kind);
+    return images->decode_bytes(bytes, kind, allow_memory);
 }
 
 Result<Picture> read_picture(const std::filesystem::path& path) {

@@ -92,10 +92,12 @@ Result<std::unique_ptr<OpenPicture>> open_picture(std::string_view bytes, Pictur
 
 // Reads all pixels as the type of `values` and expands the channels to RGBA.
 template <typename T>
-Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, std::vector<T>& rgba) {
+Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, AllowMemory allow, std::vector<T>& rgba) {
     const OIIO::ImageSpec& spec = open.input->spec();
     const std::size_t channels = std::size_t(spec.nchannels),
                       pixels = std::size_t(spec.width) * std::size_t(spec.height);
+    SUNFLECK_TRY(allow(pixels * (channels + 4) * sizeof(T),
+                       "a picture of " + std::to_string(spec.width) + "x" + std::to_string(spec.height)));
     std::vector<T> values(pixels * channels);
     if (!open.input->read_image(0, 0, 0, spec.nchannels, type, values.data()))
         return Error{"it is damaged: " + open.input->geterror()};
@@ -110,10 +112,10 @@ Status read_channels(OpenPicture& open, OIIO::TypeDesc type, T opaque, std::vect
     return {};
 }
 
-Result<Picture> decode(std::string_view bytes, PictureKind kind) {
+Result<Picture> decode(std::string_view bytes, PictureKind kind, AllowMemory allow) {
     SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes, kind));
     std::vector<float> values;
-    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::FLOAT, 1.0f, values));
+    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::FLOAT, 1.0f, allow, values));
     Picture picture;
     picture.width = std::uint32_t(open->input->spec().width);
     picture.height = std::uint32_t(open->input->spec().height);
@@ -122,13 +124,13 @@ Result<Picture> decode(std::string_view bytes, PictureKind kind) {
     return picture;
 }
 
-Result<BytePicture> decode_bytes(std::string_view bytes, PictureKind kind) {
+Result<BytePicture> decode_bytes(std::string_view bytes, PictureKind kind, AllowMemory allow) {
     SUNFLECK_ASSIGN(const std::unique_ptr<OpenPicture> open, open_picture(bytes, kind));
     BytePicture picture;
     picture.width = std::uint32_t(open->input->spec().width);
     picture.height = std::uint32_t(open->input->spec().height);
     picture.linear = open->kind == PictureKind::exr || open->kind == PictureKind::hdr;
-    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::UINT8, std::uint8_t(255), picture.pixels));
+    SUNFLECK_TRY(read_channels(*open, OIIO::TypeDesc::UINT8, std::uint8_t(255), allow, picture.pixels));
     return picture;
 }
 

@@ -8,13 +8,17 @@
 
 namespace sunfleck::io {
 
+// Asked with the size of decoded pixels, in bytes, before memory for them is taken; `what` names the picture. The limit
+// is the program's: this library has no state of its own.
+using AllowMemory = Status (*)(std::uint64_t bytes, const std::string& what);
+
 // Errors say what is wrong, not with which file. Any thread may call these.
 struct ImageCodec {
     Result<std::string> (*encode)(const Picture& picture, PictureKind kind); // png or exr
     Result<std::string> (*encode_png)(std::uint32_t width, std::uint32_t height,
                                       const std::vector<std::uint8_t>& pixels); // RGBA
-    Result<Picture> (*decode)(std::string_view bytes, PictureKind kind);
-    Result<BytePicture> (*decode_bytes)(std::string_view bytes, PictureKind kind);
+    Result<Picture> (*decode)(std::string_view bytes, PictureKind kind, AllowMemory allow);
+    Result<BytePicture> (*decode_bytes)(std::string_view bytes, PictureKind kind, AllowMemory allow);
 };
 
 } // namespace sunfleck::io

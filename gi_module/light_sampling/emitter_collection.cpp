@@ -3,21 +3,12 @@
 #include "gi_module/transport/scene_sphere.h"
 
 #include <algorithm>
-#include <mutex>
 
 namespace sunfleck::gi {
 namespace {
 
 bool usable(vec3 value) {
     return is_finite(value) && value.x >= 0.0f && value.y >= 0.0f && value.z >= 0.0f;
-}
-
-void warn_once(ecs::Entity entity, const char* what) {
-    static std::mutex mutex; // systems are updated by threads of their own
-    static std::set<EntityBits> warned;
-    const std::scoped_lock lock(mutex);
-    if (warned.insert(entity.bits()).second)
-        log_warning("light of entity " + std::to_string(entity.index) + " is ignored: " + what);
 }
 
 bool is_uniform(const mat4& scaling) {
@@ -95,9 +86,9 @@ Emitter environment_of(const ecs::Registry& registry, ecs::Entity entity, const 
 class Collector {
 public:
     Collector(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-              const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space)
-        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark), space_(space), radius_(bounding_radius(scene)),
-          centre_(scene.empty() ? vec3(0.0f) : scene.centre()) {}
+              const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space, std::set<ecs::Entity>* warned_of)
+        : registry_(registry), meshes_(meshes), keep_dark_(keep_dark), warned_of_(warned_of), space_(space),
+          radius_(bounding_radius(scene)), centre_(scene.empty() ? vec3(0.0f) : scene.centre()) {}
 
     void add_area_lights() {
         registry_.view<scene::AreaLight, scene::WorldTransform>().each(
@@ -186,6 +177,11 @@ private:
         return emitter;
     }
 
+    void warn(ecs::Entity entity, const char* what) const {
+        if (warned_of_ != nullptr && warned_of_->insert(entity).second)
+            log_warning("light of entity " + std::to_string(entity.index) + " is ignored: " + what);
+    }
+
     void add(ecs::Entity entity, Emitter emitter, const mat4& matrix) {
         emitter.entity = entity;
         emitter.matrix = matrix;
@@ -200,11 +196,11 @@ private:
         if (area_kind)
             emitter.flux = pi * emitter.area * emitter.radiance;
         if (!usable(emitter.radiance) || !usable(emitter.intensity) || !is_finite(emitter.flux)) {
-            warn_once(entity, "its strength is negative, infinite or not a number");
+            warn(entity, "its strength is negative, infinite or not a number");
             return;
         }
         if (area_kind && emitter.radiance != vec3(0.0f) && !(emitter.area > 0.0f))
-            warn_once(entity, "its emitter has no area");
+            warn(entity, "its emitter has no area");
         emitter.moves = !scene::is_static(registry_, entity);
         if (luminance(emitter.flux) > 0.0f || (keep_dark_.count(entity) && (!area_kind || emitter.area > 0.0f)))
             emitters_.push_back(std::move(emitter));
@@ -213,6 +209,7 @@ private:
     ecs::Registry& registry_;
     const scene::MeshStore& meshes_;
     const std::set<ecs::Entity>& keep_dark_;
+    std::set<ecs::Entity>* warned_of_;
     const scene::SceneSpace space_;
     float radius_; // of the scene's bounding sphere
     vec3 centre_;
@@ -222,8 +219,9 @@ private:
 } // namespace
 
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-                                      const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space) {
-    Collector collector(registry, meshes, scene, keep_dark, space);
+                                      const std::set<ecs::Entity>& keep_dark, const scene::SceneSpace& space,
+                                      std::set<ecs::Entity>* warned_of) {
+    Collector collector(registry, meshes, scene, keep_dark, space, warned_of);
     collector.add_area_lights();
     collector.add_emissive_meshes();
     collector.add_punctual_lights();

@@ -58,11 +58,13 @@ struct EmittedPoint {
 };
 
 // Emitters in ascending order of entity index. `scene`: box around all geometry. Emitters whose flux is zero, not
-// finite or negative, and those of zero area, are left out; all but those of zero flux are logged once as a warning.
-// Emitters of zero flux are kept if they are in `keep_dark`. `space`: of the results and of `scene`; where its unit is
+// finite or negative, and those of zero area, are left out; all but those of zero flux and those in `warned_of` are
+// logged as a warning and put there; without it, nothing is said. Emitters of zero flux are kept if they are in
+// `keep_dark`. `space`: of the results and of `scene`; where its unit is
 // not 1 m, "m" is that unit, and flux and intensity are such that irradiance stays W/m2.
 std::vector<Emitter> collect_emitters(ecs::Registry& registry, const scene::MeshStore& meshes, const Bounds& scene,
-                                      const std::set<ecs::Entity>& keep_dark = {}, const scene::SceneSpace& space = {});
+                                      const std::set<ecs::Entity>& keep_dark = {}, const scene::SceneSpace& space = {},
+                                      std::set<ecs::Entity>* warned_of = nullptr);
 
 // Marks the `most` brightest emitters without extent as punctual, all others as not.
 void find_punctual(std::vector<Emitter>& emitters, std::uint32_t most);

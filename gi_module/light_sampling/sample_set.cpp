@@ -151,9 +151,9 @@ void SampleSet::find_emitters(const SceneView& scene, const SampleRequest& reque
     if (space != emitter_space_) // flux is counted in other units
         last_flux_.clear();
     emitter_space_ = space;
-    emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
+    emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space, &warned_of_);
     if (find_varying(scene.registry))
-        emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space);
+        emitters_ = collect_emitters(scene.registry, scene.meshes, bounds, varying_, space, &warned_of_);
     find_punctual(emitters_, request.punctual_lights);
     dynamic_emitters_.clear();
     if (request.movers_are_static)

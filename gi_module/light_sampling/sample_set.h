@@ -106,6 +106,7 @@ private:
     std::vector<shared::LightRow> rows_;
     std::vector<Emitter> emitters_;         // static
     std::vector<Emitter> dynamic_emitters_; // that move or vary
+    std::set<ecs::Entity> warned_of_;       // lights that are ignored
     std::set<ecs::Entity> varying_;         // do not move, but have changed their flux
     std::map<ecs::Entity, vec3> last_flux_; // of those that do not move
     // What dynamic samples come from; depends on the updates so far.

@@ -11,37 +11,44 @@ namespace {
 namespace fs = std::filesystem;
 using tests::DrivenEditor;
 
+// Each edit's choices are of its own, so that a choice that was not there leaves the others as they are.
 class RandomArtist {
 public:
-    RandomArtist(DrivenEditor& editor, std::uint32_t seed) : editor_(editor), random_(seed) {}
+    RandomArtist(DrivenEditor& editor, std::uint32_t seed) : editor_(editor), seed_(seed) {}
 
     void edit() {
+        std::seed_seq sequence{seed_, count_++};
+        random_.seed(sequence);
         switch (random_() % 9) {
         case 0:
-            return menu("Add", "Add/");
+            return menu("Add");
         case 1:
-            select();
-            return editor_.key("ctrl+d");
+            return select_and_press("ctrl+d");
         case 2:
-            select();
-            return editor_.key("ctrl+g");
+            return select_and_press("ctrl+g");
         case 3:
-            select();
-            return editor_.key(random_() % 3 == 0 ? "Delete" : "ctrl+d");
+            return select_and_press(random_() % 3 == 0 ? "Delete" : "ctrl+d");
         case 4:
-            return editor_.key(random_() % 2 == 0 ? "ctrl+z" : "ctrl+shift+z");
+            return press(random_() % 2 == 0 ? "ctrl+z" : "ctrl+shift+z");
         case 5:
-            return editor_.key("ctrl+space"); // plays, or ends it
+            return press("ctrl+space"); // plays, or ends it
         case 6:
-            select();
-            static_cast<void>(editor_.drag("viewport/gizmo y", 0, int(random_() % 80) - 40));
-            return;
+            return move();
         default:
             return number();
         }
     }
 
 private:
+    void note(const std::string& what) const { std::printf("edit %u: %s\n", count_, what.c_str()); }
+    void press(const std::string& keys) {
+        note(keys);
+        editor_.key(keys);
+    }
+    void select_and_press(const std::string& keys) {
+        select();
+        press(keys);
+    }
     // One of the widgets whose name begins so.
     std::string some(const std::string& begin, const std::string& end = "") {
         std::vector<std::string> names;
@@ -56,27 +63,46 @@ private:
                                           name.find("/eye ") != std::string::npos || name.ends_with("/search"));
              ++tries)
             name = some("hierarchy/");
-        if (!name.empty())
-            static_cast<void>(editor_.click(name));
+        if (name.empty())
+            return;
+        note("select " + name);
+        static_cast<void>(editor_.click(name));
     }
-    void menu(const std::string& group, const std::string& begin) {
+    void menu(const std::string& group) {
         if (!editor_.click("menu/" + group))
             return;
-        std::this_thread::sleep_for(std::chrono::milliseconds(150));
-        const std::string entry = some("menu/" + begin);
-        static_cast<void>(entry.empty() ? false : editor_.click(entry));
-        editor_.key("Escape");
+        std::string entry;
+        EXPECT_TRUE(DrivenEditor::wait_until([&] {
+            entry = some("menu/" + group + "/");
+            return !entry.empty();
+        })) << "the menu does not fall";
+        note("choose " + entry);
+        EXPECT_TRUE(entry.empty() || editor_.click(entry));
+        EXPECT_TRUE(DrivenEditor::wait_until([&] { return some("menu/" + group + "/").empty(); }))
+            << "the menu stays open after " << entry;
+    }
+    void move() {
+        select();
+        const int way = int(random_() % 80) - 40;
+        if (!editor_.find("viewport/gizmo y"))
+            return;
+        note("move by " + std::to_string(way));
+        static_cast<void>(editor_.drag("viewport/gizmo y", 0, way));
     }
     void number() {
         if (random_() % 3 == 0)
             select();
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        DrivenEditor::let_events_arrive();
         const std::string box = some("inspector/", random_() % 2 == 0 ? "/x" : "/value");
         static const char* const values[] = {"0.5", "1", "0.25", "2", "0", "nan", "1e9", "-0.5"};
-        if (!box.empty() && !box.ends_with("name"))
-            static_cast<void>(editor_.enter(box, values[random_() % std::size(values)]));
+        const char* const value = values[random_() % std::size(values)];
+        if (box.empty() || box.ends_with("name"))
+            return;
+        note(box + " = " + value);
+        static_cast<void>(editor_.enter(box, value));
     }
     DrivenEditor& editor_;
+    std::uint32_t seed_, count_ = 0;
     std::mt19937 random_;
 };
 

@@ -1,8 +1,10 @@
 // Written files: old or new and never broken, whatever the name leads to and whenever the writer is killed.
 #include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
 #include "engine/core/random.h"
+#include "engine/io/image.h"
 #include "tests/support/gltf_files.h"
 #include "tests/support/test_size.h"
 
@@ -307,6 +309,21 @@ TEST_F(RobustFiles, KilledWritersLeaveOldOrNew) {
     EXPECT_GT(seen.size(), 3u);
     ASSERT_TRUE(write_file(at("a"), "end"));
     EXPECT_EQ(names(), std::set<std::string>{"a"}) << "what killed writers left";
+}
+
+// Before their pixels take any memory; headers are small, whatever they claim.
+TEST(RobustPictures, CountAgainstTheLimit) {
+    constexpr std::uint32_t side = 4096;
+    const std::string png =
+        io::encode_png(side, side, std::vector<std::uint8_t>(std::size_t(side) * side * 4, 77)).value();
+    set_memory_limit(memory_in_use() + (std::uint64_t(32) << 20));
+    const auto refused = io::decode_bytes(png);
+    set_memory_limit(0);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::memory);
+    for (const char* word : {"4096x4096", "128.0 MiB", "pictures", "--memory"}) // four channels, and as RGBA
+        EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+    EXPECT_EQ(io::decode_bytes(png).value().pixels.size(), std::size_t(side) * side * 4);
 }
 
 } // namespace

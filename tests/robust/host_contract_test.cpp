@@ -1,5 +1,6 @@
 // Every call of sunfleck/host.h, in any order and with any value: right, or an error that names what was wrong and
 // leaves all as it was.
+#include "engine/core/log.h"
 #include "tests/support/host_program.h"
 
 #include <thread>
@@ -237,6 +238,30 @@ TEST_F(RobustHost, ExceptionsOfCallbacksEndTheUpdateAlone) {
     const auto fresh = make_context(program);
     describe_room(*fresh);
     EXPECT_EQ(picture_of_room(program, *fresh), picture);
+}
+
+// The second context has the same to say as the first, of a light by the same number.
+TEST_F(RobustHost, EveryContextWarnsItsOwnHostOnce) {
+    std::vector<std::string> said, to_all;
+    set_log_sink([&](sunfleck::LogLevel, std::string_view text) { to_all.emplace_back(text); });
+    for (int i = 0; i < 2; ++i) {
+        HostProgram program(device());
+        const auto context = make_context(program, [&](host::LogLevel level, std::string_view text) {
+            EXPECT_EQ(level, host::LogLevel::warning) << text;
+            said.emplace_back(text);
+        });
+        describe_room(*context);
+        host::InstanceData lamp{1, box_matrix(vec3(0, 2, 0), vec3(1e-12f))};
+        lamp.emission = {9, 9, 9};
+        ASSERT_TRUE(context->add_instance(lamp));
+        for (int frame = 0; frame < 3; ++frame)
+            ASSERT_TRUE(program.frame(*context, 0));
+    }
+    set_log_sink({});
+    ASSERT_EQ(said.size(), 2u);
+    EXPECT_NE(said[0].find("no area"), std::string::npos) << said[0];
+    EXPECT_EQ(said[0], said[1]);
+    EXPECT_TRUE(to_all.empty()) << to_all.front();
 }
 
 } // namespace

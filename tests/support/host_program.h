@@ -297,8 +297,8 @@ struct WaitThenDestroy {
 };
 using OwnedContext = std::unique_ptr<host::Context, WaitThenDestroy>;
 
-inline OwnedContext make_context(const HostProgram& program) {
-    auto context = host::Context::create(program.handles());
+inline OwnedContext make_context(const HostProgram& program, host::LogSink log = {}) {
+    auto context = host::Context::create(program.handles(), std::move(log));
     EXPECT_TRUE(context) << context.error().message;
     return {std::move(context).value().release(), WaitThenDestroy{&program.device()}};
 }

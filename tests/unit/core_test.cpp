@@ -170,6 +170,16 @@ TEST(MemoryLimit, CountsWhatIsAskedForBesideWhatIsThere) {
     EXPECT_EQ(memory_limit(), by_default);
 }
 
+// A level has hundreds of textures, none of them large.
+TEST(MemoryLimit, SmallPiecesAreLookedAtTogether) {
+    set_memory_limit(1); // less than anything has
+    int let_through = 0;
+    while (let_through < 100 && check_memory(std::uint64_t(8) << 20, "a picture", "their number"))
+        ++let_through;
+    set_memory_limit(0);
+    EXPECT_LT(let_through, 8) << "pieces of 8 MiB, looked at each 64";
+}
+
 // Files as Linux has them: a group of 1,000 bytes in one of 700, of which 100 and 600 are taken and 250 can be dropped.
 TEST(MemoryLimit, FollowsControlGroupsAndThoseTheyLieIn) {
     namespace fs = std::filesystem;
