@@ -1,15 +1,18 @@
 #include "gi_module/light_sampling/reflective_shadow_map.h"
 
+#include "engine/core/hash.h"
 #include "engine/core/jobs.h"
 #include "gi_module/light_sampling/light_sampler.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace sunfleck::gi {
 namespace {
 
-constexpr float least_cosine = 0.05f; // of incidence, for the area that a texel shows
+constexpr std::uint32_t least_side = 4, greatest_side = 1024; // texels of a map
+constexpr float least_cosine = 0.05f;                         // of incidence, for the area that a texel shows
 
 // Of the R2 sequence (M. Roberts): places on area lights and the sky's disc, which texels of a map share evenly.
 vec2 spread_place(std::uint32_t index) {
@@ -111,6 +114,45 @@ ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t s
                 map.texels[y * side + x] = tracer.texel(x, std::uint32_t(y));
     });
     return map;
+}
+
+std::uint64_t emitter_hash(const Emitter& emitter) {
+    std::uint64_t hash = hash_start;
+    const auto add = [&](const auto& value) { hash = hash_bytes(hash, &value, sizeof value); };
+    add(emitter.matrix);
+    add(emitter.flux);
+    add(emitter.width);
+    add(emitter.height);
+    add(emitter.radius);
+    add(emitter.area);
+    add(emitter.inner_cosine);
+    add(emitter.outer_cosine);
+    add(emitter.scene_radius);
+    add(emitter.scene_centre);
+    add(emitter.map.rotation);
+    return hash_bytes(hash, emitter.corners.data(), emitter.corners.size() * sizeof(vec3));
+}
+
+std::uint32_t reflective_map_side(std::uint32_t rays, std::size_t emitters) {
+    const double texels = double(rays) / double(std::max<std::size_t>(emitters, 1));
+    return std::clamp(std::bit_floor(std::uint32_t(std::sqrt(texels))), least_side, greatest_side);
+}
+
+vec3 reflected_flux(const ReflectiveTexel& texel, bool glossy, bool gloss_apart) {
+    if (glossy)
+        return texel.glossy;
+    return gloss_apart ? texel.diffuse : texel.diffuse + texel.glossy;
+}
+
+PixelLight pixel_light_of(const ReflectiveTexel& texel, float texels, bool glossy, bool gloss_apart) {
+    PixelLight light;
+    light.position = texel.position;
+    light.normal = texel.normal;
+    light.axis = glossy ? texel.mirror : texel.normal;
+    light.exponent = glossy ? texel.exponent : 1.0f;
+    light.flux = texels * reflected_flux(texel, glossy, gloss_apart);
+    light.area = texels * texel.area;
+    return light;
 }
 
 } // namespace sunfleck::gi

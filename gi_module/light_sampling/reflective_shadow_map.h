@@ -48,4 +48,16 @@ struct MapSurfaces {
 ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t side, const MapSurfaces& surfaces,
                                          const raytrace::RayScene& rays, const ecs::Registry& registry);
 
+// Of everything about an emitter that its map depends on.
+std::uint64_t emitter_hash(const Emitter& emitter);
+
+// Of the maps of so many emitters, of about `rays` texels together.
+std::uint32_t reflective_map_side(std::uint32_t rays, std::size_t emitters);
+
+// Of a texel, in a lobe or diffusely; `gloss_apart`: gloss is not diffuse.
+vec3 reflected_flux(const ReflectiveTexel& texel, bool glossy, bool gloss_apart);
+
+// The pixel light of a texel, for whoever lights by them. `texels`: it stands for so many.
+PixelLight pixel_light_of(const ReflectiveTexel& texel, float texels, bool glossy, bool gloss_apart);
+
 } // namespace sunfleck::gi

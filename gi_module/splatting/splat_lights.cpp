@@ -4,51 +4,19 @@
 #include "engine/core/random.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::uint32_t least_side = 4, greatest_side = 1024; // texels of a map
-constexpr float least_cosine_across = 0.5f;                   // between normals of neighbours on one surface
+constexpr float least_cosine_across = 0.5f; // between normals of neighbours on one surface
 constexpr std::uint32_t division_seed = 0x5b1a8;
 constexpr float newest_share = 0.25f; // of contributions, in the mean over frames
 constexpr float unseen_share = 0.01f; // of all importance, for light that nobody sees
 
-// Of everything about an emitter that its map depends on.
-std::uint64_t hash_of(const Emitter& emitter) {
-    std::uint64_t hash = hash_start;
-    const auto add = [&](const auto& value) { hash = hash_bytes(hash, &value, sizeof value); };
-    add(emitter.matrix);
-    add(emitter.flux);
-    add(emitter.width);
-    add(emitter.height);
-    add(emitter.radius);
-    add(emitter.area);
-    add(emitter.inner_cosine);
-    add(emitter.outer_cosine);
-    add(emitter.scene_radius);
-    add(emitter.scene_centre);
-    add(emitter.map.rotation);
-    return hash_bytes(hash, emitter.corners.data(), emitter.corners.size() * sizeof(vec3));
-}
-
-std::uint32_t side_of_maps(std::uint32_t rays, std::size_t emitters) {
-    const double texels = double(rays) / double(std::max<std::size_t>(emitters, 1));
-    return std::clamp(std::bit_floor(std::uint32_t(std::sqrt(texels))), least_side, greatest_side);
-}
-
 bool is_bright(vec3 flux) {
     return is_finite(flux) && luminance(flux) > 0.0f;
-}
-
-// Of a texel, in a lobe or diffusely; `gloss_apart`: gloss is not diffuse.
-vec3 reflected_flux(const ReflectiveTexel& texel, bool glossy, bool gloss_apart) {
-    if (glossy)
-        return texel.glossy;
-    return gloss_apart ? texel.diffuse : texel.diffuse + texel.glossy;
 }
 
 // From the texels beside it. `texels`: along a side of the square of texels that the light stands for.
@@ -90,7 +58,7 @@ void SplatLights::update(const SceneView& scene, const SampleSet& samples, const
     const bool follows_fixed = request.sampled.fixed || (request.sampled.dynamic && movers);
     const std::size_t emitters = samples.dynamic_emitters().size() * (request.sampled.dynamic ? 1 : 0) +
                                  samples.fixed_emitters().size() * (follows_fixed ? 1 : 0);
-    const std::uint32_t side = side_of_maps(request.settings.splat_rays, emitters);
+    const std::uint32_t side = reflective_map_side(request.settings.splat_rays, emitters);
     if (request.sampled.dynamic)
         for (const Emitter& emitter : samples.dynamic_emitters())
             trace(emitter, true, side, scene, request);
@@ -123,7 +91,7 @@ void SplatLights::trace(const Emitter& emitter, bool dynamic, std::uint32_t side
         return;
     Map& map = maps_[{emitter.entity.bits(), int(emitter.kind)}];
     map.used = true;
-    const std::uint64_t hash = hash_of(emitter);
+    const std::uint64_t hash = emitter_hash(emitter);
     map.is_new = map.side != side || map.emitter_hash != hash || map.geometry != scene.rays.generation();
     if (map.is_new) {
         map.texels = trace_reflective_map(emitter, side, {}, scene.rays, scene.registry);
@@ -271,13 +239,7 @@ void SplatLights::place(const Source& source, const SplatRequest& request) {
         if (source.importance.values()[index] <= 0.0f)
             continue;
         const ReflectiveTexel& texel = source.map->texels.texels[index];
-        PixelLight light;
-        light.position = texel.position;
-        light.normal = texel.normal;
-        light.axis = source.glossy ? texel.mirror : texel.normal;
-        light.exponent = source.glossy ? texel.exponent : 1.0f;
-        light.flux = scale * point.weight * reflected_flux(texel, source.glossy, settings.glossy_splats > 0);
-        light.area = scale * point.weight * texel.area;
+        PixelLight light = pixel_light_of(texel, scale * point.weight, source.glossy, settings.glossy_splats > 0);
         if (source.glossy && settings.splat_footprints)
             set_footprint(source.map->texels, index, std::sqrt(scale * point.weight), light);
         light.dynamic = source.dynamic;

@@ -8,10 +8,6 @@
 
 namespace sunfleck::gi {
 
-// Times what a pixel light's surface alone could give at most, which bounds its irradiance. In the mean over all places
-// that a light could have, a bound of once that takes more from corners (arena, 1,024 lights: 0.3 % of the light).
-inline constexpr float splat_clamp_scale = 2.0f;
-
 class SplattingTechnique final : public Technique {
 public:
     static Result<std::unique_ptr<Technique>> create(gpu::Device& device, gpu::PipelineStore& pipelines);

@@ -6,6 +6,10 @@
 
 namespace sunfleck::gi {
 
+// Times what a pixel light's surface alone could give at most, which bounds its irradiance. In the mean over all places
+// that a light could have, a bound of once that takes more from corners (arena, 1,024 lights: 0.3 % of the light).
+inline constexpr float splat_clamp_scale = 2.0f;
+
 struct PixelLight {
     vec3 position{0.0f};
     vec3 normal{0.0f, 1.0f, 0.0f}; // unit, on the side that the light comes from

@@ -65,6 +65,7 @@ const std::vector<Course>& courses() {
         {assets::make_four_pillars, {{"count_passes", "on"}, {"map_budget", "1"}}},
         {assets::make_arena, {{"movers", "prt"}, {"lights", "90"}}},
         {assets::make_arena, {{"splat_lights", "moving"}}},
+        {assets::make_arena, {{"gather_lights", "moving"}}},
         {assets::make_near_occluder,
          {{"map_budget", "0"}, {"mover_share", "0.2"}}}, // a knot moves in the light of a spot
         // With other maps, all light is baked again; after a level's first frame, that is work of several.

@@ -1,0 +1,198 @@
+// Light gathered from reflective shadow maps: with each texel it is the sum of all pixel lights, with some of them it
+// is that in the mean over seeds.
+#include "gi_module/rsm_gather/rsm_gather_technique.h"
+#include "tests/support/gpu_world.h"
+#include "tests/support/techniques.h"
+#include "tests/support/test_size.h"
+
+#include <cmath>
+#include <limits>
+
+namespace sunfleck::tests {
+namespace {
+
+class RsmGather : public GpuTest {
+protected:
+    // Nothing but the first bounce.
+    static gi::Settings alone(std::uint32_t samples, std::uint32_t rays) {
+        gi::Settings settings;
+        settings.lights = 4;
+        settings.low_resolution = 1;
+        settings.bounces = 1;
+        settings.with("direct", "none").with("punctual", "none").with("gather_lights", "all");
+        return settings.with("gather_samples", std::to_string(samples)).with("gather_rays", std::to_string(rays));
+    }
+    static const gi::GatherMaps& maps(GpuWorld& world) {
+        return dynamic_cast<gi::RsmGatherTechnique*>(world.renderer->lighting().technique("rsm_gather"))->maps();
+    }
+};
+
+// By a program of its own, from rays through the pixels' centres. Pixels whose centre lies on an edge may show another
+// surface.
+std::vector<vec3> summed_light(GpuWorld& world, const std::vector<gi::PixelLight>& lights, float clamp_scale) {
+    const viewer::FrameRequest& request = world.request;
+    const shared::CameraRow camera =
+        scene::make_camera_row(world.renderer->space().view(request.camera), request.width, request.height);
+    std::vector<vec3> sums(std::size_t(request.width) * request.height, vec3(0.0f));
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const vec2 centre(float(i % request.width) + 0.5f, float(i / request.width) + 0.5f);
+        const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
+        const auto hit = world.renderer->rays().closest_hit(ray);
+        if (!hit)
+            continue;
+        const raytrace::SurfacePoint point = world.renderer->rays().surface(ray, *hit);
+        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
+        for (const gi::PixelLight& light : lights) {
+            const vec3 way = light.position - point.position;
+            const float squared = glm::dot(way, way), arriving = side * glm::dot(point.shading_normal, way);
+            // Softened by 0.6 of the width of a square of its area.
+            const float soft = 0.36f * light.area * 2.0f / clamp_scale, along = -glm::dot(light.normal, way);
+            if (arriving > 0.0f && along > 0.0f && side * glm::dot(point.geometric_normal, way) > 0.0f)
+                sums[i] += light.flux / pi * std::sqrt(along * along + soft) * arriving /
+                           ((squared + soft) * (squared + soft));
+        }
+    }
+    return sums;
+}
+
+double share_of_equal_pixels(const io::Picture& picture, const std::vector<vec3>& expected) {
+    std::size_t equal = 0, all = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (picture.pixels[i].w <= 0.0f)
+            continue;
+        ++all;
+        equal += glm::length(vec3(picture.pixels[i]) - expected[i]) <= 0.003f * glm::length(expected[i]) + 1e-5f;
+    }
+    return double(equal) / double(all);
+}
+
+// Pictures, and fluxes in maps, have 16 bits a channel, 0.1 %.
+TEST_F(RsmGather, WithEveryTexelIsTheSumOfAllPixelLights) {
+    for (const auto make : {assets::make_cornell, assets::make_arena}) {
+        GpuWorld world(make, "view");
+        world.set(alone(65536, 1024));
+        const io::Picture picture = world.picture();
+        const std::vector<gi::PixelLight> lights = maps(world).pixel_lights();
+        ASSERT_GT(lights.size(), 200u);
+        EXPECT_GE(share_of_equal_pixels(picture, summed_light(world, lights, gi::splat_clamp_scale)), 0.99);
+        // Fewer are another picture: the comparison can fail.
+        world.set(alone(64, 1024));
+        EXPECT_LT(share_of_equal_pixels(world.picture(), summed_light(world, lights, gi::splat_clamp_scale)), 0.5);
+    }
+}
+
+// The same as all texels of the same maps as splatted lights.
+TEST_F(RsmGather, WithEveryTexelIsSplattedLight) {
+    if (!has_technique("splatting"))
+        GTEST_SKIP() << "there is no splatting";
+    GpuWorld world(assets::make_cornell, "view");
+    world.set(alone(65536, 1024));
+    const io::Picture gathered = world.picture();
+    gi::Settings splats = alone(1, 16).with("gather_lights", "none").with("splat_lights", "all");
+    splats.with("splats", "1024").with("splat_rays", "1024").with("splat_occlusion", "none");
+    world.set(splats.with("splat_pattern", "fixed").with("splat_importance", "none"));
+    const io::Picture splatted = world.picture();
+    std::vector<vec3> expected;
+    for (const vec4& pixel : splatted.pixels)
+        expected.emplace_back(pixel);
+    EXPECT_GE(share_of_equal_pixels(gathered, expected), 0.995);
+}
+
+struct Mean {
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    void add(double value) { sum += value, squares += value * value, ++count; }
+    double mean() const { return sum / count; }
+    double deviation() const { // of the mean
+        return std::sqrt(std::max(squares / count - mean() * mean(), 0.0) / count);
+    }
+};
+
+// Luminance of the picture's 12 blocks of 16 x 16 pixels.
+std::vector<double> blocks_of(const io::Picture& picture) {
+    std::vector<double> blocks(12, 0.0);
+    for (std::uint32_t y = 0; y < 48; ++y)
+        for (std::uint32_t x = 0; x < 64; ++x)
+            blocks[y / 16 * 4 + x / 16] += double(luminance(vec3(picture.pixels[y * 64 + x]))) / 256.0;
+    return blocks;
+}
+
+TEST_F(RsmGather, EstimatesAreUnbiasedOverSeeds) {
+    GpuWorld world(assets::make_cornell, "view");
+    world.set(alone(65536, 1024));
+    const std::vector<double> expected = blocks_of(world.picture());
+    std::vector<Mean> found(expected.size());
+    for (std::uint32_t seed = 1; seed <= by_size(60u, 400u); ++seed) {
+        gi::Settings settings = alone(64, 1024);
+        settings.seed = seed;
+        world.set(settings);
+        const std::vector<double> blocks = blocks_of(world.picture());
+        for (std::size_t i = 0; i < blocks.size(); ++i)
+            found[i].add(blocks[i]);
+    }
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_LT(found[i].deviation(), 0.03 * expected[i]) << "block " << i << ": too noisy to tell";
+        EXPECT_NEAR(found[i].mean(), expected[i], 4.0 * found[i].deviation() + 0.002 * expected[i]) << "block " << i;
+    }
+}
+
+// Blended from every fourth pixel, and gathered again where that fails.
+TEST_F(RsmGather, LowResolutionStaysNearFull) {
+    GpuWorld world(assets::make_arena, "view");
+    world.request.width = 160;
+    world.request.height = 90;
+    gi::Settings settings = alone(256, 4096);
+    world.set(settings);
+    const io::Picture full = world.picture();
+    settings.low_resolution = 4;
+    world.set(settings);
+    const io::Picture low = world.picture();
+    double difference = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < full.pixels.size(); ++i) {
+        difference += double(luminance(glm::abs(vec3(full.pixels[i]) - vec3(low.pixels[i]))));
+        all += double(luminance(vec3(full.pixels[i])));
+    }
+    EXPECT_LT(difference, 0.05 * all);
+    EXPECT_GT(difference, 0.0);
+}
+
+// Fixed and dynamic light alone, with the samples of both, add up to both.
+TEST_F(RsmGather, PartsAddUp) {
+    GpuWorld world(assets::make_arena, "view");
+    const auto picture = [&](const char* plan) {
+        world.set(alone(200, 4096).with("sampled_light", "all").with("plan", plan));
+        return world.picture();
+    };
+    const io::Picture both = picture(""), fixed = picture("first_bounce.dynamic=none"),
+                      dynamic = picture("first_bounce.fixed=none");
+    double lit[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < both.pixels.size(); ++i) {
+        const vec3 sum = vec3(fixed.pixels[i]) + vec3(dynamic.pixels[i]);
+        EXPECT_LE(glm::length(sum - vec3(both.pixels[i])), 0.003f * glm::length(sum) + 1e-5f) << "pixel " << i;
+        lit[0] += double(luminance(vec3(fixed.pixels[i])));
+        lit[1] += double(luminance(vec3(dynamic.pixels[i])));
+    }
+    EXPECT_GT(lit[0], 0.0);
+    EXPECT_GT(lit[1], 0.0);
+}
+
+TEST_F(RsmGather, DefectiveEmittersAreDark) {
+    for (const float bad : {0.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        GpuWorld world;
+        assets::SceneBuilder scene(world.renderer->registry(), world.renderer->meshes());
+        const vec3 albedo(0.6f);
+        scene.room(vec3(-2), vec3(2), albedo, albedo, {albedo, albedo, albedo, albedo});
+        scene.point_light("bad", vec3(0.5f), vec3(bad));
+        scene.point_light("outside", vec3(0.0f, 2.5f, 0.0f), vec3(5.0f)); // sees nothing
+        scene.camera("view", vec3(1.5f, 0.0f, 0.0f), vec3(0.0f, 0.0f, -1.0f), 70.0f);
+        world.finish("view");
+        world.set(alone(64, 4096));
+        for (const vec4& pixel : world.picture().pixels) {
+            ASSERT_TRUE(is_finite(vec3(pixel)));
+            EXPECT_LE(luminance(vec3(pixel)), 0.0f);
+        }
+    }
+}
+
+} // namespace
+} // namespace sunfleck::tests
