@@ -96,7 +96,11 @@ Status SplattingTechnique::update(const SceneView& scene, Services& services, Ce
     const float least = request.settings.splat_cutoff * lights_.mean_irradiance();
     const float clamp_scale = splat_clamp_scale * settings.clamp_scale;
     rows_.reserve(lights_.lights().size());
-    for (const PixelLight& light : lights_.lights()) {
+    const bool ambient = settings.shadows && request.settings.splat_occlusion == SplatOcclusion::ambient;
+    for (PixelLight light : lights_.lights()) {
+        if (ambient) // before its bound is made, which is what the paper gains by it (table 3)
+            light.flux *= 1.0f - ambient_occlusion(make_pixel_light_row(light, 0, clamp_scale, 0.0f),
+                                                   request.settings.splat_ambient_reach, scene.rays);
         rows_.push_back(make_pixel_light_row(light, std::uint32_t(rows_.size()), clamp_scale, least));
         rows_.back().row.intensity_slot *= vec4(vec3(services.input.indirect_scale), 1.0f);
     }
@@ -107,10 +111,6 @@ Status SplattingTechnique::update(const SceneView& scene, Services& services, Ce
 void SplattingTechnique::find_occlusion(const SceneView& scene, const SplattingSettings& settings, bool shadows) {
     if (!shadows || settings.splat_occlusion != SplatOcclusion::maps)
         maps_.clear();
-    if (shadows && settings.splat_occlusion == SplatOcclusion::ambient)
-        for (shared::PixelLightRow& row : rows_)
-            row.row.intensity_slot *=
-                vec4(vec3(1.0f - ambient_occlusion(row, settings.splat_ambient_reach, scene.rays)), 1.0f);
     if (shadows && settings.splat_occlusion == SplatOcclusion::maps)
         maps_.update(rows_, side_of_pixel_light_maps(settings.splat_map_side, rows_.size()), scene.rays,
                      moving_spheres(scene.changes));

@@ -135,6 +135,23 @@ TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllPixelLights) {
     EXPECT_LT(removed, 0.3 * all);
 }
 
+// Lights that are dimmed reach less far.
+TEST_F(SplatTechnique, AmbientOcclusionSavesEvaluations) {
+    GpuWorld world(assets::make_cornell, "view");
+    world.request.lighting_view = "overdraw";
+    const auto evaluations = [&](const char* occlusion) {
+        world.set(alone(300).with("splat_cutoff", "0.02").with("splat_occlusion", occlusion));
+        double sum = 0.0;
+        for (const vec4& pixel : world.picture().pixels)
+            sum += double(pixel.x);
+        return sum;
+    };
+    const double all = evaluations("none"), dimmed = evaluations("ambient");
+    std::printf("evaluations with ambient occlusion: %.3f of those without\n", dimmed / all);
+    EXPECT_LT(dimmed, 0.9 * all);
+    EXPECT_GT(dimmed, 0.1 * all);
+}
+
 // A ring of polished metal: lobes of thousands, and a curved surface whose lights shine past each other.
 TEST_F(SplatTechnique, EveryPixelGetsTheSumOfAllLobes) {
     GpuWorld world(assets::make_ring, "view");
