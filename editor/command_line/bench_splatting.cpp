@@ -12,7 +12,7 @@ struct SplatPart {
 constexpr SplatPart splat_parts[] = {
     {"warp", splat_errors},   {"flicker", splat_flicker}, {"occlusion", splat_occlusion}, {"cutoff", splat_cutoff},
     {"lamps", splat_lamps},   {"system", splat_system},   {"caustics", splat_caustics},   {"table1", splat_table1},
-    {"table2", splat_table2}, {"table3", splat_table3},
+    {"table2", splat_table2}, {"table3", splat_table3},   {"gather", splat_gather},       {"bounds", splat_bounds},
 };
 
 } // namespace
@@ -55,6 +55,26 @@ Result<io::Picture> splat_picture(Bench& bench, std::uint64_t step, float orbit)
     bench.request.camera = bench.start.orbited(glm::radians(orbit));
     SUNFLECK_TRY(bench.renderer->render_and_wait(bench.request));
     return bench.renderer->read_back();
+}
+
+double passes_ms(const Measurement& measurement, std::initializer_list<std::string_view> names) {
+    std::vector<double> values;
+    for (const auto& frame : measurement.gpu_ms) {
+        double sum = 0.0;
+        for (const auto& [pass, time] : frame)
+            for (const std::string_view name : names)
+                sum += pass.starts_with(name) ? time : 0.0;
+        values.push_back(sum);
+    }
+    return median(values);
+}
+
+double stage_ms(const Measurement& measurement, const std::string& stage) {
+    std::vector<double> values;
+    for (const auto& frame : measurement.cpu_ms)
+        if (const auto found = frame.find(stage); found != frame.end())
+            values.push_back(found->second);
+    return values.empty() ? 0.0 : median(values);
 }
 
 Result<BenchTable> bench_splatting(const BenchOptions& options) {

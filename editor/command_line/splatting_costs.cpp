@@ -10,27 +10,6 @@
 namespace sunfleck::command_line {
 namespace {
 
-// Medians of a measurement, ms: of GPU passes by the beginning of their names, and of stages of the CPU.
-double passes_ms(const Measurement& measurement, std::initializer_list<std::string_view> names) {
-    std::vector<double> values;
-    for (const auto& frame : measurement.gpu_ms) {
-        double sum = 0.0;
-        for (const auto& [pass, time] : frame)
-            for (const std::string_view name : names)
-                sum += pass.starts_with(name) ? time : 0.0;
-        values.push_back(sum);
-    }
-    return median(values);
-}
-
-double stage_ms(const Measurement& measurement, const std::string& stage) {
-    std::vector<double> values;
-    for (const auto& frame : measurement.cpu_ms)
-        if (const auto found = frame.find(stage); found != frame.end())
-            values.push_back(found->second);
-    return values.empty() ? 0.0 : median(values);
-}
-
 // The whole of the technique: maps, choice of lights, their shadows, light, reconstruction.
 double splatting_ms(const Measurement& measurement) {
     return stage_ms(measurement, "pixel lights") +
@@ -193,7 +172,7 @@ Status splat_table3(SplatExperiment& experiment) {
         for (const int ambient : {0, 1}) {
             gi::Settings settings = splats_alone(256, ambient ? "ambient" : "none").with("splat_cutoff", "0.01");
             settings.with("splat_pattern", "fixed").with("splat_importance", "none");
-            settings.low_resolution = size == 0 ? 1 : 4;
+            settings.low_resolution = size == 0 ? 1 : 2;
             SUNFLECK_ASSIGN(const Measurement m, bench->measure(settings, 2, 2 * experiment.options.repeat, true));
             experiment.row("arena",
                            std::string(size == 0 ? "light at 512^2" : "light at 256^2") +

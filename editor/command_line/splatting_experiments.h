@@ -32,12 +32,20 @@ gi::Settings splat_limit(const char* occlusion);
 // The irradiance at a step of the scene. `orbit`: degrees that the camera has turned.
 Result<io::Picture> splat_picture(Bench& bench, std::uint64_t step, float orbit = 0.0f);
 
+// Medians of a measurement, ms: of GPU passes by the beginning of their names, and of stages of the CPU.
+double passes_ms(const Measurement& measurement, std::initializer_list<std::string_view> names);
+double stage_ms(const Measurement& measurement, const std::string& stage);
+
 // E of light by warping, of slope, by number of lights; F and E with moving lamp or camera.
 Status splat_errors(SplatExperiment& experiment);
 Status splat_flicker(SplatExperiment& experiment);
 // Shadows of pixel lights: truth error and cost; the threshold: evaluations and error; the paper's tables.
 Status splat_occlusion(SplatExperiment& experiment);
 Status splat_cutoff(SplatExperiment& experiment);
+// Time at equal error, beside light that is gathered from reflective shadow maps, and without lists of tiles.
+Status splat_gather(SplatExperiment& experiment);
+// Evaluations within the bounds of pixel lights, beside shapes on the screen.
+Status splat_bounds(SplatExperiment& experiment);
 // 64 lamps that move, on one budget; beside light samples, all bounces; a polished ring's caustic.
 Status splat_lamps(SplatExperiment& experiment);
 Status splat_system(SplatExperiment& experiment);

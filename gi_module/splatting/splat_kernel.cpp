@@ -77,7 +77,8 @@ Status SplatKernel::add_passes(const PixelStage& stage, std::span<const shared::
         std::memcpy(rows.data, batch.data(), batch.size_bytes());
         const shared::SplattingConstants constants{stage.constants.width, stage.constants.height,
                                                    stage.constants.group_count, std::uint32_t(batch.size()), map_side_};
-        SUNFLECK_TRY(add_lists(stage, rows, constants));
+        if (lists_)
+            SUNFLECK_TRY(add_lists(stage, rows, constants));
         SUNFLECK_TRY(
             add_light(stage, rows, constants, is_glossy(batch.front()), writes_picture && first == lights.size()));
     }
@@ -114,7 +115,8 @@ Status SplatKernel::add_light(const PixelStage& stage, const gpu::UploadSlice& r
                                   map_side_ > 0 ? shared::maps_texel_buffer : shared::maps_none,
                                   filtered_,
                                   glossy,
-                                  show_};
+                                  show_,
+                                  lists_};
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
     gpu::ComputePass pass(stage.graph, stage.repair ? "repair splat light" : "splat light", *kernel);
     pass.uniform(stage.camera)

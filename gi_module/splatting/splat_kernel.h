@@ -19,6 +19,8 @@ public:
     // before add_passes.
     Status set_maps(gpu::FrameGraph& graph, std::span<const std::uint16_t> texels, std::uint32_t side, bool filtered,
                     gpu::FrameResources& resources);
+    // Whether groups of pixels have lists of lights, from the next add_passes on.
+    void set_lists(bool lists) { lists_ = lists; }
     // show_... of splatting_shared.h, from the next add_passes on.
     void set_show(std::uint32_t show) { show_ = show; }
     // For each stage of a frame. The rows last as long as the call.
@@ -42,7 +44,7 @@ private:
     gpu::Buffer masks_;
     gpu::UploadedBuffer maps_;
     std::uint32_t map_side_ = 0; // 0: there are none
-    bool filtered_ = false;
+    bool filtered_ = false, lists_ = true;
     std::uint32_t show_ = shared::show_no_splats;
 };
 

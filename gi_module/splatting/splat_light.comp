@@ -15,6 +15,7 @@ layout(constant_id = 3) const uint maps = 0;     // maps_none or maps_texel_buff
 layout(constant_id = 4) const uint filtered = 0;
 layout(constant_id = 5) const uint glossy = 0; // the batch's lights have lobes
 layout(constant_id = 6) const uint show = show_no_splats;
+layout(constant_id = 7) const uint lists = 1; // 0: all lights of the batch reach all pixels
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -85,11 +86,19 @@ vec3 shown(vec3 total) {
     return max(total, vec3(shows_places(show) ? 0.04 : 0.0));
 }
 
+// Which of 32 lights of the batch to evaluate.
+uint lights_of(uint group, uint word) {
+    if (lists != 0)
+        return masks[group * splat_mask_words + word];
+    const uint left = constants.light_count - min(word * 32u, constants.light_count);
+    return left >= 32u ? 0xffffffffu : (1u << left) - 1u;
+}
+
 void main() {
     const uint group = gl_WorkGroupID.x;
     uint any = 0u;
     for (uint word = 0; word < splat_mask_words; ++word)
-        any |= masks[group * splat_mask_words + word];
+        any |= lights_of(group, word);
     if (to_image == 0 && any == 0u)
         return; // nothing to add
     Pixel surface[pixels_per_invocation];
@@ -107,7 +116,7 @@ void main() {
         sum[k] = vec3(0.0);
     }
     for (uint word = 0; word < splat_mask_words; ++word) {
-        uint mask = masks[group * splat_mask_words + word];
+        uint mask = lights_of(group, word);
         while (mask != 0u) {
             const PixelLightRow light = lights[word * 32u + uint(findLSB(mask))];
             mask &= mask - 1u;

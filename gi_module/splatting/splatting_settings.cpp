@@ -38,6 +38,9 @@ const TypeDescription& SplattingSettings::description() {
          SUNFLECK_FIELD(S, splat_cutoff, "", 0, 1,
                         "A pixel light ends where its irradiance falls below this share of the mean irradiance of all "
                         "pixel lights together on the scene's surface; 0: nowhere"),
+         SUNFLECK_FIELD(S, splat_lists, "", 0, 1,
+                        "Each group of pixels has a list of the pixel lights that may reach it; off: each pixel gets "
+                        "the light of all, for comparison"),
          SUNFLECK_CHOICE(S, splat_occlusion,
                          "What blocks the light of pixel lights: nothing; what is near them, as a factor (ambient "
                          "occlusion); or all that a shadow map of each shows, movers included",

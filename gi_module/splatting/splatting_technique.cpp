@@ -119,6 +119,7 @@ void SplattingTechnique::find_occlusion(const SceneView& scene, const SplattingS
 Status SplattingTechnique::add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) {
     target.bytes_per_group = std::max(target.bytes_per_group, SplatKernel::bytes_per_group);
     kernel_->set_show(target.view != nullptr ? target.view->code : shared::show_no_splats);
+    kernel_->set_lists(services.settings.of<SplattingSettings>().splat_lists);
     view_rows_.clear();
     if (target.view != nullptr &&
         (target.view->code == shared::show_map_flux || target.view->code == shared::show_importance))

@@ -1,0 +1,131 @@
+// Splatted light beside gathered light, at equal error: pixels that look up texels of reflective shadow maps (C.
+// Dachsbacher and M. Stamminger, "Reflective Shadow Maps", I3D 2005), and a gather of the splatted lights by all
+// pixels.
+#include "editor/command_line/metrics.h"
+#include "editor/command_line/splatting_experiments.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+namespace sunfleck::command_line {
+namespace {
+
+constexpr const char* gather_rays = "16384";
+constexpr std::uint32_t gather_warmup = 2, frames_a_turn = 4;
+
+struct Gather {
+    const char* name;
+    bool splatted;
+    bool lists; // of pixel lights for groups of pixels
+    std::uint32_t low_resolution;
+    std::array<std::uint32_t, 5> counts;
+};
+// The paper's picture has 512 x 512 pixels and a grid of 64 x 64.
+constexpr Gather gathers[] = {{"splatted, tile lists", true, true, 4, {32, 64, 128, 256, 512}},
+                              {"plain gather of the same lights", true, false, 4, {32, 64, 128, 256, 512}},
+                              {"rsm_gather, every 4th pixel", false, false, 4, {64, 256, 1024, 4096, 16384}},
+                              {"rsm_gather, every 8th pixel", false, false, 8, {64, 256, 1024, 4096, 16384}},
+                              {"rsm_gather, every pixel", false, false, 1, {16, 64, 256, 512, 1024}}};
+
+gi::Settings gather_settings(const Gather& gather, std::uint32_t count, std::uint32_t seed) {
+    gi::Settings settings = splats_alone(count, "none");
+    settings.seed = seed;
+    settings.low_resolution = gather.low_resolution;
+    if (gather.splatted)
+        return settings.with("splat_rays", gather_rays)
+            .with("splat_importance", "contribution")
+            .with("splat_lists", gather.lists ? "on" : "off");
+    settings.with("splat_lights", "none").with("gather_lights", "all").with("gather_rays", gather_rays);
+    return settings.with("gather_samples", std::to_string(count));
+}
+
+// Maps, choice of lights, lists, light, reconstruction and repair.
+double gather_ms(const Measurement& measurement) {
+    return stage_ms(measurement, "pixel lights") + stage_ms(measurement, "gathered maps") +
+           passes_ms(measurement, {"splat", "gathered light", "places of gathered light", "repair", "low-resolution",
+                                   "light resolve", "reconstruction", "compaction", "shadow maps of pixel"});
+}
+
+struct GatherPoint {
+    double error = 0.0;
+    std::vector<double> times, light_times; // ms, by turn; of light: the kernel alone
+};
+using GatherCurve = std::array<GatherPoint, 5>;
+
+// The time at which a curve has an error, on a line through the two points beside it in logarithms. None: it lies
+// beyond the curve's ends.
+std::optional<double> time_at(const GatherCurve& curve, double error) {
+    for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+        const double from = std::log(curve[i].error), to = std::log(curve[i + 1].error), at = std::log(error);
+        if ((at > from) == (at > to) || from == to)
+            continue;
+        const double share = (at - from) / (to - from);
+        return std::exp((1.0 - share) * std::log(median(curve[i].times)) +
+                        share * std::log(median(curve[i + 1].times)));
+    }
+    return std::nullopt;
+}
+
+Status find_errors(SplatExperiment& experiment, Bench& bench, std::span<GatherCurve> curves) {
+    SUNFLECK_TRY(bench.renderer->lighting().set_settings(splat_limit("none")));
+    SUNFLECK_ASSIGN(const io::Picture limit, splat_picture(bench, 0));
+    for (std::size_t g = 0; g < curves.size(); ++g)
+        for (std::size_t i = 0; i < curves[g].size(); ++i)
+            for (std::uint32_t seed = 1; seed <= experiment.options.repeat; ++seed) {
+                SUNFLECK_TRY(
+                    bench.renderer->lighting().set_settings(gather_settings(gathers[g], gathers[g].counts[i], seed)));
+                SUNFLECK_ASSIGN(const io::Picture picture, splat_picture(bench, 0));
+                curves[g][i].error += compare_pictures(picture, limit, true).relative_mean_square_error /
+                                      double(experiment.options.repeat);
+            }
+    return {};
+}
+
+// In turns, there and back.
+Status find_times(SplatExperiment& experiment, Bench& bench, std::span<GatherCurve> curves) {
+    const std::size_t all = curves.size() * curves[0].size();
+    for (std::uint32_t turn = 0; turn < 2 * experiment.options.repeat; ++turn)
+        for (std::size_t k = 0; k < all; ++k) {
+            const std::size_t at = turn % 2 == 0 ? k : all - 1 - k, g = at % curves.size(), i = at / curves.size();
+            SUNFLECK_ASSIGN(const Measurement m, bench.measure(gather_settings(gathers[g], gathers[g].counts[i], 1),
+                                                               gather_warmup, frames_a_turn, true));
+            curves[g][i].times.push_back(gather_ms(m));
+            curves[g][i].light_times.push_back(
+                passes_ms(m, {"splat light", "gathered light", "repair splat light", "repair gathered light"}));
+        }
+    return {};
+}
+
+} // namespace
+
+Status splat_gather(SplatExperiment& experiment) {
+    if (gi::Settings::find("gather_lights") == nullptr)
+        return Error{"the part 'gather' measures the technique 'rsm_gather', which this build does not have"};
+    std::array<GatherCurve, std::size(gathers)> curves{};
+    SUNFLECK_ASSIGN(const auto bench, open_splat_scene(experiment.options, "arena", splat_time_size));
+    SUNFLECK_TRY(find_errors(experiment, *bench, curves));
+    bench->request.view = shared::view_final;
+    bench->request.tone_map = true;
+    SUNFLECK_TRY(find_times(experiment, *bench, curves));
+    for (std::size_t g = 0; g < curves.size(); ++g)
+        for (std::size_t i = 0; i < curves[g].size(); ++i) {
+            const std::string what = std::string(gathers[g].name) + ", " + std::to_string(gathers[g].counts[i]);
+            experiment.row("arena", what, "E", curves[g][i].error);
+            experiment.row("arena", what, "all, ms", median(curves[g][i].times));
+            experiment.row("arena", what, "light kernel, ms", median(curves[g][i].light_times));
+        }
+    for (std::size_t g = 1; g < curves.size(); ++g)
+        for (std::size_t i = 0; i < curves[0].size(); ++i)
+            if (const auto time = time_at(curves[g], curves[0][i].error)) {
+                char what[64];
+                std::snprintf(what, sizeof what, "E of %u lights (%.2g)", gathers[0].counts[i], curves[0][i].error);
+                experiment.row("arena", what, std::string("time over that of ") + gathers[g].name,
+                               median(curves[0][i].times) / *time,
+                               gathers[g].splatted ? "target: at most 1/2" : "target: at most 1/3");
+            }
+    return {};
+}
+
+} // namespace sunfleck::command_line
