@@ -75,8 +75,12 @@ Status SplatKernel::add_passes(const PixelStage& stage, std::span<const shared::
         SUNFLECK_ASSIGN(const gpu::UploadSlice rows,
                         resources.allocate(sizeof(shared::PixelLightRow) * shared::splats_per_batch));
         std::memcpy(rows.data, batch.data(), batch.size_bytes());
-        const shared::SplattingConstants constants{stage.constants.width, stage.constants.height,
-                                                   stage.constants.group_count, std::uint32_t(batch.size()), map_side_};
+        const shared::SplattingConstants constants{stage.constants.width,
+                                                   stage.constants.height,
+                                                   stage.constants.group_count,
+                                                   std::uint32_t(batch.size()),
+                                                   map_side_,
+                                                   least_};
         if (lists_)
             SUNFLECK_TRY(add_lists(stage, rows, constants));
         SUNFLECK_TRY(

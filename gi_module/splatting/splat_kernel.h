@@ -21,6 +21,8 @@ public:
                     gpu::FrameResources& resources);
     // Whether groups of pixels have lists of lights, from the next add_passes on.
     void set_lists(bool lists) { lists_ = lists; }
+    // Irradiance, W/m2, below which light may be cut, from the next add_passes on.
+    void set_least(float least) { least_ = least; }
     // show_... of splatting_shared.h, from the next add_passes on.
     void set_show(std::uint32_t show) { show_ = show; }
     // For each stage of a frame. The rows last as long as the call.
@@ -45,6 +47,7 @@ private:
     gpu::UploadedBuffer maps_;
     std::uint32_t map_side_ = 0; // 0: there are none
     bool filtered_ = false, lists_ = true;
+    float least_ = 0.0f;
     std::uint32_t show_ = shared::show_no_splats;
 };
 

@@ -30,11 +30,12 @@ struct SplattingConstants {
     uint group_count; // pixel groups of the low-resolution picture
     uint light_count; // in this batch
     uint map_side;    // texels of a light's shadow map
+    float least;      // irradiance, W/m2, below which light may be cut; 0: nowhere
 };
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::SplattingConstants) == 20);
+static_assert(sizeof(sunfleck::shared::SplattingConstants) == 24);
 static_assert(sunfleck::shared::splats_per_batch == 32 * sunfleck::shared::splat_mask_words);
 #endif
 #endif

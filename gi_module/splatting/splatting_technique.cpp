@@ -94,6 +94,7 @@ Status SplattingTechnique::update(const SceneView& scene, Services& services, Ce
     const SplatRequest request = request_of(settings, cells, services.input.view_projection);
     lights_.update(scene, services.samples, request);
     const float least = request.settings.splat_cutoff * lights_.mean_irradiance();
+    kernel_->set_least(least * services.input.indirect_scale);
     const float clamp_scale = splat_clamp_scale * settings.clamp_scale;
     rows_.reserve(lights_.lights().size());
     const bool ambient = settings.shadows && request.settings.splat_occlusion == SplatOcclusion::ambient;
