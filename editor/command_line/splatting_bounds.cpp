@@ -49,6 +49,7 @@ std::vector<shared::PixelLightRow> bounded_rows(Bench& bench, bool glossy) {
             lights.push_back(light);
         }
     std::vector<shared::PixelLightRow> rows;
+    rows.reserve(lights.size());
     const float least = bounded_cutoff * luminance(flux) / renderer.rays().static_area();
     for (const gi::PixelLight& light : lights)
         rows.push_back(gi::make_pixel_light_row(light, 0, gi::splat_clamp_scale * gi::Settings().clamp_scale, least));
@@ -146,12 +147,13 @@ private:
 // Positions that pixels show, relative to the camera.
 std::vector<vec3> seen_positions(Bench& bench, const shared::CameraRow& camera) {
     std::vector<vec3> positions;
-    for (std::uint32_t i = 0; i < bench.request.width * bench.request.height; ++i) {
-        const vec2 centre(float(i % bench.request.width) + 0.5f, float(i / bench.request.width) + 0.5f);
-        const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
-        if (const auto hit = bench.renderer->rays().closest_hit(ray))
-            positions.push_back(ray.direction * hit->distance);
-    }
+    for (std::uint32_t y = 0; y < bench.request.height; ++y)
+        for (std::uint32_t x = 0; x < bench.request.width; ++x) {
+            const vec3 direction = shared::camera_ray(camera, vec2(float(x), float(y)) + 0.5f);
+            const raytrace::Ray ray{vec3(camera.position), direction, 0.0f, 1e30f};
+            if (const auto hit = bench.renderer->rays().closest_hit(ray))
+                positions.push_back(direction * hit->distance);
+        }
     return positions;
 }
 

@@ -12,22 +12,28 @@
 namespace sunfleck::command_line {
 namespace {
 
-constexpr const char* gather_rays = "16384";
+constexpr const char* gather_rays = "4096";
 constexpr std::uint32_t gather_warmup = 2, frames_a_turn = 4;
 
 struct Gather {
     const char* name;
     bool splatted;
-    bool lists; // of pixel lights for groups of pixels
+    bool on; // of splatted light: lists for groups of pixels; of gathered light: softening
     std::uint32_t low_resolution;
     std::array<std::uint32_t, 5> counts;
 };
 // The paper's picture has 512 x 512 pixels and a grid of 64 x 64.
-constexpr Gather gathers[] = {{"splatted, tile lists", true, true, 4, {32, 64, 128, 256, 512}},
-                              {"plain gather of the same lights", true, false, 4, {32, 64, 128, 256, 512}},
-                              {"rsm_gather, every 4th pixel", false, false, 4, {64, 256, 1024, 4096, 16384}},
-                              {"rsm_gather, every 8th pixel", false, false, 8, {64, 256, 1024, 4096, 16384}},
-                              {"rsm_gather, every pixel", false, false, 1, {16, 64, 256, 512, 1024}}};
+constexpr Gather gathers[] = {{"splatted, tile lists", true, true, 4, {64, 128, 256, 512, 1024}},
+                              {"plain gather of the same lights", true, false, 4, {64, 128, 256, 512, 1024}},
+                              {"rsm_gather, every 4th pixel", false, false, 4, {64, 256, 512, 1024, 4096}},
+                              {"rsm_gather, every 4th pixel, softened", false, true, 4, {64, 256, 512, 1024, 4096}},
+                              {"rsm_gather, every 8th pixel", false, false, 8, {64, 256, 512, 1024, 4096}},
+                              {"rsm_gather, every pixel", false, false, 1, {64, 128, 256, 512, 1024}}};
+
+// Lights that are followed begin anew with another seed only.
+std::uint32_t gather_seed(std::size_t count, std::uint32_t seed, std::uint32_t seeds) {
+    return std::uint32_t(count) * seeds + seed;
+}
 
 gi::Settings gather_settings(const Gather& gather, std::uint32_t count, std::uint32_t seed) {
     gi::Settings settings = splats_alone(count, "none");
@@ -36,9 +42,9 @@ gi::Settings gather_settings(const Gather& gather, std::uint32_t count, std::uin
     if (gather.splatted)
         return settings.with("splat_rays", gather_rays)
             .with("splat_importance", "contribution")
-            .with("splat_lists", gather.lists ? "on" : "off");
+            .with("splat_lists", gather.on ? "on" : "off");
     settings.with("splat_lights", "none").with("gather_lights", "all").with("gather_rays", gather_rays);
-    return settings.with("gather_samples", std::to_string(count));
+    return settings.with("gather_samples", std::to_string(count)).with("gather_softening", gather.on ? "on" : "off");
 }
 
 // Maps, choice of lights, lists, light, reconstruction and repair.
@@ -74,8 +80,8 @@ Status find_errors(SplatExperiment& experiment, Bench& bench, std::span<GatherCu
     for (std::size_t g = 0; g < curves.size(); ++g)
         for (std::size_t i = 0; i < curves[g].size(); ++i)
             for (std::uint32_t seed = 1; seed <= experiment.options.repeat; ++seed) {
-                SUNFLECK_TRY(
-                    bench.renderer->lighting().set_settings(gather_settings(gathers[g], gathers[g].counts[i], seed)));
+                SUNFLECK_TRY(bench.renderer->lighting().set_settings(gather_settings(
+                    gathers[g], gathers[g].counts[i], gather_seed(i, seed, experiment.options.repeat))));
                 SUNFLECK_ASSIGN(const io::Picture picture, splat_picture(bench, 0));
                 curves[g][i].error += compare_pictures(picture, limit, true).relative_mean_square_error /
                                       double(experiment.options.repeat);
@@ -89,8 +95,9 @@ Status find_times(SplatExperiment& experiment, Bench& bench, std::span<GatherCur
     for (std::uint32_t turn = 0; turn < 2 * experiment.options.repeat; ++turn)
         for (std::size_t k = 0; k < all; ++k) {
             const std::size_t at = turn % 2 == 0 ? k : all - 1 - k, g = at % curves.size(), i = at / curves.size();
-            SUNFLECK_ASSIGN(const Measurement m, bench.measure(gather_settings(gathers[g], gathers[g].counts[i], 1),
-                                                               gather_warmup, frames_a_turn, true));
+            SUNFLECK_ASSIGN(const Measurement m,
+                            bench.measure(gather_settings(gathers[g], gathers[g].counts[i], gather_seed(i, 1, 1)),
+                                          gather_warmup, frames_a_turn, true));
             curves[g][i].times.push_back(gather_ms(m));
             curves[g][i].light_times.push_back(
                 passes_ms(m, {"splat light", "gathered light", "repair splat light", "repair gathered light"}));

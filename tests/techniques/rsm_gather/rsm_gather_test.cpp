@@ -35,7 +35,8 @@ std::vector<vec3> summed_light(GpuWorld& world, const std::vector<gi::PixelLight
         scene::make_camera_row(world.renderer->space().view(request.camera), request.width, request.height);
     std::vector<vec3> sums(std::size_t(request.width) * request.height, vec3(0.0f));
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        const vec2 centre(float(i % request.width) + 0.5f, float(i / request.width) + 0.5f);
+        const std::size_t row = i / request.width;
+        const vec2 centre(float(i % request.width) + 0.5f, float(row) + 0.5f);
         const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
         const auto hit = world.renderer->rays().closest_hit(ray);
         if (!hit)
