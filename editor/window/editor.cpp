@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 constexpr float usual_scale = 0.875f; // of letters of 16 pixels
 constexpr int frames_after_event = 3; // until Dear ImGui has settled
 constexpr double longest_sleep = 0.5; // s: how soon a signal that asks for the end is seen
-constexpr double flying_interval = 1.0 / 60.0;
+constexpr std::chrono::nanoseconds flying_interval{1000000000 / 60};
 
 class Program {
 public:
@@ -85,7 +85,7 @@ private:
     std::uint64_t writes_before_ = 0, events_ = 0;
     std::string title_;
     app::InputState still_input_;
-    int frames_due_ = frames_after_event;
+    int frames_due_ = frames_after_event, frames_since_event_ = 0;
     bool widgets_due_ = false; // --widgets is older than the last frame
     Clock::time_point last_frame_ = Clock::now();
     ReportFigures figures_;
@@ -155,15 +155,14 @@ Status Program::start_scene() {
 
 // Whether the GUI has to be drawn.
 bool Program::something_new() {
-    if (const std::uint64_t events = window().event_count(); events != events_) {
-        events_ = events;
-        frames_due_ = frames_after_event;
-    }
     const bool woken = woken_.exchange(false);
     if (woken || layout_->flying())
         frames_due_ = std::max(frames_due_, 1);
-    if (window().has_more()) // the last of many gets its frames, too, although it arrived with the first
+    // The last of many events gets its frames, too, although it arrived with the first.
+    if (window().event_count() != std::exchange(events_, window().event_count()) || window().has_more()) {
         frames_due_ = frames_after_event;
+        frames_since_event_ = 0;
+    }
     return frames_due_ > 0;
 }
 
@@ -182,8 +181,7 @@ Status Program::loop() {
         if (!something_new() && !quiet)
             continue;
         if (layout_->flying())
-            std::this_thread::sleep_until(last_frame_ + std::chrono::duration_cast<Clock::duration>(
-                                                            std::chrono::duration<double>(flying_interval)));
+            std::this_thread::sleep_until(last_frame_ + flying_interval);
         frames_due_ = std::max(frames_due_ - 1, 0);
         SUNFLECK_TRY(draw(input));
     }
@@ -350,9 +348,11 @@ void Program::after_frame() {
     if (title != title_)
         window().set_title(title_ = title);
     widgets_due_ = !options_.widgets.empty();
+    if (++frames_since_event_ > frames_after_event)
+        tell_scripts();
 }
 
-// Where widgets are, once the window is at rest: not with the last frame, which a key let go may follow.
+// Where widgets are, once no event asks for frames (while a scene plays, others may): a key let go may follow the last.
 void Program::tell_scripts() {
     if (std::exchange(widgets_due_, false))
         session_->messages.check(write_widgets(options_.widgets, ui::notes()));

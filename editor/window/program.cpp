@@ -32,9 +32,9 @@ void add_options(CLI::App& program, Options& options, viewer::PictureSize& size)
     viewer::add_name(program, "--settings", options.state_file,
                      "Layout, recent files and keys (default: sunfleck/editor.json in the configuration folder)",
                      "FILE");
-    viewer::add_name(program, "--widgets", options.widgets,
-                     "For scripts: name, place and value of every visible widget, written when the window is at rest",
-                     "FILE");
+    viewer::add_name(
+        program, "--widgets", options.widgets,
+        "For scripts: name, place and value of every visible widget, written when all input has been shown", "FILE");
     viewer::add_name(program, "--report", options.report, "For scripts: counters, written at the end", "FILE");
 }
 

@@ -47,7 +47,7 @@ public:
         run("xdotool windowfocus --sync " + window_);
     }
 
-    // After which widgets are as they are once the window is at rest.
+    // As they are once all events have been shown.
     std::vector<Widget> widgets() const {
         const auto text = read_file(folder_ / "widgets.json");
         const auto json = text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
