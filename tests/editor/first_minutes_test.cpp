@@ -71,9 +71,7 @@ void EditorWindowFirst::make_a_group() {
 void EditorWindowFirst::measure_and_compare() {
     // More light samples, and what they cost.
     ASSERT_TRUE(editor->click("tab Lighting"));
-    ASSERT_TRUE(editor->click("lighting/search"));
-    editor->type("lights");
-    editor->let_events_arrive();
+    ASSERT_NO_FATAL_FAILURE(search("lighting/search", "lights"));
     ASSERT_TRUE(editor->enter("lighting/lights/value", "600"));
     ASSERT_TRUE(editor->wait_for("lighting/lights/value", "600"));
     ASSERT_TRUE(editor->settles());

@@ -17,8 +17,7 @@ protected:
 TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
     ASSERT_TRUE(editor->settles());
     ASSERT_TRUE(editor->click("tab Lighting"));
-    ASSERT_TRUE(editor->click("lighting/search"));
-    editor->type("constant");
+    ASSERT_NO_FATAL_FAILURE(search("lighting/search", "constant"));
     const std::string setting = "lighting/constant_irradiance/value";
     ASSERT_TRUE(editor->wait_for(setting, "0.25"));
     ASSERT_TRUE(editor->enter(setting, "2"));
@@ -29,9 +28,7 @@ TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
     EXPECT_TRUE(editor->wait_for(setting, "2"));
 
     // It lights what is reflected from now on; then its view shows.
-    ASSERT_TRUE(editor->click("lighting/search"));
-    editor->key("ctrl+a");
-    editor->type("plan");
+    ASSERT_NO_FATAL_FAILURE(search("lighting/search", "plan"));
     ASSERT_TRUE(editor->click("lighting/plan/value"));
     editor->type("indirect.diffuse=constant_light");
     editor->key("Return");

@@ -48,9 +48,7 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     const bool whole = tests::by_size(0, 1) == 1;
     editor->start({whole ? "atrium" : "gallery"});
     ASSERT_TRUE(editor->settles()) << editor->log();
-    ASSERT_TRUE(editor->click("hierarchy/search"));
-    editor->type("wall z-");
-    editor->let_events_arrive();
+    ASSERT_NO_FATAL_FAILURE(search("hierarchy/search", "wall z-"));
     ASSERT_TRUE(editor->click("hierarchy/wall z-"));
     ASSERT_TRUE(editor->wait_for("inspector/name", "wall z-", 60.0));
     editor->point_at(*editor->find("viewport/picture"));

@@ -40,6 +40,13 @@ protected:
         editor->type(path);
         editor->key("Return");
     }
+    // Types into a list's search box, until the list follows.
+    void search(const std::string& box, const std::string& text) const {
+        ASSERT_TRUE(editor->click(box));
+        editor->key("ctrl+a");
+        editor->type(text);
+        ASSERT_TRUE(editor->wait_for(box, text));
+    }
     std::string message() const { return editor->value("status/message"); }
 
     std::filesystem::path folder;
