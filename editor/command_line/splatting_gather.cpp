@@ -12,8 +12,8 @@
 namespace sunfleck::command_line {
 namespace {
 
-constexpr const char* gather_rays = "4096";
-constexpr std::uint32_t gather_warmup = 2, frames_a_turn = 4;
+constexpr const char* gather_rays = "16384";
+constexpr std::uint32_t gather_warmup = 4, frames_a_turn = 4;
 
 struct Gather {
     const char* name;
@@ -47,29 +47,34 @@ gi::Settings gather_settings(const Gather& gather, std::uint32_t count, std::uin
     return settings.with("gather_samples", std::to_string(count)).with("gather_softening", gather.on ? "on" : "off");
 }
 
-// Maps, choice of lights, lists, light, reconstruction and repair.
+// Lists, light, reconstruction and repair.
+double gather_passes_ms(const Measurement& measurement) {
+    return passes_ms(measurement, {"splat", "gathered light", "places of gathered light", "repair", "low-resolution",
+                                   "light resolve", "reconstruction", "compaction", "shadow maps of pixel"});
+}
+
+// The same with maps and choice of lights.
 double gather_ms(const Measurement& measurement) {
     return stage_ms(measurement, "pixel lights") + stage_ms(measurement, "gathered maps") +
-           passes_ms(measurement, {"splat", "gathered light", "places of gathered light", "repair", "low-resolution",
-                                   "light resolve", "reconstruction", "compaction", "shadow maps of pixel"});
+           gather_passes_ms(measurement);
 }
 
 struct GatherPoint {
     double error = 0.0;
-    std::vector<double> times, light_times; // ms, by turn; of light: the kernel alone
+    std::vector<double> times, passes; // ms, by turn: with maps and choice of lights on the CPU, and without
 };
 using GatherCurve = std::array<GatherPoint, 5>;
 
-// The time at which a curve has an error, on a line through the two points beside it in logarithms. None: it lies
+// The times at which a curve has an error, on a line through the two points beside it in logarithms. None: it lies
 // beyond the curve's ends.
-std::optional<double> time_at(const GatherCurve& curve, double error) {
+std::optional<double> time_at(const GatherCurve& curve, double error, std::vector<double> GatherPoint::*times) {
     for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
         const double from = std::log(curve[i].error), to = std::log(curve[i + 1].error), at = std::log(error);
         if ((at > from) == (at > to) || from == to)
             continue;
         const double share = (at - from) / (to - from);
-        return std::exp((1.0 - share) * std::log(median(curve[i].times)) +
-                        share * std::log(median(curve[i + 1].times)));
+        return std::exp((1.0 - share) * std::log(median(curve[i].*times)) +
+                        share * std::log(median(curve[i + 1].*times)));
     }
     return std::nullopt;
 }
@@ -95,14 +100,31 @@ Status find_times(SplatExperiment& experiment, Bench& bench, std::span<GatherCur
     for (std::uint32_t turn = 0; turn < 2 * experiment.options.repeat; ++turn)
         for (std::size_t k = 0; k < all; ++k) {
             const std::size_t at = turn % 2 == 0 ? k : all - 1 - k, g = at % curves.size(), i = at / curves.size();
+            // Another seed each: lights that are followed begin anew.
             SUNFLECK_ASSIGN(const Measurement m,
-                            bench.measure(gather_settings(gathers[g], gathers[g].counts[i], gather_seed(i, 1, 1)),
+                            bench.measure(gather_settings(gathers[g], gathers[g].counts[i], std::uint32_t(k) + 1),
                                           gather_warmup, frames_a_turn, true));
             curves[g][i].times.push_back(gather_ms(m));
-            curves[g][i].light_times.push_back(
-                passes_ms(m, {"splat light", "gathered light", "repair splat light", "repair gathered light"}));
+            curves[g][i].passes.push_back(gather_passes_ms(m));
         }
     return {};
+}
+
+// Of splatted light over the other's at the error of one of its counts; of the same lights, at the same count.
+void add_ratios(SplatExperiment& experiment, const GatherCurve& splatted, std::size_t count, const GatherCurve& other,
+                const Gather& gather) {
+    for (const auto& [name, times] :
+         {std::pair("all", &GatherPoint::times), std::pair("passes", &GatherPoint::passes)}) {
+        const double ours = median(splatted[count].*times);
+        const std::optional<double> theirs =
+            gather.splatted ? median(other[count].*times) : time_at(other, splatted[count].error, times);
+        char what[64];
+        std::snprintf(what, sizeof what, "E of %u lights (%.2g), %s", gathers[0].counts[count], splatted[count].error,
+                      name);
+        if (theirs)
+            experiment.row("arena", what, std::string("time over that of ") + gather.name, ours / *theirs,
+                           gather.splatted ? "target: at most 1/2" : "target: at most 1/3");
+    }
 }
 
 } // namespace
@@ -121,17 +143,11 @@ Status splat_gather(SplatExperiment& experiment) {
             const std::string what = std::string(gathers[g].name) + ", " + std::to_string(gathers[g].counts[i]);
             experiment.row("arena", what, "E", curves[g][i].error);
             experiment.row("arena", what, "all, ms", median(curves[g][i].times));
-            experiment.row("arena", what, "light kernel, ms", median(curves[g][i].light_times));
+            experiment.row("arena", what, "passes, ms", median(curves[g][i].passes));
         }
     for (std::size_t g = 1; g < curves.size(); ++g)
         for (std::size_t i = 0; i < curves[0].size(); ++i)
-            if (const auto time = time_at(curves[g], curves[0][i].error)) {
-                char what[64];
-                std::snprintf(what, sizeof what, "E of %u lights (%.2g)", gathers[0].counts[i], curves[0][i].error);
-                experiment.row("arena", what, std::string("time over that of ") + gathers[g].name,
-                               median(curves[0][i].times) / *time,
-                               gathers[g].splatted ? "target: at most 1/2" : "target: at most 1/3");
-            }
+            add_ratios(experiment, curves[0], i, curves[g], gathers[g]);
     return {};
 }
 

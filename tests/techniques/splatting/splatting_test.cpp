@@ -69,7 +69,8 @@ std::vector<vec3> summed_light(GpuWorld& world, std::span<const gi::PixelLight> 
         scene::make_camera_row(world.renderer->space().view(request.camera), request.width, request.height);
     std::vector<vec3> sums(std::size_t(request.width) * request.height, vec3(0.0f));
     for (std::size_t i = 0; i < sums.size(); ++i) {
-        const vec2 centre(float(i % request.width) + 0.5f, float(i / request.width) + 0.5f);
+        const std::size_t row = i / request.width;
+        const vec2 centre(float(i % request.width) + 0.5f, float(row) + 0.5f);
         const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
         const auto hit = world.renderer->rays().closest_hit(ray);
         if (!hit)
@@ -312,10 +313,12 @@ TEST_F(SplatTechnique, AThousandLampsShareOneBudget) {
     const vec3 albedo(0.6f);
     scene.room(vec3(-2), vec3(2), albedo, albedo, {albedo, albedo, albedo, albedo});
     const int lamps = by_size(128, 1024);
-    for (int i = 0; i < lamps; ++i)
-        scene.mover(scene.point_light("lamp", vec3(0.03f * float(i % 32) - 0.5f, 0.0f, 0.03f * float(i / 32) - 0.5f),
+    for (int i = 0; i < lamps; ++i) {
+        const int row = i / 32, column = i % 32;
+        scene.mover(scene.point_light("lamp", vec3(0.03f * float(column) - 0.5f, 0.0f, 0.03f * float(row) - 0.5f),
                                       vec3(4.0f / float(lamps))),
                     {});
+    }
     scene.camera("view", vec3(0.0f), vec3(0.0f, 0.0f, -1.0f), 90.0f);
     world.finish("view");
     gi::Settings settings = alone(64);
