@@ -256,6 +256,8 @@ void Hierarchy::row(Session& session, std::size_t index) {
         const bool dim = session.hidden.count(row.entity) > 0;
         list->AddText(ImVec2(low.x + 2.0f, low.y), ImGui::GetColorU32(dim ? ImGuiCol_TextDisabled : ImGuiCol_Text),
                       name.c_str());
+        if (ImGui::CalcTextSize(name.c_str()).x > high.x - low.x)
+            ui::tooltip(name); // the list's edge cuts it
         const std::string kind = kind_of(document, row.entity);
         const float wide = ImGui::CalcTextSize(kind.c_str()).x;
         if (ImGui::CalcTextSize(name.c_str()).x + wide + ui::unit() < high.x - low.x)

@@ -238,19 +238,25 @@ bool Viewport::split(Session& session) {
     return ImGui::IsItemHovered() || ImGui::IsItemActive();
 }
 
+// Puts the switch of that name to the right of the last one, or on a line of its own where the picture ends before.
+void beside_or_below(const Session& session, const char* name, float gap) {
+    const float width = ImGui::CalcTextSize(name, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x;
+    if (ImGui::GetItemRectMax().x + gap + width < session.viewport_area.x + session.viewport_area.z)
+        ImGui::SameLine(0.0f, gap);
+}
+
 // Switches in the picture's corner.
 void Viewport::play_buttons(Session& session) {
-    const auto button = [&](const char* name, const char* command) {
+    const auto button = [&](const char* name, const char* command, float gap = 2.0f) {
+        beside_or_below(session, name, gap);
         Command& known = *session.commands->find(command);
         if (ui::button(name, known.tooltip))
             session.commands->run(known, session);
     };
-    button(session.view.playing ? "Stop##play" : "Play##play", "View/Play");
+    button(session.view.playing ? "Stop##play" : "Play##play", "View/Play", ui::unit());
     if (!session.view.playing)
         return;
-    ImGui::SameLine(0.0f, 2.0f);
     button(session.view.paused ? "Go on##pause" : "Pause##pause", "View/Pause");
-    ImGui::SameLine(0.0f, 2.0f);
     button("Step", "View/Step");
 }
 
@@ -260,25 +266,27 @@ void Viewport::toolbar(Session& session) {
     ImGui::BeginGroup();
     const auto mode = [&](const char* name, GizmoMode one, const char* tip) {
         const bool on = session.gizmo.mode == one;
+        if (one != GizmoMode::none)
+            beside_or_below(session, name, 2.0f);
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(on ? ImGuiCol_ButtonActive : ImGuiCol_Button));
         if (ui::button(name, tip))
             session.gizmo.mode = one;
         ImGui::PopStyleColor();
-        ImGui::SameLine(0.0f, 2.0f);
     };
     mode("Select", GizmoMode::none, "Click to select (Q)");
     mode("Move", GizmoMode::move, "Drag an arrow, a square or the middle (W); Ctrl snaps");
     mode("Rotate", GizmoMode::rotate, "Drag a ring (E); Ctrl snaps");
     mode("Scale", GizmoMode::scale, "Drag a handle, or the middle for all (R); Ctrl snaps");
     mode("Inspect", GizmoMode::inspect, "Click a pixel: what is there, and what lights it (I, or Alt and a click)");
-    ImGui::SameLine(0.0f, ui::unit());
-    if (ui::button(session.gizmo.local ? "Local##axes" : "World##axes", "Axes of the handles (X)"))
-        session.gizmo.local = !session.gizmo.local;
-    ImGui::SameLine(0.0f, 2.0f);
-    if (ui::button(session.gizmo.snap ? "Snap on##snap" : "Snap off##snap",
-                   "Movements in steps; holding Ctrl is the other way about"))
-        session.gizmo.snap = !session.gizmo.snap;
-    ImGui::SameLine(0.0f, ui::unit());
+    const auto toggle = [&](bool& on, const char* name, float gap, const char* tip) {
+        beside_or_below(session, name, gap);
+        if (ui::button(name, tip))
+            on = !on;
+    };
+    toggle(session.gizmo.local, session.gizmo.local ? "Local##axes" : "World##axes", ui::unit(),
+           "Axes of the handles (X)");
+    toggle(session.gizmo.snap, session.gizmo.snap ? "Snap on##snap" : "Snap off##snap", 2.0f,
+           "Movements in steps; holding Ctrl is the other way about");
     play_buttons(session);
     ImGui::EndGroup();
     toolbar_low_ = ImGui::GetItemRectMin();
@@ -332,7 +340,7 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
     if (session.document->entity_count() == 0 && session.opening == nullptr)
         say_how_to_begin(low, room);
     if (const std::string error = session.scene.status().error; !error.empty()) {
-        ImGui::SetCursorScreenPos(ImVec2(low.x + ui::unit(), low.y + 3.0f * ui::unit()));
+        ImGui::SetCursorScreenPos(ImVec2(low.x + ui::unit(), toolbar_high_.y + ui::unit()));
         ImGui::PushTextWrapPos(room.x - ui::unit());
         ImGui::TextColored(ImVec4(1.0f, 0.5f, 0.42f, 1.0f), "%s", error.c_str());
         ui::note("error", error);

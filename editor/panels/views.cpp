@@ -5,6 +5,8 @@
 #include "gi_module/technique.h"
 #include "viewer/overlays.h"
 
+#include <algorithm>
+
 namespace sunfleck::editor {
 namespace {
 
@@ -95,10 +97,14 @@ void legend(const Session& session) {
 
 void Views::draw(Session& session) {
     const ui::Scope scope("views");
-    if (!ImGui::BeginTable("views", 4, ImGuiTableFlags_SizingStretchSame))
+    // Where there is no room for four lists beside each other, some stand below.
+    constexpr float widest_name = 9.0f; // of a view, with its box, in units
+    const int columns = std::clamp(int(ImGui::GetContentRegionAvail().x / (widest_name * ui::unit())), 1, 4);
+    if (!ImGui::BeginTable("views", columns, ImGuiTableFlags_SizingStretchSame))
         return;
-    for (const float width : {1.0f, 1.2f, 1.2f, 1.7f})
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, width);
+    if (columns == 4)
+        for (const float width : {1.0f, 1.2f, 1.2f, 1.7f})
+            ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch, width);
     ImGui::TableNextColumn();
     picture_views(session);
     ImGui::TableNextColumn();

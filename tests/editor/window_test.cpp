@@ -221,5 +221,18 @@ TEST(EditorSources, PanelsNameNoComponentTechniqueOrSetting) {
     EXPECT_GT(files, 10);
 }
 
+// At twice the size they take two lines.
+TEST_F(EditorWindow, SwitchesOverThePictureLieWithinIt) {
+    editor->start({small_scene, "--scale", "2"});
+    ASSERT_TRUE(editor->appears("viewport/Play"));
+    const tests::Widget picture = editor->find("viewport/picture").value();
+    for (const char* name : {"Select", "Move", "Rotate", "Scale", "Inspect", "World", "Snap off", "Play"}) {
+        const auto found = editor->find(std::string("viewport/") + name);
+        ASSERT_TRUE(found) << name;
+        EXPECT_GE(found->x, picture.x) << name;
+        EXPECT_LE(found->x + found->width, picture.x + picture.width) << name;
+    }
+}
+
 } // namespace
 } // namespace sunfleck
