@@ -1,6 +1,7 @@
 #include "gi_module/light_sampling/sample_set.h"
 
 #include "engine/core/hash.h"
+#include "engine/core/jobs.h"
 #include "gi_module/light_sampling/clamping_loss.h"
 #include "gi_module/light_sampling/sample_source.h"
 #include "gi_module/transport/clamping.h"
@@ -57,6 +58,13 @@ std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_em
 
 constexpr std::size_t loss_rays = 64;     // by which the loss of a single sample is estimated
 constexpr float least_let_through = 0.5f; // less is not given back in full: the sample stands in a corner
+
+// What `bound` lets through of a sample's light; 1 for those on movers, which have discs of their own.
+float let_through_of(const LightSample& sample, float bound, const raytrace::RayScene& rays) {
+    if (sample.on_mover || sample.bounce == 0)
+        return 1.0f;
+    return std::max(1.0f - clamping_loss_of(sample, bound, loss_rays, rays), least_let_through);
+}
 
 constexpr Counter light_samples{"light_samples", "samples", "light samples", "Light samples (VPLs) in all"};
 constexpr Counter direct_samples{"light_samples_direct", "samples", "light samples",
@@ -128,6 +136,7 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request, con
     if (blocks)
         blocked_paths_.check(samples_, dynamic_samples_); // they reach movers, or not
     update_bounds(scene, settings);
+    give_back(scene.rays, settings);
     follow_movers(scene, settings);
     if (blocks && !followed_.movers.samples().empty())
         blocked_paths_.check(samples_, dynamic_samples_);
@@ -285,17 +294,33 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
             incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
                                 sample.bounce});
     followed_.movers.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
-    const bool same_bound = followed_.let_through_bound == dynamic_bound_ && !followed_.let_through.empty();
-    followed_.let_through_bound = dynamic_bound_;
-    followed_.let_through.resize(followed_.movers.samples().size(), 1.0f);
     for (std::uint32_t k = 0; k < followed_.movers.samples().size(); ++k) {
         LightSample now = followed_.movers.samples()[k];
         const bool moved = followed_.movers.moved()[k] != 0;
-        if ((moved || !same_bound) && !now.on_mover)
-            followed_.let_through[k] = 1.0f - clamping_loss_of(now, bound_of(now, settings), loss_rays, scene.rays);
-        now.flux /= std::max(followed_.let_through[k], least_let_through);
+        float& let_through = followed_.let_through[first + k];
+        if (moved || let_through == 0.0f)
+            let_through = let_through_of(now, bound_of(now, settings), scene.rays);
+        now.flux /= let_through;
         take_over(std::uint32_t(first) + k, now, moved);
     }
+}
+
+// Few samples have low bounds, which take away much of their light: the dynamic ones are so much brighter. (Where there
+// are many, and medoids of clusters, a room's mean comes nearer to the truth by that, but not its pixels.)
+void SampleSet::give_back(const raytrace::RayScene& rays, const LightSettings& settings) {
+    if (followed_.let_through_bound != dynamic_bound_ || followed_.let_through.size() != dynamic_samples_.size())
+        followed_.let_through.assign(dynamic_samples_.size(), 0.0f);
+    followed_.let_through_bound = dynamic_bound_;
+    const std::vector<LightSample>& lights = followed_.lights.samples();
+    parallel_for_chunks(lights.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            LightSample& sample = samples_[dynamic_samples_[k]];
+            float& let_through = followed_.let_through[k];
+            if (followed_.lights.moved()[k] != 0 || let_through == 0.0f)
+                let_through = let_through_of(sample, bound_of(sample, settings), rays);
+            sample.flux = lights[k].flux / let_through;
+        }
+    });
 }
 
 // Dynamic emitters have few samples, each with more flux: their reflected samples are clamped as if there were no

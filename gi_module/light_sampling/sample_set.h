@@ -97,6 +97,7 @@ private:
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);
     void follow_movers(const SceneView& scene, const LightSettings& settings);
+    void give_back(const raytrace::RayScene& rays, const LightSettings& settings);
     void limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
@@ -113,8 +114,7 @@ private:
     struct Followed {
         DynamicLights lights;
         MoverReflections movers;
-        // By sample of `movers`: what the bound lets through of it. Few samples have low bounds, and what these take
-        // away is given back.
+        // By sample of `lights`, then of `movers`: what its bound lets through; 0: not known. The rest is given back.
         std::vector<float> let_through;
         float let_through_bound = 0.0f;
     };
