@@ -98,11 +98,12 @@ Outcome play(HostProgram& program) {
         }
     }
     counting = false;
-    if (!outcome.lost) {
-        const Status settled = program.settle(**context, 0);
-        EXPECT_TRUE(settled) << settled.error().message;
-        outcome.picture = program.picture();
+    // The frames until the picture has settled make calls, too.
+    if (!outcome.lost && failed(program.settle(**context, 0)) && !outcome.lost) {
+        EXPECT_TRUE(program.settle(**context, 0));
     }
+    if (!outcome.lost)
+        outcome.picture = program.picture();
     program.wait();
     context = Error{};
     return outcome;
