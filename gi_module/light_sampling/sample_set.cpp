@@ -136,7 +136,7 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request, con
     if (blocks)
         blocked_paths_.check(samples_, dynamic_samples_); // they reach movers, or not
     update_bounds(scene, settings);
-    give_back(scene.rays, settings);
+    find_let_through(scene.rays, settings);
     follow_movers(scene, settings);
     if (blocks && !followed_.movers.samples().empty())
         blocked_paths_.check(samples_, dynamic_samples_);
@@ -284,15 +284,19 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
     if (followed_.movers.samples().empty())
         return;
     const Bounds bounds = scene.gpu_scene.bounds();
-    std::vector<std::uint8_t> on_mover(samples_.size(), 0);
+    std::vector<float> shares(samples_.size(), 1.0f); // 0: what movers reflect
     const std::size_t first = followed_.lights.samples().size();
-    for (std::size_t k = first; k < dynamic_samples_.size(); ++k)
-        on_mover[dynamic_samples_[k]] = 1;
+    for (std::size_t k = 0; k < dynamic_samples_.size(); ++k)
+        shares[dynamic_samples_[k]] = k < first ? followed_.let_through[k] : 0.0f;
     std::vector<IncomingLight> incoming;
-    for (const LightSample& sample : samples_)
-        if (!on_mover[sample.index] && !is_blocked(sample.index) && sample.bounce < cause_.request.bounces)
-            incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
-                                sample.bounce});
+    for (const LightSample& sample : samples_) {
+        const float share = shares[sample.index];
+        if (share == 0.0f || is_blocked(sample.index) || sample.bounce >= cause_.request.bounces)
+            continue;
+        incoming.push_back(
+            {make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind), sample.bounce});
+        incoming.back().row.intensity_slot /= vec4(vec3(share), 1.0f);
+    }
     followed_.movers.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
     for (std::uint32_t k = 0; k < followed_.movers.samples().size(); ++k) {
         LightSample now = followed_.movers.samples()[k];
@@ -307,18 +311,16 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
 
 // Few samples have low bounds, which take away much of their light: the dynamic ones are so much brighter. (Where there
 // are many, and medoids of clusters, a room's mean comes nearer to the truth by that, but not its pixels.)
-void SampleSet::give_back(const raytrace::RayScene& rays, const LightSettings& settings) {
+void SampleSet::find_let_through(const raytrace::RayScene& rays, const LightSettings& settings) {
     if (followed_.let_through_bound != dynamic_bound_ || followed_.let_through.size() != dynamic_samples_.size())
         followed_.let_through.assign(dynamic_samples_.size(), 0.0f);
     followed_.let_through_bound = dynamic_bound_;
-    const std::vector<LightSample>& lights = followed_.lights.samples();
-    parallel_for_chunks(lights.size(), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_for_chunks(followed_.lights.samples().size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            LightSample& sample = samples_[dynamic_samples_[k]];
+            const LightSample& sample = samples_[dynamic_samples_[k]];
             float& let_through = followed_.let_through[k];
             if (followed_.lights.moved()[k] != 0 || let_through == 0.0f)
                 let_through = let_through_of(sample, bound_of(sample, settings), rays);
-            sample.flux = lights[k].flux / let_through;
         }
     });
 }
@@ -382,6 +384,8 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
         if (reflected)
             rows_[i].intensity_slot *= vec4(vec3(blocked_paths_.is_blocked(i) ? 0.0f : strengths.indirect_scale), 1.0f);
     }
+    for (std::size_t k = 0; k < followed_.lights.samples().size(); ++k)
+        rows_[dynamic_samples_[k]].intensity_slot /= vec4(vec3(followed_.let_through[k]), 1.0f);
     late_changes_ = 0;
     if (rows_generation_ == generation_)
         limit_changes(before, strengths.change_budget);

@@ -97,7 +97,7 @@ private:
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);
     void follow_movers(const SceneView& scene, const LightSettings& settings);
-    void give_back(const raytrace::RayScene& rays, const LightSettings& settings);
+    void find_let_through(const raytrace::RayScene& rays, const LightSettings& settings);
     void limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
