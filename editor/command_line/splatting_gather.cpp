@@ -30,7 +30,7 @@ constexpr Gather gathers[] = {{"splatted, tile lists", true, true, 4, {64, 128, 
                               {"rsm_gather, every 8th pixel", false, false, 8, {64, 256, 512, 1024, 4096}},
                               {"rsm_gather, every pixel", false, false, 1, {64, 128, 256, 512, 1024}}};
 
-// Lights that are followed begin anew with another seed only.
+// Only another seed chooses all lights afresh: those that are followed keep their places.
 std::uint32_t gather_seed(std::size_t count, std::uint32_t seed, std::uint32_t seeds) {
     return std::uint32_t(count) * seeds + seed;
 }
@@ -100,7 +100,7 @@ Status find_times(SplatExperiment& experiment, Bench& bench, std::span<GatherCur
     for (std::uint32_t turn = 0; turn < 2 * experiment.options.repeat; ++turn)
         for (std::size_t k = 0; k < all; ++k) {
             const std::size_t at = turn % 2 == 0 ? k : all - 1 - k, g = at % curves.size(), i = at / curves.size();
-            // Another seed each: lights that are followed begin anew.
+            // Another seed each, so that no lights are followed from the count before.
             SUNFLECK_ASSIGN(const Measurement m,
                             bench.measure(gather_settings(gathers[g], gathers[g].counts[i], std::uint32_t(k) + 1),
                                           gather_warmup, frames_a_turn, true));

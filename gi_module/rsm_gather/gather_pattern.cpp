@@ -36,7 +36,7 @@ std::vector<shared::GatherSample> gather_pattern(std::uint32_t count, std::uint3
         const float distance = radius * std::pow(number, distance_power);
         const vec2 offset = distance * vec2(std::cos(angle), std::sin(angle));
         if (std::max(std::abs(offset.x), std::abs(offset.y)) >= 0.5f)
-            continue; // beyond it, the map begins anew
+            continue; // beyond it, the map wraps around
         // Area of the ring that the number stands for, over that of the map.
         const float share =
             2.0f * pi * radius * radius * distance_power * std::pow(number, 2.0f * distance_power - 1.0f);
