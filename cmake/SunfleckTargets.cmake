@@ -35,27 +35,19 @@ function(sunfleck_use_precompiled target owner)
   endif()
 endfunction()
 
-# sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries] [INSTALL])
-# A static library with the project's flags; headers are included by their path from the project's root. INSTALL: it is
-# part of the installed package.
+# sunfleck_library(name SOURCES ... [LINK public libraries] [PRIVATE_LINK private libraries])
+# A static library with the project's flags; headers are included by their path from the project's root.
 function(sunfleck_library name)
-  cmake_parse_arguments(ARG "INSTALL" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC)
   sunfleck_sources(${name} ${ARG_SOURCES})
-  target_include_directories(${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
-                             "$<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>")
-  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:sunfleck_flags> ${ARG_PRIVATE_LINK})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_BINARY_DIR}/generated")
+  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE sunfleck_flags ${ARG_PRIVATE_LINK})
   target_compile_features(${name} PUBLIC cxx_std_20)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   sunfleck_use_precompiled(${name} "${SUNFLECK_PRECOMPILED}")
-  if(ARG_INSTALL)
-    target_include_directories(${name} PUBLIC "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sunfleck>")
-    string(REPLACE sunfleck_ "" short "${name}")
-    set_target_properties(${name} PROPERTIES EXPORT_NAME ${short})
-    add_library(sunfleck::${short} ALIAS ${name})
-    install(TARGETS ${name} EXPORT sunfleckTargets
-            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  endif()
+  string(REPLACE sunfleck_ "" short "${name}")
+  add_library(sunfleck::${short} ALIAS ${name})
 endfunction()
 
 # sunfleck_program(name SOURCES ... LINK libraries)

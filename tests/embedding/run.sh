@@ -15,14 +15,15 @@ cmake --build "$work/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; 
 headers=$(cd "$work/prefix/include" && find . -type f | sort | tr '\n' ' ')
 [[ $headers == "./sunfleck/engine/core/maths.h ./sunfleck/engine/core/octahedral.h ./sunfleck/engine/core/result.h \
 ./sunfleck/engine/core/shader_language.h ./sunfleck/host.h " ]] || { echo "other headers are installed: $headers"; exit 1; }
-for file in README.md CHANGELOG.md scene.schema.json; do
+for file in README.md LICENCE.md CHANGELOG.md scene.schema.json; do
     [[ -s $work/prefix/share/doc/sunfleck/$file ]] || { echo "$file is not installed"; exit 1; }
 done
-# No symbol of the libraries can clash with one of a host's, whatever Vulkan loader that has: all that is not weak (templates
-# of headers) is of namespace sunfleck.
-strays=$(find "$work/prefix" -name 'libsunfleck_*.a' -exec nm -g --defined-only {} + 2>/dev/null |
-    awk 'NF == 3 && $2 !~ /^[VWu]$/ && $3 !~ /8sunfleck|^sunfleck_/ {print $3}' | sort -u)
-[[ -z $strays ]] || { echo "symbols that could clash with a host's:"; echo "$strays"; exit 1; }
+# Of the static library, too, a host's linker sees what sunfleck/host.h declares and nothing else: no inline function of a
+# library's header, which it would take for the host's own.
+archive=$(find "$work/prefix" -name '*.a')
+[[ $archive == */libsunfleck_gi.a ]] || { echo "other archives are installed: $archive"; exit 1; }
+strays=$(nm -g --defined-only "$archive" 2>/dev/null | awk 'NF == 3 && $3 !~ /^_ZNK?8sunfleck4host/ {print $3}')
+[[ -z $strays ]] || { echo "symbols that could clash with a host's:"; head -20 <<<"$strays"; exit 1; }
 # Of the shared library, nothing can be seen but what sunfleck/host.h declares.
 if library=$(find "$work/prefix" -name 'libsunfleck.so' | grep .); then
     strays=$(nm -DC --defined-only "$library" | cut -d' ' -f3- |
