@@ -80,13 +80,13 @@ void Context::Implementation::forget_lost_commands() {
 
 Status Context::update(const Frame& frame) {
     Implementation& self = *implementation_;
-    if (self.follower != nullptr)
-        self.follower->updated = false;
     bool begun = false;
     Status status = guarded(self.engine_log, [&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(self.serials.check(frame));
         begun = true;
+        if (self.follower != nullptr)
+            self.follower->updated = false;
         return self.update(frame);
     });
     // One that was stopped, or that lacks a choice of settings, is whole.

@@ -246,7 +246,7 @@ Status FrameGraph::compile() {
     return {};
 }
 
-Status FrameGraph::realise_images() {
+Status FrameGraph::realise_images(FrameResources& resources) {
     for (Resource& resource : resources_) {
         if (!resource.created || resource.description.usage == 0)
             continue;
@@ -258,10 +258,9 @@ Status FrameGraph::realise_images() {
                           (has.usage & resource.description.usage) == resource.description.usage;
         if (!fits) {
             // Rare (first use, resize): frames in flight may still use the old image.
-            if (image)
-                SUNFLECK_TRY(device_->wait_idle());
             resource.description.usage |= image ? has.usage : 0;
-            image = Image();
+            if (image)
+                resources.retire(std::move(image));
             SUNFLECK_ASSIGN(image, Image::create(*device_, resource.description));
         }
         resource.image = &image;
@@ -319,7 +318,7 @@ Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compile
 
 Status FrameGraph::execute(VkCommandBuffer commands, FrameResources& resources, Timers* timers) {
     assert(device_ != nullptr && "a graph without a device cannot execute");
-    SUNFLECK_TRY(realise_images());
+    SUNFLECK_TRY(realise_images(resources));
     PassContext context{*device_, commands, resources, *this};
     for (const CompiledPass& compiled : compiled_)
         SUNFLECK_TRY(record_pass(context, compiled, timers));

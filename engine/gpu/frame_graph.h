@@ -164,7 +164,7 @@ private:
     void derive_exit_barriers();
     Status record_pass(PassContext& context, const CompiledPass& compiled, Timers* timers);
     Status derive_barriers(const Pass& pass, CompiledPass& compiled);
-    Status realise_images();
+    Status realise_images(FrameResources& resources);
     void record_barriers(VkCommandBuffer commands, const std::vector<PassBarrier>& barriers) const;
     void store_states();
 

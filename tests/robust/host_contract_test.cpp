@@ -13,12 +13,6 @@ using host::Mobility;
 
 class RobustHost : public GpuTest {};
 
-void expect_argument(const Status& status, const std::string& word) {
-    ASSERT_FALSE(status) << word;
-    EXPECT_EQ(status.error().code, ErrorCode::argument) << status.error().message;
-    EXPECT_NE(status.error().message.find(word), std::string::npos) << status.error().message;
-}
-
 TEST_F(RobustHost, MissingFeaturesNeedNoContext) {
     const auto missing = host::missing_features(device().instance(), device().physical_device());
     ASSERT_TRUE(missing) << missing.error().message;

@@ -286,7 +286,7 @@ private:
     }
     Status record_by_view(VkCommandBuffer commands) {
         host::View view;
-        view.view_to_clip = host::view_projection(program_.camera(), HostProgram::width, HostProgram::height);
+        view.view_to_clip = host::view_projection(program_.camera(), program_.width(), program_.height());
         if (wrong_ && chance())
             view.view_to_clip = host::Matrix4{};
         else if (wrong_)

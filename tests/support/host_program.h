@@ -1,14 +1,8 @@
-// A program that lights its frames by sunfleck/host.h alone, without a geometry pass: its G-buffer is the inside of a
-// box, computed on the CPU, so that a frame costs little more than the calls that are tested.
+// A program that lights its frames by sunfleck/host.h alone, without a geometry pass: its G-buffer is computed on the
+// CPU, so that a frame costs little more than the calls that are tested.
 #pragma once
 
-#include "tests/support/gpu_world.h"
-
-#include "engine/core/octahedral.h"
-#include "engine/scene/camera_shared.h"
-#include "sunfleck/host.h"
-
-#include <bit>
+#include "tests/support/host_images.h"
 
 namespace sunfleck::tests {
 
@@ -28,17 +22,11 @@ struct HostCall {
 
 class HostProgram {
 public:
-    static constexpr std::uint32_t width = 32, height = 32;
-
-    explicit HostProgram(gpu::Device& device) : device_(device) {
+    explicit HostProgram(gpu::Device& device) : device_(device), large_(device, 32, 32), small_(device, 24, 16) {
         submission_ = gpu::Submission::create(device, 2).value();
-        depth_ = make_image("depth", VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
-        normals_ = make_image("normals", VK_FORMAT_R32G32_UINT, 0);
-        surface_ = make_image("surface", VK_FORMAT_R32_UINT, 0);
-        irradiance_ = make_image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
         for (gpu::Buffer& buffer : uploads_)
-            buffer = make_buffer(VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryUse::upload);
-        read_back_ = make_buffer(VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryUse::readback);
+            buffer = make_buffer(device, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, gpu::MemoryUse::upload);
+        read_back_ = make_buffer(device, VK_BUFFER_USAGE_TRANSFER_DST_BIT, gpu::MemoryUse::readback);
     }
     ~HostProgram() { static_cast<void>(device_.wait_idle()); }
     HostProgram(const HostProgram&) = delete;
@@ -50,14 +38,11 @@ public:
     }
     gpu::Device& device() const { return device_; }
     const host::Camera& camera() const { return camera_; }
-    host::FrameImages images() const {
-        host::FrameImages images{width, height};
-        images.depth = input(depth_);
-        images.normals = input(normals_);
-        images.surface = input(surface_);
-        images.irradiance = {irradiance_.handle(), irradiance_.view(), {}, transfer_read()};
-        return images;
-    }
+    // Frames from here on have a picture of 24x16, or again of 32x32.
+    void resize(bool small) { now_ = small ? &small_ : &large_; }
+    std::uint32_t width() const { return now_->width(); }
+    std::uint32_t height() const { return now_->height(); }
+    host::FrameImages images(const HostOptions& options = {}) const { return now_->images(options); }
     // The next frame's numbers. Waits until its slot is free.
     host::Frame next_frame() {
         commands_ = submission_->begin().value();
@@ -68,19 +53,7 @@ public:
     }
     VkCommandBuffer commands() const { return commands_; }
     // Fills the G-buffer: everything is of one surface. Before recording.
-    void draw(std::uint32_t surface) {
-        gpu::Buffer& upload = uploads_[submission_->serial() % 2];
-        write_box(reinterpret_cast<std::uint32_t*>(upload.mapped()), surface);
-        for (const gpu::Image* image : {&depth_, &normals_, &surface_})
-            transition(image->handle(), aspect(*image), VK_IMAGE_LAYOUT_UNDEFINED,
-                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        copy(upload, depth_, 0);
-        copy(upload, normals_, pixels * 4);
-        copy(upload, surface_, pixels * 12);
-        for (const gpu::Image* image : {&depth_, &normals_, &surface_})
-            transition(image->handle(), aspect(*image), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                       VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    }
+    void draw(std::uint32_t surface) { now_->draw(commands_, uploads_[submission_->serial() % 2], camera_, surface); }
     // Submits what is recorded; submit_empty: throws it away, as after a record that failed.
     void submit() { ASSERT_TRUE(submission_->submit()); }
     void submit_empty() {
@@ -125,9 +98,9 @@ public:
     // Of the last frame. Waits.
     HostPicture picture() {
         EXPECT_TRUE(submission_->immediate([&](VkCommandBuffer commands) -> Status {
-            VkBufferImageCopy region = region_of(irradiance_, 0);
-            device_.vk.vkCmdCopyImageToBuffer(commands, irradiance_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                              read_back_.handle(), 1, &region);
+            const VkBufferImageCopy region = now_->region_of(now_->irradiance(), 0);
+            device_.vk.vkCmdCopyImageToBuffer(commands, now_->irradiance().handle(),
+                                              VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, read_back_.handle(), 1, &region);
             VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2, nullptr,
                                      VK_PIPELINE_STAGE_2_COPY_BIT,       VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                      VK_PIPELINE_STAGE_2_HOST_BIT,       VK_ACCESS_2_HOST_READ_BIT};
@@ -138,100 +111,23 @@ public:
             return {};
         }));
         const auto* first = reinterpret_cast<const std::uint64_t*>(read_back_.mapped());
-        return {{first, first + pixels}};
+        return {{first, first + now_->pixels()}};
     }
 
 private:
-    static constexpr std::uint32_t pixels = width * height;
-
-    gpu::Image make_image(const char* name, VkFormat format, VkImageUsageFlags usage) const {
-        gpu::ImageDescription description;
-        description.name = name;
-        description.format = format;
-        description.width = width;
-        description.height = height;
-        description.usage =
-            usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-        return gpu::Image::create(device_, description).value();
-    }
-    gpu::Buffer make_buffer(VkBufferUsageFlags usage, gpu::MemoryUse memory) const {
+    static gpu::Buffer make_buffer(gpu::Device& device, VkBufferUsageFlags usage, gpu::MemoryUse memory) {
         gpu::BufferDescription description;
         description.name = "host program";
-        description.size = pixels * 16;
+        description.size = 32 * 32 * HostImages::bytes_per_pixel;
         description.usage = usage;
         description.memory = memory;
-        return gpu::Buffer::create(device_, description).value();
-    }
-    static VkImageAspectFlags aspect(const gpu::Image& image) {
-        return gpu::Image::aspect_of(image.description().format);
-    }
-    static host::ImageState transfer_read() {
-        return {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-    }
-    static host::HostImage input(const gpu::Image& image) {
-        const host::ImageState state{VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                     VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-        return {image.handle(), image.view(), state, state};
-    }
-    VkBufferImageCopy region_of(const gpu::Image& image, VkDeviceSize offset) const {
-        VkBufferImageCopy region{};
-        region.bufferOffset = offset;
-        region.imageSubresource = {aspect(image), 0, 0, 1};
-        region.imageExtent = {width, height, 1};
-        return region;
-    }
-    void copy(const gpu::Buffer& from, const gpu::Image& to, VkDeviceSize offset) const {
-        const VkBufferImageCopy region = region_of(to, offset);
-        device_.vk.vkCmdCopyBufferToImage(commands_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                                          1, &region);
-    }
-    void transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to) const {
-        VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-        barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-        barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-        barrier.oldLayout = from;
-        barrier.newLayout = to;
-        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-        barrier.image = image;
-        barrier.subresourceRange = {aspect, 0, 1, 0, 1};
-        VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-        dependency.imageMemoryBarrierCount = 1;
-        dependency.pImageMemoryBarriers = &barrier;
-        device_.vk.vkCmdPipelineBarrier2(commands_, &dependency);
-    }
-    // The inside of the box from (-2, 0, -2) to (2, 2.5, 2): depth, normals, surface ids.
-    void write_box(std::uint32_t* to, std::uint32_t surface) const {
-        const vec3 eye(camera_.position[0], camera_.position[1], camera_.position[2]);
-        const vec3 low(-2.0f, 0.0f, -2.0f), high(2.0f, 2.5f, 2.0f);
-        const float scale = std::tan(0.5f * camera_.vertical_field_of_view);
-        for (std::uint32_t i = 0; i < pixels; ++i) {
-            const std::uint32_t column = i % width, row = i / width;
-            const float x = (2.0f * (float(column) + 0.5f) / float(width) - 1.0f) * scale;
-            const float y = (1.0f - 2.0f * (float(row) + 0.5f) / float(height)) * scale;
-            const vec3 direction(x, y, -1.0f); // its length along the axis is 1
-            float distance = 1e9f;
-            vec3 normal(0.0f);
-            for (int axis = 0; axis < 3; ++axis) {
-                if (direction[axis] == 0.0f)
-                    continue;
-                const float wall = direction[axis] > 0.0f ? high[axis] : low[axis];
-                const float t = (wall - eye[axis]) / direction[axis];
-                if (t >= distance)
-                    continue;
-                distance = t;
-                normal = vec3(0.0f);
-                normal[axis] = direction[axis] > 0.0f ? -1.0f : 1.0f;
-            }
-            to[i] = std::bit_cast<std::uint32_t>(0.01f / distance);
-            to[pixels + 2 * i] = to[pixels + 2 * i + 1] = shared::pack_normal(normal);
-            to[3 * pixels + i] = surface;
-        }
+        return gpu::Buffer::create(device, description).value();
     }
 
     gpu::Device& device_;
     std::unique_ptr<gpu::Submission> submission_;
-    gpu::Image depth_, normals_, surface_, irradiance_;
+    HostImages large_, small_; // pictures of two sizes
+    HostImages* now_ = &large_;
     gpu::Buffer uploads_[2], read_back_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     host::Camera camera_{{0.1f, 1.2f, 1.8f}};
@@ -273,6 +169,13 @@ inline host::Matrix4 box_matrix(vec3 centre, vec3 size) {
 template <typename T>
 Status without_value(const Result<T>& result) {
     return result ? Status() : Status(result.error());
+}
+
+// Refused, by a message that names what was wrong.
+inline void expect_argument(const Status& status, const std::string& word) {
+    ASSERT_FALSE(status) << word;
+    EXPECT_EQ(status.error().code, ErrorCode::argument) << status.error().message;
+    EXPECT_NE(status.error().message.find(word), std::string::npos) << status.error().message;
 }
 
 // A room with a box that moves and a lamp.
