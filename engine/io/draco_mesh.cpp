@@ -32,7 +32,8 @@ Result<DracoMesh::Attribute> read_attribute(const draco::Mesh& mesh, int id, con
 
 } // namespace
 
-Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attributes) {
+Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attributes,
+                               AllowDracoMemory allow) {
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const auto kind = draco::Decoder::GetEncodedGeometryType(&buffer);
@@ -45,6 +46,8 @@ Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
     if (mesh->num_points() > element_limit || mesh->num_faces() > element_limit)
         return Error{"its Draco data is too large"};
+    SUNFLECK_TRY(allow(mesh->num_points() * attributes.size() * sizeof(float[4]) +
+                       mesh->num_faces() * sizeof(std::uint32_t[3])));
     DracoMesh result;
     for (const auto& [name, id] : attributes) {
         SUNFLECK_ASSIGN(result.attributes[name], read_attribute(*mesh, id, name));

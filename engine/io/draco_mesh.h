@@ -22,7 +22,11 @@ struct DracoMesh {
     std::vector<std::uint32_t> indices;          // three per triangle
 };
 
+// Asked with the size of the result, in bytes, before memory for it is taken: the limit is the program's.
+using AllowDracoMemory = Status (*)(std::uint64_t bytes);
+
 // `attributes`: requested names and their ids in the data. All results are finite and in range.
-Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attributes);
+Result<DracoMesh> decode_draco(std::span<const unsigned char> bytes, const std::map<std::string, int>& attributes,
+                               AllowDracoMemory allow);
 
 } // namespace sunfleck::io

@@ -1,5 +1,7 @@
 #include "engine/io/gltf_accessor.h"
 
+#include "engine/core/memory_limit.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -161,6 +163,12 @@ Result<const tinygltf::Accessor*> find_accessor(const tinygltf::Model& model, in
     return &accessor;
 }
 
+// Before numbers of four bytes are taken for them: an accessor without a buffer view, or with sparse storage alone, is
+// of any size in a few bytes of a file.
+Status check_elements(int index, std::size_t numbers) {
+    return check_memory(numbers * 4, "accessor " + std::to_string(index), level_detail);
+}
+
 } // namespace
 
 Result<std::span<const unsigned char>> view_bytes(const tinygltf::Model& model, int index) {
@@ -185,6 +193,7 @@ Result<FloatElements> read_floats(const tinygltf::Model& model, int index, const
     const std::vector<std::size_t> offsets = component_offsets(accessor->type, component);
     FloatElements result;
     result.width = offsets.size();
+    SUNFLECK_TRY(check_elements(index, accessor->count * result.width));
     result.values.assign(accessor->count * result.width, 0.0f);
     SUNFLECK_TRY(each_element(model, index, [&](std::size_t i, const unsigned char* address) {
         for (std::size_t c = 0; c < offsets.size(); ++c)
@@ -201,6 +210,7 @@ Result<std::vector<std::uint32_t>> read_integers(const tinygltf::Model& model, i
     const int kind = accessor->componentType;
     const std::size_t component = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(kind)));
     const std::vector<std::size_t> offsets = component_offsets(type, component);
+    SUNFLECK_TRY(check_elements(index, accessor->count * offsets.size()));
     std::vector<std::uint32_t> result(accessor->count * offsets.size(), 0);
     SUNFLECK_TRY(each_element(model, index, [&](std::size_t i, const unsigned char* address) {
         for (std::size_t c = 0; c < offsets.size(); ++c)

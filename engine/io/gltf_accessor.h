@@ -12,6 +12,8 @@
 namespace sunfleck::io {
 
 inline constexpr std::size_t element_limit = 50u << 20; // per accessor
+// What an error names that says what a level would take of memory (engine/core/memory_limit.h).
+inline constexpr const char* level_detail = "the level's detail";
 
 template <typename T>
 bool in_range(int index, const std::vector<T>& list) {

@@ -1,6 +1,7 @@
 #include "engine/io/gltf_document.h"
 
 #include "engine/core/file.h"
+#include "engine/core/memory_limit.h"
 #include "engine/io/gltf_checks.h"
 #include "engine/io/uri.h"
 
@@ -200,10 +201,12 @@ Status decompress_view(tinygltf::Model& model, std::size_t index) {
     const std::vector<unsigned char>& data = model.buffers[std::size_t(buffer)].data;
     if (std::size_t(offset) > data.size() || std::size_t(length) > data.size() - std::size_t(offset))
         return invalid;
-    // Each block of 16 elements has its own header: so few bytes cannot hold more elements than this.
-    if (std::size_t(count) > std::size_t(length) * 256)
+    // The shortest code, two bits for 16 bytes of zeros, packs 64 bytes in one: so few cannot hold more than this.
+    const std::size_t bytes = std::size_t(count) * std::size_t(stride);
+    if (bytes / 64 > std::size_t(length))
         return invalid;
-    std::vector<unsigned char> plain(std::size_t(count) * std::size_t(stride));
+    SUNFLECK_TRY(check_memory(bytes, "buffer view " + std::to_string(index), level_detail));
+    std::vector<unsigned char> plain(bytes);
     if (!decode_meshopt(source, std::span(data).subspan(std::size_t(offset), std::size_t(length)), std::size_t(count),
                         plain))
         return invalid;

@@ -64,9 +64,12 @@ bool has_positions(const tinygltf::Primitive& primitive) {
     return primitive.attributes.count("POSITION") > 0 || primitive.extensions.count("KHR_draco_mesh_compression") > 0;
 }
 
-Status read_meshes(const GltfDocument& document, GltfContent& content, ImportReport& report) {
+Status read_meshes(const GltfDocument& document, GltfContent& content, ImportReport& report,
+                   const std::function<bool(float)>& progress) {
     const tinygltf::Model& model = document.model;
     for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+        if (progress && !progress(float(m) / float(model.meshes.size())))
+            return Error{"stopped"};
         const tinygltf::Mesh& mesh = model.meshes[m];
         content.meshes.emplace_back();
         for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
@@ -80,7 +83,7 @@ Status read_meshes(const GltfDocument& document, GltfContent& content, ImportRep
                 const std::string problem = "mesh " + std::to_string(m) + " ('" + mesh.name + "'), primitive " +
                                             std::to_string(p) + ": " + primitive.error().message;
                 if (document.usage.uses("meshes", m))
-                    return Error{problem};
+                    return Error{problem, primitive.error().code};
                 report.notes.push_back(problem + "; nothing uses it, so it is left out");
                 continue;
             }
@@ -180,6 +183,13 @@ void count_content(const GltfContent& content, const scene::TextureStore& textur
     report.counts["textures"] = textures.size() - first_texture;
 }
 
+// One half of the whole, from `begin` on.
+std::function<bool(float)> part_of(const std::function<bool(float)>& progress, float begin) {
+    if (!progress)
+        return {};
+    return [&progress, begin](float share) { return progress(begin + 0.5f * share); };
+}
+
 Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& registry, scene::MeshStore& meshes,
                                      scene::TextureStore& textures, const ImportOptions& options) {
     if (!read)
@@ -192,9 +202,10 @@ Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& r
     SUNFLECK_ASSIGN(const int scene, choose_scene(model, options, report));
     GltfContent content;
     SUNFLECK_ASSIGN(content.variant, find_variant(model, options.variant, report));
-    SUNFLECK_ASSIGN(content.materials, MaterialImport::read(document, options.progress));
+    // Which of both takes longer cannot be told beforehand.
+    SUNFLECK_ASSIGN(content.materials, MaterialImport::read(document, part_of(options.progress, 0.0f)));
     report.notes.insert(report.notes.end(), content.materials.notes.begin(), content.materials.notes.end());
-    SUNFLECK_TRY(read_meshes(document, content, report));
+    SUNFLECK_TRY(read_meshes(document, content, report, part_of(options.progress, 0.5f)));
     SUNFLECK_TRY(read_skins(document, content));
     SUNFLECK_TRY(check_skinned_nodes(model, content));
     for (std::size_t i = 0; i < model.animations.size(); ++i) {
@@ -239,9 +250,10 @@ Result<ImportReport> guarded(const std::string& what, const Import& import) {
     // tinygltf, Draco and containers throw; no exception leaves this function.
     try {
         auto report = import();
-        return report ? std::move(report) : Error{"cannot import " + what + ": " + one_line(report.error().message)};
+        return report ? std::move(report)
+                      : Error{"cannot import " + what + ": " + one_line(report.error().message), report.error().code};
     } catch (const std::bad_alloc&) {
-        return Error{"cannot import " + what + ": out of memory"};
+        return Error{"cannot import " + what + ": out of memory", ErrorCode::memory};
     } catch (const std::exception& exception) {
         return Error{"cannot import " + what + ": it is not valid glTF (" + exception.what() + ")"};
     }

@@ -1,5 +1,6 @@
 #include "engine/io/gltf_meshes.h"
 
+#include "engine/core/memory_limit.h"
 #include "engine/io/gltf_mesh_shapes.h"
 
 #include "engine/io/draco_mesh.h"
@@ -49,7 +50,9 @@ public:
         const tinygltf::Value& attributes = extension.Get("attributes");
         for (const std::string& name : attributes.Keys())
             ids[name] = attributes.Get(name).IsNumber() ? attributes.Get(name).GetNumberAsInt() : -1;
-        SUNFLECK_ASSIGN(draco_, decode_draco(bytes, ids));
+        SUNFLECK_ASSIGN(draco_, decode_draco(bytes, ids, [](std::uint64_t size) {
+                            return check_memory(size, "its Draco data", level_detail);
+                        }));
         compressed_ = true;
         return {};
     }
@@ -60,7 +63,8 @@ public:
         if (const auto found = draco_.attributes.find(name); found != draco_.attributes.end())
             return FloatElements{found->second.values, found->second.width};
         auto elements = read_floats(model_, primitive_.attributes.at(name), use);
-        return elements ? std::move(elements) : Result<FloatElements>(Error{name + ": " + elements.error().message});
+        return elements ? std::move(elements)
+                        : Result<FloatElements>(Error{name + ": " + elements.error().message, elements.error().code});
     }
 
     Result<std::vector<std::uint32_t>> indices(std::size_t vertices) const {
@@ -178,6 +182,7 @@ Status read_vertices(const Attributes& attributes, scene::Mesh& mesh) {
 Status read_targets(const tinygltf::Model& model, const tinygltf::Primitive& primitive, scene::DeformableMesh& mesh) {
     for (const auto& attributes : primitive.targets) {
         scene::MorphTarget target;
+        SUNFLECK_TRY(check_memory(mesh.rest.positions.size() * sizeof(vec3), "a morph target", level_detail));
         target.positions.assign(mesh.rest.positions.size(), vec3(0.0f));
         if (const auto found = attributes.find("POSITION"); found != attributes.end()) {
             SUNFLECK_ASSIGN(const FloatElements elements, read_floats(model, found->second, position_use));

@@ -267,8 +267,10 @@ void RayScene::Implementation::list_instances(const scene::SceneChanges& changes
 Status RayScene::Implementation::check_size() const {
     constexpr std::uint64_t bytes_per_triangle = 260;
     std::uint64_t triangles = 0;
-    for (std::uint32_t i = 0; i < static_count; ++i)
-        triangles += (*meshes)[instances[i].mesh].triangle_count();
+    std::unordered_set<std::uint32_t> shared; // movers of one mesh share its tree
+    for (std::uint32_t i = 0; i < instances.size(); ++i)
+        if (i < static_count || instances[i].needs_triangles_of_its_own() || shared.insert(instances[i].mesh).second)
+            triangles += (*meshes)[instances[i].mesh].triangle_count();
     return check_memory(triangles * bytes_per_triangle, "rays among " + std::to_string(triangles) + " triangles",
                         "the level's detail");
 }
@@ -303,7 +305,7 @@ Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshSto
     self.cursor.saw(changes);
     if (differences.static_geometry || differences.movers)
         self.list_instances(changes, differences.static_geometry);
-    if (differences.static_geometry)
+    if (differences.static_geometry || differences.movers)
         SUNFLECK_TRY(self.check_size());
     self.rebuild(differences);
     if (const RTCError error = rtcGetDeviceError(self.device.get()); error != RTC_ERROR_NONE)

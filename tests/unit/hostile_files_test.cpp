@@ -1,4 +1,5 @@
 // Damaged and hostile glTF files: one message that names the cause, soon, with little memory, and nothing half-loaded.
+#include "engine/core/memory_limit.h"
 #include "engine/core/random.h"
 #include "engine/io/image.h"
 #include "test_places.h"
@@ -205,6 +206,68 @@ TEST(HostileFiles, UrisThatAreNotFilesBesideTheFile) {
 }
 
 // --- The mutation fuzzer -------------------------------------------------------------------------------------------
+
+// What a few bytes may claim is counted before it is taken.
+TEST(HostileFiles, FewBytesTakeNoGigabytes) {
+    GltfBuilder sparse = good();
+    const std::uint16_t place = 0;
+    const float value[3] = {1, 2, 3};
+    const int places = sparse.view(&place, sizeof place), values = sparse.view(value, sizeof value);
+    sparse.file["accessors"].push_back({{"componentType", 5126},
+                                        {"count", 50'000'000},
+                                        {"type", "VEC3"},
+                                        {"sparse",
+                                         {{"count", 1},
+                                          {"indices", {{"bufferView", places}, {"componentType", 5123}}},
+                                          {"values", {{"bufferView", values}}}}}});
+    sparse.primitive()["attributes"]["POSITION"] = sparse.file["accessors"].size() - 1;
+
+    GltfBuilder targets = good();
+    targets.file["accessors"].push_back({{"componentType", 5126}, {"count", 1'000'000}, {"type", "VEC3"}});
+    targets.primitive()["attributes"]["POSITION"] = targets.file["accessors"].size() - 1;
+    for (int i = 0; i < 300; ++i)
+        targets.primitive()["targets"].push_back(json::object());
+
+    const std::uint64_t room = std::uint64_t(256) << 20;
+    for (GltfBuilder* file : {&sparse, &targets}) {
+        World world;
+        const std::uint64_t before = memory_in_use();
+        set_memory_limit(before + room);
+        const auto report = world.import(file->glb());
+        EXPECT_LT(memory_in_use(), before + room);
+        set_memory_limit(0);
+        ASSERT_FALSE(report);
+        EXPECT_EQ(report.error().code, ErrorCode::memory) << report.error().message;
+        EXPECT_NE(report.error().message.find("the level's detail"), std::string::npos) << report.error().message;
+    }
+}
+
+// 200 kB of zeros, which no compressed data of so many elements is.
+TEST(HostileFiles, CompressedViewsClaimNoMoreThanTheirBytesHold) {
+    GltfBuilder file = good();
+    const std::string zeros(200'000, '\0');
+    const int source = file.view(zeros.data(), zeros.size());
+    const json view = file.file["bufferViews"][std::size_t(source)];
+    file.file["bufferViews"].push_back({{"buffer", 0},
+                                        {"byteLength", 4},
+                                        {"extensions",
+                                         {{"EXT_meshopt_compression",
+                                           {{"buffer", 0},
+                                            {"byteOffset", view["byteOffset"]},
+                                            {"byteLength", zeros.size()},
+                                            {"byteStride", 256},
+                                            {"count", 51'000'000},
+                                            {"mode", "ATTRIBUTES"}}}}}});
+    file.file["accessors"].push_back(
+        {{"bufferView", file.file["bufferViews"].size() - 1}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
+    file.primitive()["attributes"]["POSITION"] = file.file["accessors"].size() - 1;
+    file.file["extensionsUsed"] = {"EXT_meshopt_compression"};
+    rusage before{}, after{};
+    ::getrusage(RUSAGE_SELF, &before);
+    expect_refused(file, "EXT_meshopt_compression");
+    ::getrusage(RUSAGE_SELF, &after);
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 512 * 1024) << "KiB";
+}
 
 TEST(HostileFiles, TwoThousandMutations) {
     std::vector<std::string> files = tests::sample_files();
