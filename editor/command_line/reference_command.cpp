@@ -1,6 +1,7 @@
 // sunfleck reference: the path tracer, progressive; can be interrupted and goes on where it was.
 #include "editor/command_line/commands.h"
 
+#include "engine/core/caught.h"
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
 #include "engine/core/log.h"
@@ -138,22 +139,6 @@ std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettin
     return hash_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// When to save: every so many seconds, but so that saving takes 2 % of the time at most.
-class SaveClock {
-public:
-    explicit SaveClock(double interval) : interval_(interval), next_(interval) {}
-    bool is_time() const { return since_.seconds() >= next_; }
-    void saved(double seconds) {
-        constexpr double most_share = 0.02;
-        next_ = std::max(interval_, seconds * (1.0 / most_share - 1.0));
-        since_ = Stopwatch();
-    }
-
-private:
-    double interval_, next_;
-    Stopwatch since_;
-};
-
 // A picture on its way to options.samples a pixel, saved now and then.
 class Tracing {
 public:
@@ -177,8 +162,31 @@ public:
         return {};
     }
 
-    // An error where it was stopped; the state is saved then.
+    // An error where it was stopped, by a signal or a failure; what is there is saved then.
     Status run() {
+        const Status traced = caught([&]() -> Status { return trace(); });
+        if (traced && accumulation_.samples >= goal_)
+            return {};
+        // Sums and counts are whole: nothing fails while samples are added to them.
+        const Error why = traced ? Error{std::string("stopped by ") + signal_name(stop_signal())} : traced.error();
+        if (const Status saved = save(); !saved)
+            return Error{why.message + "; " + saved.error().message, why.code};
+        return Error{why.message + "; the same command goes on from '" + state_.newest().string() + "'", why.code};
+    }
+
+    Status save() {
+        const Stopwatch watch;
+        Status status = caught([&]() -> Status { return state_.save(accumulation_); });
+        clock_.saved(watch.seconds());
+        return status;
+    }
+
+    const Accumulation& accumulation() const { return accumulation_; }
+    double seconds() const { return seconds_; }
+    double rays_per_second() const { return double(accumulation_.rays - rays_before_) / std::max(seconds_, 1e-9); }
+
+private:
+    Status trace() {
         const Stopwatch watch;
         Progress progress("reference");
         while (accumulation_.samples < goal_ && !interrupted()) {
@@ -190,25 +198,8 @@ public:
                 if (const Status status = save(); !status)
                     log_warning(status.error().message);
         }
-        if (accumulation_.samples >= goal_)
-            return {};
-        SUNFLECK_TRY(save());
-        return Error{std::string("stopped by ") + signal_name(stop_signal()) + "; the same command goes on from '" +
-                     state_.newest().string() + "'"};
+        return {};
     }
-
-    Status save() {
-        const Stopwatch watch;
-        Status status = state_.save(accumulation_);
-        clock_.saved(watch.seconds());
-        return status;
-    }
-
-    const Accumulation& accumulation() const { return accumulation_; }
-    double seconds() const { return seconds_; }
-    double rays_per_second() const { return double(accumulation_.rays - rays_before_) / std::max(seconds_, 1e-9); }
-
-private:
     // Few samples first, so that an early stop has something to show.
     void trace_for(double slice) {
         const std::uint32_t batch = std::min({std::max(1u, accumulation_.samples), 16u, goal_ - accumulation_.samples});

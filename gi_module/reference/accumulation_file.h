@@ -3,6 +3,8 @@
 
 #include "gi_module/reference/path_tracer.h"
 
+#include <algorithm>
+#include <chrono>
 #include <filesystem>
 
 namespace sunfleck::gi::reference {
@@ -30,6 +32,27 @@ private:
     std::uint64_t key_;
     std::uint64_t generation_ = 0; // of the newest
     int next_ = 0;                 // which file the next save writes
+};
+
+// When to save: every `interval` seconds, but so that saving takes 2 % of the time at most. How long it takes is not
+// known before the first one, which the wait for the second makes up for.
+class SaveClock {
+public:
+    explicit SaveClock(double interval) : interval_(interval) { saved(0.0); }
+    bool is_time() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - since_).count() >= next_;
+    }
+    // Seconds until it is, from the last save on.
+    double next() const { return next_; }
+    void saved(double seconds) {
+        constexpr double most_share = 0.02;
+        next_ = std::max(interval_, seconds * (1.0 / most_share - 1.0));
+        since_ = std::chrono::steady_clock::now();
+    }
+
+private:
+    double interval_, next_ = 0.0;
+    std::chrono::steady_clock::time_point since_;
 };
 
 } // namespace sunfleck::gi::reference

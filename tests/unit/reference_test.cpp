@@ -24,6 +24,17 @@ double furnace(double a, double e, std::uint32_t bounces) {
     return sum;
 }
 
+TEST(Reference, SavingTakesTwoPerCentAtMost) {
+    SaveClock often(0.2);
+    EXPECT_EQ(often.next(), 0.2);
+    for (const double seconds : {0.001, 0.1, 7.0}) {
+        often.saved(seconds);
+        EXPECT_LE(seconds / (seconds + often.next()), 0.02 + 1e-12);
+        EXPECT_GE(often.next(), 0.2);
+    }
+    EXPECT_FALSE(often.is_time());
+}
+
 TEST(Reference, FurnaceHasItsClosedForm) {
     for (const float albedo : {0.1f, 0.3f, 0.5f, 0.7f, 0.9f}) {
         ecs::Registry registry;
