@@ -66,12 +66,34 @@ void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan1
 
 Context::Context() : implementation_(std::make_unique<Implementation>()) {}
 
-Context::~Context() = default;
+Context::~Context() {
+    implementation_->let_go_if_wanted();
+}
+
+Context::Implementation::Turn::Turn(Implementation& of)
+    : context(of), taken(!of.busy.exchange(true, std::memory_order_acquire)) {
+    if (taken)
+        context.let_go_if_wanted();
+}
+
+Context::Implementation::Turn::~Turn() {
+    if (!taken)
+        return;
+    context.let_go_if_wanted();
+    context.busy.store(false, std::memory_order_release);
+}
+
+void Context::Implementation::let_go_if_wanted() {
+    if (!abandon_wanted || abandoned)
+        return;
+    abandoned = true;
+    device->abandon();
+}
 
 void Context::abandon() {
     Implementation& self = *implementation_;
-    self.abandoned = true;
-    self.device->abandon();
+    self.abandon_wanted = true;
+    const Implementation::Turn turn(self);
 }
 
 Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles, LogSink log) {
@@ -110,7 +132,7 @@ Status Context::Implementation::check_ready() const {
 
 Status Context::set(std::string_view name, std::string_view value) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         if (const Field* field = gi::SensorSettings::description().find(name))
             return self.set_for_sensors(*field, value);

@@ -12,6 +12,7 @@
 #include "gi_module/system.h"
 #include "sunfleck/host.h"
 
+#include <atomic>
 #include <optional>
 
 namespace sunfleck::host {
@@ -109,6 +110,9 @@ struct Context::Implementation {
     Description description;
     std::unique_ptr<Follower> follower;
     Serials serials;
+    // A call is under way. Calls from callbacks of its, and from other threads meanwhile, are refused.
+    std::atomic<bool> busy{false};
+    std::atomic<bool> abandon_wanted{false}; // seen to by whichever call has the turn, or the next one
     // The follower may be half of this and half of that, because a step failed: the next update makes another.
     bool damaged = false;
     bool abandoned = false;
@@ -127,6 +131,18 @@ struct Context::Implementation {
                          const FrameImages& images);
     Result<SharedMaterial> make_material(const MaterialData& data, const SharedMaterial* before);
     Status check_ready() const;
+
+    struct Turn {
+        explicit Turn(Implementation& context);
+        ~Turn();
+        Turn(const Turn&) = delete;
+        Turn& operator=(const Turn&) = delete;
+        Implementation& context;
+        const bool taken; // false: another call has it
+    };
+    void let_go_if_wanted();
+    template <typename Call>
+    auto run(const Call& call) noexcept -> decltype(call());
 
     // Calls change(mirror). The description has the change already; where the mirror cannot follow, it is made again.
     template <typename Change>
@@ -156,12 +172,26 @@ auto guarded(const sunfleck::LogSink& log, const Call& call) noexcept -> decltyp
     }
 }
 
+// A call of the host's on its context.
+template <typename Call>
+auto Context::Implementation::run(const Call& call) noexcept -> decltype(call()) {
+    const Turn turn(*this);
+    return guarded(engine_log, [&]() -> decltype(call()) {
+        if (!turn.taken)
+            return wrong("the context is within another call; callbacks and other threads must not call it meanwhile");
+        return call();
+    });
+}
+
 template <typename T>
 Status check_there(const std::vector<std::optional<T>>& list, std::uint32_t number, const char* what) {
     if (number < list.size() && list[number])
         return {};
     return wrong(std::string("there is no ") + what + " " + std::to_string(number));
 }
+
+// host_image_states.cpp
+Status check_image_state(const std::string& what, const ImageState& state, VkFormat format);
 
 // host_images.cpp
 Status check_images(const FrameImages& images, std::uint32_t largest);

@@ -80,19 +80,17 @@ void Context::Implementation::forget_lost_commands() {
 
 Status Context::update(const Frame& frame) {
     Implementation& self = *implementation_;
-    bool begun = false;
-    Status status = guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(self.serials.check(frame));
-        begun = true;
         if (self.follower != nullptr)
             self.follower->updated = false;
-        return self.update(frame);
+        Status status = guarded(self.engine_log, [&] { return self.update(frame); });
+        // One that was stopped, or that lacks a choice of settings, is whole.
+        if (!status && status.error().code != ErrorCode::stopped)
+            self.damaged = true;
+        return status;
     });
-    // One that was stopped, or that lacks a choice of settings, is whole.
-    if (!status && begun && status.error().code != ErrorCode::stopped)
-        self.damaged = true;
-    return status;
 }
 
 Status Context::Implementation::update(const Frame& frame) {
@@ -160,14 +158,14 @@ void Context::Implementation::drop_removed_meshes() {
 
 std::uint32_t Context::surface_id(std::uint32_t instance) const {
     const Implementation& self = *implementation_;
-    if (self.damaged || self.follower == nullptr || instance >= self.follower->surface_ids.size())
+    if (self.busy || self.damaged || self.follower == nullptr || instance >= self.follower->surface_ids.size())
         return 0;
     return self.follower->surface_ids[instance];
 }
 
 Status Context::record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_record(commands, images));
         SUNFLECK_TRY(check_camera(camera));
         const scene::SceneSpace& space = self.follower->space;
@@ -180,7 +178,7 @@ Status Context::record(VkCommandBuffer commands, const Camera& camera, const Fra
 
 Status Context::record(VkCommandBuffer commands, const View& view, const FrameImages& images) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_record(commands, images));
         SUNFLECK_TRY(check_view(view));
         const auto projected = scene::camera_from_matrix(self.follower->space.to_clip(world_to_clip_of(view)),

@@ -35,35 +35,19 @@ bool is_there(const HostImage& image) {
     return image.image != VK_NULL_HANDLE || image.view != VK_NULL_HANDLE;
 }
 
-// Images of the host's may lie in any layout of Vulkan 1.3 but the swapchain's.
-Status check_layout(const std::string& what, VkImageLayout layout) {
-    const bool of_core = layout >= VK_IMAGE_LAYOUT_UNDEFINED && layout <= VK_IMAGE_LAYOUT_PREINITIALIZED;
-    constexpr VkImageLayout later[] = {VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_STENCIL_ATTACHMENT_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_STENCIL_READ_ONLY_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
-                                       VK_IMAGE_LAYOUT_ATTACHMENT_OPTIMAL};
-    if (of_core || std::find(std::begin(later), std::end(later), layout) != std::end(later))
-        return {};
-    return wrong(what + " has the layout " + std::to_string(layout) + ", which is none of Vulkan 1.3");
-}
-
 Status check_image(const char* name, const HostImage& image, std::initializer_list<Formats> allowed) {
     const std::string what = std::string("FrameImages: the image of ") + name;
     if (image.image == VK_NULL_HANDLE || image.view == VK_NULL_HANDLE)
         return wrong(what + " has no " + (image.image == VK_NULL_HANDLE ? "image handle" : "view"));
-    SUNFLECK_TRY(check_layout(what + " at entry", image.entry.layout));
-    SUNFLECK_TRY(check_layout(what + " at exit", image.exit.layout));
+    const VkFormat format = format_of(image, *allowed.begin()->begin());
+    if (std::none_of(allowed.begin(), allowed.end(), [&](Formats formats) { return is_one_of(format, formats); }))
+        return wrong(what + " has the format " + std::to_string(format) +
+                     " (VkFormat), which sunfleck/host.h does not list");
+    SUNFLECK_TRY(check_image_state(what + " at entry", image.entry, format));
+    SUNFLECK_TRY(check_image_state(what + " at exit", image.exit, format));
     if (image.exit.layout == VK_IMAGE_LAYOUT_UNDEFINED || image.exit.layout == VK_IMAGE_LAYOUT_PREINITIALIZED)
         return wrong(what + " needs a layout at exit");
-    const VkFormat format = format_of(image, *allowed.begin()->begin());
-    if (std::any_of(allowed.begin(), allowed.end(), [&](Formats formats) { return is_one_of(format, formats); }))
-        return {};
-    return wrong(what + " has the format " + std::to_string(format) +
-                 " (VkFormat), which sunfleck/host.h does not list");
+    return {};
 }
 
 // An input of undefined layout has no content.
@@ -115,6 +99,24 @@ gi::NormalEncoding encoding_of(VkFormat format) {
                                                       : gi::NormalEncoding::signed_values;
 }
 
+// Each would be brought from its state at entry to that at exit by itself.
+Status check_different(const FrameImages& images) {
+    const std::pair<const char*, const HostImage*> list[] = {{"depth", &images.depth},
+                                                             {"normals", &images.normals},
+                                                             {"surface ids", &images.surface},
+                                                             {"irradiance", &images.irradiance},
+                                                             {"geometric normals", &images.geometric_normals},
+                                                             {"motion", &images.motion},
+                                                             {"metallic and roughness", &images.metallic_roughness},
+                                                             {"specular light", &images.specular}};
+    for (auto one = std::begin(list); one != std::end(list); ++one)
+        for (auto other = one + 1; is_there(*one->second) && other != std::end(list); ++other)
+            if (one->second->image == other->second->image)
+                return wrong(std::string("FrameImages: ") + one->first + " and " + other->first +
+                             " are the same image");
+    return {};
+}
+
 } // namespace
 
 Status check_images(const FrameImages& images, std::uint32_t largest) {
@@ -136,7 +138,7 @@ Status check_images(const FrameImages& images, std::uint32_t largest) {
         SUNFLECK_TRY(check_input("metallic and roughness", images.metallic_roughness, {material_formats}));
     if (is_there(images.specular))
         SUNFLECK_TRY(check_image("specular light", images.specular, {light_formats}));
-    return {};
+    return check_different(images);
 }
 
 gi::HostGBuffer import_g_buffer(gpu::FrameGraph& graph, const FrameImages& images, const scene::DepthMapping& mapping) {

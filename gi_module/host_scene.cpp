@@ -149,7 +149,7 @@ void Mirror::set_surface(ecs::Entity entity, const SharedMaterial& surface) {
 
 Result<std::uint32_t> Context::add_mesh(const MeshData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+    return self.run([&]() -> Result<std::uint32_t> {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_mesh(data));
         return self.description.meshes.add(mesh_of(data));
@@ -158,7 +158,7 @@ Result<std::uint32_t> Context::add_mesh(const MeshData& data) {
 
 Status Context::remove_mesh(std::uint32_t mesh) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_mesh_there(self.description, mesh));
         const auto& instances = self.description.instances;
@@ -193,7 +193,7 @@ Result<SharedMaterial> Context::Implementation::make_material(const MaterialData
 
 Result<std::uint32_t> Context::add_material(const MaterialData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+    return self.run([&]() -> Result<std::uint32_t> {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_ASSIGN(auto material, self.make_material(data, nullptr));
         self.description.materials.push_back(std::move(material));
@@ -203,7 +203,7 @@ Result<std::uint32_t> Context::add_material(const MaterialData& data) {
 
 Status Context::set_material(std::uint32_t material, const MaterialData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_material_there(self.description, material));
         SharedMaterial& changed = self.description.materials[material];
@@ -219,7 +219,7 @@ Status Context::set_material(std::uint32_t material, const MaterialData& data) {
 
 Result<std::uint32_t> Context::add_instance(const InstanceData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+    return self.run([&]() -> Result<std::uint32_t> {
         Description& description = self.description;
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_mesh_there(description, data.mesh));
@@ -244,7 +244,7 @@ Result<std::uint32_t> Context::add_instance(const InstanceData& data) {
 
 Status Context::set_transform(std::uint32_t instance, const Matrix4& transform) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
         Description::Instance& changed = *self.description.instances[instance];
@@ -257,7 +257,7 @@ Status Context::set_transform(std::uint32_t instance, const Matrix4& transform) 
 
 Status Context::set_surface(std::uint32_t instance, const Vector3& albedo, const Vector3& emission) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
         SUNFLECK_TRY(check_albedo("albedo", albedo));
@@ -272,7 +272,7 @@ Status Context::set_surface(std::uint32_t instance, const Vector3& albedo, const
 
 Status Context::remove_instance(std::uint32_t instance) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
         self.description.instances[instance].reset();
@@ -286,7 +286,7 @@ Status Context::remove_instance(std::uint32_t instance) {
 
 Result<std::uint32_t> Context::add_light(const LightData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+    return self.run([&]() -> Result<std::uint32_t> {
         Description& description = self.description;
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_light(data));
@@ -299,7 +299,7 @@ Result<std::uint32_t> Context::add_light(const LightData& data) {
 
 Status Context::set_light(std::uint32_t light, const LightData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
         SUNFLECK_TRY(check_light(data));
@@ -311,7 +311,7 @@ Status Context::set_light(std::uint32_t light, const LightData& data) {
 
 Status Context::remove_light(std::uint32_t light) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
         self.description.lights[light].reset();
@@ -325,7 +325,7 @@ Status Context::remove_light(std::uint32_t light) {
 
 Status Context::clear() {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         // Nothing of the follower looks at the description before the next update makes another one.
         self.description = {};

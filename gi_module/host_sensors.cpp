@@ -42,7 +42,7 @@ Status Context::Implementation::set_for_sensors(const Field& field, std::string_
 
 Result<std::uint32_t> Context::add_sensor(const SensorData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Result<std::uint32_t> {
+    return self.run([&]() -> Result<std::uint32_t> {
         Description& description = self.description;
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_sensor(data));
@@ -55,7 +55,7 @@ Result<std::uint32_t> Context::add_sensor(const SensorData& data) {
 
 Status Context::set_sensor(std::uint32_t sensor, const SensorData& data) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
         SUNFLECK_TRY(check_sensor(data));
@@ -67,7 +67,7 @@ Status Context::set_sensor(std::uint32_t sensor, const SensorData& data) {
 
 Status Context::remove_sensor(std::uint32_t sensor) {
     Implementation& self = *implementation_;
-    return guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
         self.description.sensors[sensor].reset();
@@ -81,16 +81,13 @@ Status Context::remove_sensor(std::uint32_t sensor) {
 
 Status Context::step_sensors() {
     Implementation& self = *implementation_;
-    bool whole = false;
-    const Status status = guarded(self.engine_log, [&]() -> Status {
+    return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
-        const Status stepped = self.step_sensors();
-        whole = bool(stepped);
-        return stepped;
+        Status status = guarded(self.engine_log, [&] { return self.step_sensors(); });
+        if (!status && self.follower != nullptr)
+            self.follower->sensors.reset(); // they begin again
+        return status;
     });
-    if (!whole && self.follower != nullptr)
-        self.follower->sensors.reset(); // they begin again
-    return status;
 }
 
 Status Context::Implementation::step_sensors() {
@@ -109,7 +106,7 @@ Status Context::Implementation::step_sensors() {
 SensorValue Context::read_sensor(std::uint32_t sensor) const {
     const Implementation& self = *implementation_;
     SensorValue value;
-    if (self.damaged || self.follower == nullptr || sensor >= self.follower->mirror.sensors.size() ||
+    if (self.busy || self.damaged || self.follower == nullptr || sensor >= self.follower->mirror.sensors.size() ||
         self.follower->mirror.sensors[sensor].is_null())
         return value;
     const Mirror& mirror = self.follower->mirror;

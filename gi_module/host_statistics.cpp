@@ -22,8 +22,8 @@ std::vector<Statistic> times_of(const std::map<std::string, double>& millisecond
 } // namespace
 
 Statistics Context::statistics() const {
-    const Implementation& self = *implementation_;
-    const Result<Statistics> result = guarded(self.engine_log, [&]() -> Result<Statistics> {
+    Implementation& self = *implementation_;
+    const Result<Statistics> result = self.run([&]() -> Result<Statistics> {
         SUNFLECK_TRY(self.check_ready());
         Statistics numbers;
         numbers.gpu_serial = self.timers->latest().serial;

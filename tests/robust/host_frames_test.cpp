@@ -66,5 +66,88 @@ TEST_F(RobustHostFrames, NoCallWaitsForTheGpu) {
     EXPECT_EQ(std::count_if(calls.begin(), calls.end(), waits), 0);
 }
 
+// Every call that a callback could make, on the context that it is of.
+void call_everything(host::Context& context, HostProgram& program) {
+    const char* const word = "within another call";
+    expect_argument(context.set("lights", "8"), word);
+    expect_argument(without_value(context.add_mesh(cube(true))), word);
+    expect_argument(context.remove_mesh(0), word);
+    expect_argument(without_value(context.add_material({})), word);
+    expect_argument(context.set_material(0, {}), word);
+    expect_argument(without_value(context.add_instance({0})), word);
+    expect_argument(context.set_transform(0, host::identity), word);
+    expect_argument(context.set_surface(0, {0, 0, 0}, {0, 0, 0}), word);
+    expect_argument(context.remove_instance(0), word);
+    expect_argument(without_value(context.add_light({})), word);
+    expect_argument(context.set_light(0, {}), word);
+    expect_argument(context.remove_light(0), word);
+    expect_argument(without_value(context.add_sensor({})), word);
+    expect_argument(context.set_sensor(0, {}), word);
+    expect_argument(context.remove_sensor(0), word);
+    expect_argument(context.step_sensors(), word);
+    expect_argument(context.clear(), word);
+    expect_argument(context.update({}), word);
+    expect_argument(context.record(program.commands(), program.camera(), program.images()), word);
+    expect_argument(context.record(program.commands(), view_of(program), program.images()), word);
+    EXPECT_TRUE(context.statistics().counters.empty());
+    EXPECT_EQ(context.surface_id(0), 0u);
+    EXPECT_EQ(context.read_sensor(0).share, 0.0f);
+}
+
+TEST_F(RobustHostFrames, CallsFromCallbacksAreRefused) {
+    HostProgram program(device());
+    const auto undisturbed = make_context(program);
+    describe_room(*undisturbed);
+    const HostPicture expected = picture_of_room(program, *undisturbed);
+    host::Context* of_log = nullptr;
+    int logged = 0, shared = 0;
+    const auto context = make_context(program, [&](host::LogLevel, std::string_view) {
+        ++logged;
+        call_everything(*of_log, program);
+    });
+    of_log = context.get();
+    describe_room(*context);
+    host::Frame frame = program.next_frame();
+    frame.progress = [&](float) {
+        ++shared;
+        call_everything(*context, program);
+        return true;
+    };
+    ASSERT_TRUE(context->update(frame));
+    EXPECT_GT(shared, 0);
+    program.draw(context->surface_id(0));
+    ASSERT_TRUE(context->record(program.commands(), program.camera(), program.images()));
+    program.submit();
+    EXPECT_EQ(picture_of_room(program, *context), expected);
+    // A light that is left out, which is said.
+    host::InstanceData lamp{1, box_matrix(vec3(0, 2, 0), vec3(1e-12f))};
+    lamp.emission = {9, 9, 9};
+    const std::uint32_t small = context->add_instance(lamp).value();
+    ASSERT_TRUE(program.frame(*context, 0));
+    EXPECT_GT(logged, 0);
+    ASSERT_TRUE(context->remove_instance(small));
+    EXPECT_EQ(picture_of_room(program, *context), expected);
+}
+
+// What a callback abandons is abandoned once the call has ended.
+TEST_F(RobustHostFrames, CallbacksMayAbandon) {
+    auto other = gpu::Device::create({}).value();
+    auto program = std::make_unique<HostProgram>(*other);
+    auto context = host::Context::create(program->handles()).value();
+    describe_room(*context);
+    host::Frame frame = program->next_frame();
+    frame.progress = [&](float) {
+        context->abandon();
+        return true;
+    };
+    EXPECT_TRUE(context->update(frame));
+    program->submit_empty();
+    program.reset();
+    other.reset();
+    const Status update = context->update({});
+    ASSERT_FALSE(update);
+    EXPECT_EQ(update.error().code, ErrorCode::device_lost);
+}
+
 } // namespace
 } // namespace sunfleck::tests

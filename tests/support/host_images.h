@@ -24,7 +24,9 @@ public:
     HostImages(gpu::Device& device, std::uint32_t width, std::uint32_t height)
         : device_(device), width_(width), height_(height) {
         for (std::size_t i = 0; i < inputs_.size(); ++i) {
-            inputs_[i].image = make_image(kinds[i].name, kinds[i].format, kinds[i].usage);
+            const VkImageUsageFlags usage =
+                i == depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+            inputs_[i].image = make_image(kinds[i].name, kinds[i].format, usage);
             inputs_[i].offset = i == 0 ? 0 : inputs_[i - 1].offset + VkDeviceSize(pixels()) * kinds[i - 1].bytes;
         }
         irradiance_ = make_image("irradiance", VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
@@ -77,17 +79,16 @@ private:
     struct Kind {
         const char* name;
         VkFormat format;
-        VkImageUsageFlags usage;
         VkDeviceSize bytes;
     };
     static constexpr std::array<Kind, count> kinds = {{
-        {"depth", VK_FORMAT_D32_SFLOAT, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, 4},
-        {"normals", VK_FORMAT_R32G32_UINT, 0, 8},
-        {"surface", VK_FORMAT_R32_UINT, 0, 4},
-        {"shading normals", VK_FORMAT_R16G16B16A16_SFLOAT, 0, 8},
-        {"geometric normals", VK_FORMAT_R16G16B16A16_SFLOAT, 0, 8},
-        {"motion", VK_FORMAT_R16G16_SFLOAT, 0, 4},
-        {"metallic and roughness", VK_FORMAT_R8G8B8A8_UNORM, 0, 4},
+        {"depth", VK_FORMAT_D32_SFLOAT, 4},
+        {"normals", VK_FORMAT_R32G32_UINT, 8},
+        {"surface", VK_FORMAT_R32_UINT, 4},
+        {"shading normals", VK_FORMAT_R16G16B16A16_SFLOAT, 8},
+        {"geometric normals", VK_FORMAT_R16G16B16A16_SFLOAT, 8},
+        {"motion", VK_FORMAT_R16G16_SFLOAT, 4},
+        {"metallic and roughness", VK_FORMAT_R8G8B8A8_UNORM, 4},
     }};
     struct Input {
         gpu::Image image;

@@ -10,8 +10,12 @@
 //
 // A context never submits, waits for the GPU, presents, or owns a swapchain.
 //
-// Threads. A context may be used from any thread, but by one at a time; update uses all cores. Contexts share nothing:
-// any number of them, on one device or on several, may be used at the same time by threads of their own.
+// Threads. A context may be used from any thread, but by one at a time; update uses all cores. What calls a context
+// while it is within another call, from another thread or from a callback (progress, log), is refused (argument), or
+// returns nothing (surface_id, read_sensor, statistics); abandon() then takes effect when the other call ends. Only
+// destroying it there is undefined. Contexts share nothing: any number of them, on one device or on several, may be
+// used at the same time by threads of their own. None uses a queue or a command pool; those stay under the host's own
+// locks.
 //
 // Ownership. Handles stay the host's. They must be valid (no library can tell a destroyed or foreign handle from a good
 // one; null ones are refused) and outlive the context. A context may be destroyed once the GPU has finished the frames
@@ -175,6 +179,10 @@ struct View {
 // be given, too); of an output, the last stages that use it, and the undefined layout, because nothing of it is kept.
 // `exit` is the first use after: the layout that it shall lie in, and the stages and accesses that then may read or
 // write it.
+//   layout         One of Vulkan 1.3, not the swapchain's, that an image of its format may have; where the format has
+//                  stencil, too, one for both aspects. Which the image's usage allows is the host's affair.
+//   stages         Of Vulkan 1.3, of mesh shaders and of ray tracing; only of features that the device was made with.
+//   access         Each is of one of the stages, by Vulkan's table; without stages, none or those of memory.
 struct ImageState {
     VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;
     VkPipelineStageFlags2 stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -188,7 +196,7 @@ struct HostImage {
 };
 
 // The images of one frame. Inputs need VK_IMAGE_USAGE_SAMPLED_BIT, outputs VK_IMAGE_USAGE_STORAGE_BIT; `record` reads
-// and writes them in compute shaders.
+// and writes them in compute shaders. No image may be given twice.
 //
 //   depth               D32_SFLOAT, D16_UNORM, X8_D24_UNORM_PACK32, D24_UNORM_S8_UINT, D32_SFLOAT_S8_UINT, R32_SFLOAT.
 //                       With a Camera: near / distance along its axis, 0 where nothing is. With a View: what it writes.
