@@ -13,12 +13,20 @@ std::uint32_t seed_from_environment(const char* name, std::uint32_t otherwise) {
     return text != nullptr ? std::uint32_t(std::strtoul(text, nullptr, 10)) : otherwise;
 }
 
+host::LogSink calling(const LogHook& hook) {
+    return [&hook](host::LogLevel, std::string_view) {
+        if (hook)
+            hook();
+    };
+}
+
 // On a device of its own, which takes what was left on it along; the context goes before the device or after it.
 void abandon_a_context(std::uint32_t seed, Tally& sum) {
     auto device = gpu::Device::create({}).value();
     auto program = std::make_unique<HostProgram>(*device);
-    auto context = make_context(*program);
-    Sequence sequence(seed, *program, *context);
+    LogHook hook;
+    auto context = make_context(*program, calling(hook));
+    Sequence sequence(seed, *program, *context, hook);
     for (std::uint32_t i = 0; i < 60 && !testing::Test::HasFailure(); ++i) {
         if (i == 20 + seed % 20)
             sequence.abandon();
@@ -39,14 +47,15 @@ TEST_F(RobustHostCalls, AreRightOrRefused) {
     const std::uint32_t last =
         seed_from_environment("SUNFLECK_LAST_SEED", first + by_size(sanitized() ? 3u : 11u, 199u));
     HostProgram program(device());
-    auto context = make_context(program);
+    LogHook hook;
+    auto context = make_context(program, calling(hook));
     auto fresh = make_context(program);
     describe_room(*fresh);
     const HostPicture expected = picture_of_room(program, *fresh);
     fresh.reset();
     Tally sum;
     for (std::uint32_t seed = first; seed <= last && !HasFailure(); ++seed) {
-        Sequence sequence(seed, program, *context);
+        Sequence sequence(seed, program, *context, hook);
         const std::uint32_t calls = 30 + seed * 7 % 71;
         for (std::uint32_t i = 0; i < calls && !HasFailure(); ++i)
             sequence.call();
@@ -54,9 +63,11 @@ TEST_F(RobustHostCalls, AreRightOrRefused) {
         // Contexts are used again. Every eighth one is judged by its picture, every twentieth replaced.
         ASSERT_TRUE(context->clear());
         if (seed % 20 == 0)
-            context = make_context(program);
-        for (const auto& [name, value] : {std::pair("baked_light", "on"), std::pair("light_maps", "on"),
-                                          std::pair("low_resolution", "4"), std::pair("shadow_map_bits", "16")})
+            context = make_context(program, calling(hook));
+        program.resize(false);
+        for (const auto& [name, value] :
+             {std::pair("baked_light", "on"), std::pair("light_maps", "on"), std::pair("low_resolution", "4"),
+              std::pair("shadow_map_bits", "16"), std::pair("specular", "none")})
             ASSERT_TRUE(context->set(name, value));
         if (seed % 8 == 0) {
             describe_room(*context);

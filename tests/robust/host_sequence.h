@@ -2,17 +2,18 @@
 // refused, and of an abandoned context all are refused.
 #pragma once
 
-#include "tests/robust/random_host_values.h"
+#include "tests/robust/host_frame_calls.h"
 
 namespace sunfleck::tests {
 
 using host::Mobility;
 
 // Calls a host might make, half of them with a value that makes no sense.
-class Sequence : RandomHostValues {
+class Sequence : public FrameCalls {
 public:
-    Sequence(std::uint32_t seed, HostProgram& program, host::Context& context)
-        : RandomHostValues(seed), program_(program), context_(context) {}
+    // `hook`: what the context's log calls.
+    Sequence(std::uint32_t seed, HostProgram& program, host::Context& context, LogHook& hook)
+        : FrameCalls(seed, program, context, hook) {}
 
     void call() {
         static constexpr void (Sequence::*calls[])() = {
@@ -21,7 +22,7 @@ public:
             &Sequence::add_light,    &Sequence::set_light,     &Sequence::remove_light,  &Sequence::set,
             &Sequence::add_sensor,   &Sequence::set_sensor,    &Sequence::remove_sensor, &Sequence::step_sensors,
             &Sequence::look,         &Sequence::create,        &Sequence::frame,         &Sequence::frame,
-            &Sequence::frame};
+            &Sequence::frame,        &Sequence::add_speck};
         // Half of the calls are of values that make no sense, whichever they are.
         wrong_ = pick(2) == 0;
         if (pick(100) == 0)
@@ -36,35 +37,8 @@ public:
         ++tally.calls["abandon"];
         log += " abandon";
     }
-    Tally tally;
-    std::string log;
 
 private:
-    void expect(const Status& status, const char* call, const std::string& why = "") {
-        ++tally.tried;
-        ++tally.calls[call];
-        log += std::string(" ") + call + (wrong_ ? "!" : "");
-        if (abandoned_)
-            return expect_lost(status, call);
-        const bool named = !status && status.error().code == ErrorCode::argument && !status.error().message.empty();
-        tally.refused += named && wrong_;
-        tally.right += bool(status) && !wrong_;
-        if (wrong_ ? !named : !status) {
-            ++tally.wrong;
-            ADD_FAILURE() << call << (wrong_ ? " should be refused " : " should succeed ") << why << ": "
-                          << (status ? "it succeeds" : status.error().message);
-        }
-    }
-
-    // Of an abandoned context: wrong arguments may be named first.
-    void expect_lost(const Status& status, const char* call) {
-        const bool named =
-            !status && !status.error().message.empty() &&
-            (status.error().code == ErrorCode::device_lost || (wrong_ && status.error().code == ErrorCode::argument));
-        (named ? tally.refused : tally.wrong) += 1;
-        EXPECT_TRUE(named) << call << " of an abandoned context: " << (status ? "it succeeds" : status.error().message);
-    }
-
     void clear() {
         wrong_ = false;
         expect(context_.clear(), "clear");
@@ -148,6 +122,9 @@ private:
             data.material = materials_ + 5;
         else if (materials_ > 0 && chance())
             data.material = pick(materials_);
+        add(data, "mistake " + std::to_string(mistake));
+    }
+    void add(const host::InstanceData& data, const std::string& why) {
         const auto made = context_.add_instance(data);
         if (made) {
             instances_.resize(made.value() + 1, false);
@@ -156,7 +133,16 @@ private:
             mesh_of_[made.value()] = data.mesh;
             ++live_;
         }
-        expect(without_value(made), "add_instance", "mistake " + std::to_string(mistake));
+        expect(without_value(made), "add_instance", why);
+    }
+    // An emitter without area, which is left out and said in the log.
+    void add_speck() {
+        if (std::count(meshes_.begin(), meshes_.end(), true) == 0 || live_ >= 12)
+            return;
+        wrong_ = false;
+        host::InstanceData data{one_of(meshes_), box_matrix(vec3(0, 1, 0), vec3(1e-12f))};
+        data.emission = {3, 3, 3};
+        add(data, "a speck");
     }
     // An instance or light that is there; without one, a wrong one.
     std::uint32_t one_of(const std::vector<bool>& list) {
@@ -256,7 +242,8 @@ private:
         };
         constexpr Choice good[] = {{"lights", "16"},        {"lights", "8"},         {"baked_light", "off"},
                                    {"baked_light", "on"},   {"light_maps", "off"},   {"light_maps", "on"},
-                                   {"low_resolution", "1"}, {"low_resolution", "4"}, {"shadow_map_bits", "16"}};
+                                   {"low_resolution", "1"}, {"low_resolution", "4"}, {"shadow_map_bits", "16"},
+                                   {"specular", "gloss"},   {"specular", "none"}};
         constexpr Choice bad[] = {{"lights", "-1"}, {"lights", "nan"}, {"lights", ""},          {"", "1"},
                                   {"nothing", "1"}, {"lights", "1e9"}, {"baked_light", "maybe"}};
         const Choice choice = wrong_ ? bad[pick(std::size(bad))] : good[pick(std::size(good))];
@@ -278,88 +265,9 @@ private:
                "statistics");
     }
 
-    void spoil_frame(host::Frame& frame) {
-        if (chance())
-            frame.serial = recorded_ > 0 ? pick(2) * recorded_ : 0;
-        else
-            frame.completed_serial = frame.serial + pick(3);
-    }
-    Status record_by_view(VkCommandBuffer commands) {
-        host::View view;
-        view.view_to_clip = host::view_projection(program_.camera(), program_.width(), program_.height());
-        if (wrong_ && chance())
-            view.view_to_clip = host::Matrix4{};
-        else if (wrong_)
-            spoil(chance() ? std::span<float>(view.world_to_view) : std::span<float>(view.view_to_clip));
-        return context_.record(commands, view, program_.images());
-    }
-
-    void frame() {
-        const bool wrong_frame = wrong_ && chance(), wrong_record = wrong_ && !wrong_frame;
-        host::Frame frame = program_.next_frame();
-        frame.map_budget = chance() ? 5 : 0xffffffffu;
-        const std::uint64_t serial = frame.serial;
-        wrong_ = wrong_frame;
-        if (wrong_) {
-            spoil_frame(frame);
-            expect(context_.update(frame), "update");
-            program_.submit_empty();
-            return;
-        }
-        expect(context_.update(frame), "update");
-        const bool recorded = record(wrong_record);
-        const std::uint32_t fate = pick(8);
-        if (!recorded || fate == 0) {
-            program_.submit_empty(); // the commands are lost
-            if (recorded)
-                drop(serial);
-        } else {
-            program_.submit();
-            recorded_ = serial;
-        }
-    }
-    bool record(bool with_mistake) {
-        if (with_mistake) {
-            wrong_ = true;
-            host::FrameImages images = program_.images();
-            const std::uint32_t mistake = pick(4);
-            if (mistake == 0)
-                spoil_images(images);
-            if (mistake == 3) {
-                expect(record_by_view(program_.commands()), "record(view)");
-            } else {
-                wrong_ = mistake == 1;
-                const host::Camera eye = camera(program_.camera());
-                wrong_ = true;
-                expect(context_.record(mistake == 2 ? VK_NULL_HANDLE : program_.commands(), eye, images), "record");
-            }
-            // May be followed by another try, or by another update.
-            if (chance())
-                return false;
-        }
-        wrong_ = false;
-        program_.draw(context_.surface_id(pick(6)));
-        if (pick(4) == 0)
-            expect(record_by_view(program_.commands()), "record(view)");
-        else
-            expect(context_.record(program_.commands(), program_.camera(), program_.images()), "record");
-        return true;
-    }
-    void drop(std::uint64_t serial) {
-        host::Frame next = program_.next_frame();
-        next.dropped = true;
-        expect(context_.update(next), "update after a dropped frame");
-        program_.submit_empty();
-        recorded_ = serial;
-    }
-
-    HostProgram& program_;
-    host::Context& context_;
     std::uint32_t materials_ = 0, live_ = 0;
     std::vector<bool> meshes_, instances_, lights_, sensors_; // by number: whether it is there
     std::vector<std::uint32_t> mesh_of_;                      // by instance
-    std::uint64_t recorded_ = 0;
-    bool abandoned_ = false;
 };
 
 } // namespace sunfleck::tests

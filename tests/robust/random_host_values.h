@@ -168,7 +168,7 @@ protected:
     void spoil_images(host::FrameImages& images) {
         host::HostImage* const all[] = {&images.depth, &images.normals, &images.surface, &images.irradiance};
         host::HostImage& image = *all[pick(4)];
-        switch (pick(6)) {
+        switch (pick(9)) {
         case 0:
             images.width = chance() ? 0 : 0xffffffffu;
             break;
@@ -186,6 +186,15 @@ protected:
             break;
         case 5:
             images.surface.entry.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+            break;
+        case 6:
+            (chance() ? image.entry : image.exit).stages = std::uint64_t(1) << (39 + pick(25));
+            break;
+        case 7:
+            (chance() ? image.entry : image.exit).access = std::uint64_t(1) << (17 + pick(3));
+            break;
+        case 8:
+            (image.image == images.depth.image ? images.normals : images.depth).image = image.image;
             break;
         }
     }
