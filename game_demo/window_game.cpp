@@ -256,7 +256,7 @@ private:
         request.indirect_scale = float(indirect_); // fades, since only some samples follow in each frame
         request.keep_samples = true;               // new ones are prepared beside the frames
         request.milliseconds = 1e3 * seconds_since(began_);
-        renderer.collect_statistics();
+        SUNFLECK_TRY(renderer.collect_statistics());
         hitches_.log(seconds, renderer.statistics());
         app::Gui& gui = display_->screen().gui();
         gui.begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));

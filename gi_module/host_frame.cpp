@@ -98,7 +98,7 @@ Status Context::Implementation::update(const Frame& frame) {
     if (frame.dropped && serials.recorded == frame.serial)
         --serials.recorded;
     resources->begin_frame(frame.serial, frame.completed_serial);
-    timers->begin_frame(frame.serial, frame.completed_serial);
+    SUNFLECK_TRY(timers->begin_frame(frame.serial, frame.completed_serial));
     const bool fresh = damaged || follower == nullptr;
     if (fresh)
         SUNFLECK_TRY(restart());

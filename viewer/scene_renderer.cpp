@@ -133,7 +133,7 @@ Status SceneRenderer::update(const FrameRequest& request) {
     }
     SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
     resources_->begin_frame(submission_->serial(), completed);
-    timers_->begin_frame(submission_->serial(), completed);
+    SUNFLECK_TRY(timers_->begin_frame(submission_->serial(), completed));
     const scene::SceneChanges* changes = nullptr;
     {
         const StageTimer timer(stages_, "scene changes");
@@ -246,13 +246,12 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
         SUNFLECK_TRY(submission_->wait(serial));
     }
     statistics_.frame_ms = milliseconds(Clock::now() - start);
-    collect_statistics();
-    return {};
+    return collect_statistics();
 }
 
-void SceneRenderer::collect_statistics() {
+Status SceneRenderer::collect_statistics() {
     if (const auto completed = submission_->completed())
-        timers_->collect(*completed);
+        SUNFLECK_TRY(timers_->collect(*completed));
     std::vector<StageScope> scopes = stages_.scopes();
     const std::vector<StageScope>& of_lighting = lighting_->cpu_times().scopes();
     scopes.insert(scopes.end(), of_lighting.begin(), of_lighting.end());
@@ -266,6 +265,7 @@ void SceneRenderer::collect_statistics() {
     statistics_.gpu_ms = timers_->latest().milliseconds;
     statistics_.gpu_scopes = timers_->latest().scopes;
     statistics_.counters = lighting_->counters();
+    return {};
 }
 
 Result<io::Picture> SceneRenderer::read_back() {
@@ -323,7 +323,7 @@ std::vector<std::string> SceneRenderer::shader_paths() {
     return all.paths();
 }
 
-Status SceneRenderer::replace_shader(const std::string& path, std::vector<std::uint32_t> words) {
+Status SceneRenderer::replace_shader(const std::string& path, const std::vector<std::uint32_t>& words) {
     SUNFLECK_TRY(device_.wait_idle());
     SUNFLECK_TRY(replace_in(*shaders_, *pipelines_, path, words));
     if (lighting_shaders_ == shaders_)

@@ -125,12 +125,12 @@ public:
     // last call had it, or there is none.
     std::optional<float> metered_exposure();
     // Without waiting: the statistics of the newest completed frame.
-    void collect_statistics();
+    Status collect_statistics();
 
     // Of all shaders, from the project's root.
     static std::vector<std::string> shader_paths();
     // Replaces one shader's SPIR-V. On failure nothing changes.
-    Status replace_shader(const std::string& path, std::vector<std::uint32_t> words);
+    Status replace_shader(const std::string& path, const std::vector<std::uint32_t>& words);
 
 private:
     explicit SceneRenderer(gpu::Device& device) : device_(device) {}

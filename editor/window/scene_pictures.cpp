@@ -87,8 +87,7 @@ Status SceneThread::draw(const viewer::FrameRequest& request, ScenePicture* pict
     SUNFLECK_TRY(renderer.record(commands, request, copy));
     SUNFLECK_TRY(renderer.submission().submit());
     SUNFLECK_TRY(renderer.submission().wait(serial));
-    renderer.collect_statistics();
-    return {};
+    return renderer.collect_statistics();
 }
 
 // A scene that says no exposure is exposed by its first picture, and then left alone: an artist who turns a lamp up

@@ -36,11 +36,12 @@ VkQueryPool Timers::take_pool() {
     return pool;
 }
 
-void Timers::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
-    collect(completed_serial);
+Status Timers::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
+    SUNFLECK_TRY(collect(completed_serial));
     frames_.emplace_back();
     frames_.back().serial = serial;
     frames_.back().pool = take_pool();
+    return {};
 }
 
 void Timers::begin_scope(VkCommandBuffer commands, const std::string& name) {
@@ -78,7 +79,7 @@ FrameTimes Timers::times_of(const Frame& frame, const std::vector<std::uint64_t>
     return times;
 }
 
-void Timers::collect(std::uint64_t completed_serial) {
+Status Timers::collect(std::uint64_t completed_serial) {
     while (!frames_.empty() && frames_.front().serial <= completed_serial) {
         const Frame frame = std::move(frames_.front());
         frames_.pop_front();
@@ -86,12 +87,17 @@ void Timers::collect(std::uint64_t completed_serial) {
             continue;
         spare_.push_back(frame.pool);
         const std::uint32_t scopes = std::min<std::uint32_t>(std::uint32_t(frame.names.size()), scopes_per_frame);
+        if (scopes == 0)
+            continue;
         std::vector<std::uint64_t> stamps(scopes * 2);
-        if (scopes > 0 &&
-            device_.vk.vkGetQueryPoolResults(device_.handle(), frame.pool, 0, scopes * 2, stamps.size() * 8,
-                                             stamps.data(), 8, VK_QUERY_RESULT_64_BIT) == VK_SUCCESS)
+        const VkResult result = device_.vk.vkGetQueryPoolResults(
+            device_.handle(), frame.pool, 0, scopes * 2, stamps.size() * 8, stamps.data(), 8, VK_QUERY_RESULT_64_BIT);
+        if (result == VK_ERROR_DEVICE_LOST)
+            return vulkan_error(result, "reading the times of a frame's passes");
+        if (result == VK_SUCCESS)
             latest_ = times_of(frame, stamps);
     }
+    return {};
 }
 
 } // namespace sunfleck::gpu

@@ -31,13 +31,14 @@ public:
     Timers(const Timers&) = delete;
     Timers& operator=(const Timers&) = delete;
 
-    void begin_frame(std::uint64_t serial, std::uint64_t completed_serial);
+    // Fails where the device is lost; whatever else goes wrong, a frame has no times.
+    Status begin_frame(std::uint64_t serial, std::uint64_t completed_serial);
     void begin_scope(VkCommandBuffer commands, const std::string& name);
     void end_scope(VkCommandBuffer commands);
 
     // Times of the newest frame whose GPU work is complete, once begin_frame or collect has seen its serial.
     const FrameTimes& latest() const { return latest_; }
-    void collect(std::uint64_t completed_serial);
+    Status collect(std::uint64_t completed_serial);
 
 private:
     struct Frame {
