@@ -1,5 +1,7 @@
 #include "engine/gpu/resources.h"
 
+#include "engine/gpu/texel_formats.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -10,6 +12,11 @@ Result<Buffer> Buffer::create(Device& device, const BufferDescription& descripti
     buffer.device_ = &device;
     buffer.name_ = description.name;
     buffer.size_ = std::max<VkDeviceSize>(description.size, 16);
+    if (const std::uint64_t texels = buffer.size_ / texel_bytes(description.texel_format);
+        description.texel_format != VK_FORMAT_UNDEFINED && texels > device.traits().max_texel_elements)
+        return Error{"creating buffer '" + description.name + "' failed: it has " + std::to_string(texels) +
+                         " texels; this device's limit is " + std::to_string(device.traits().max_texel_elements),
+                     ErrorCode::unsupported};
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = buffer.size_;
     info.usage = description.usage;

@@ -1,5 +1,7 @@
 #include "engine/gpu/uploaded_buffer.h"
 
+#include "engine/gpu/texel_formats.h"
+
 #include <algorithm>
 
 namespace sunfleck::gpu {
@@ -7,10 +9,9 @@ namespace {
 
 // Half more than `bytes`, but no more than one binding of this device can show.
 std::uint64_t with_room_to_grow(const DeviceTraits& traits, std::uint64_t bytes, VkFormat texel_format) {
-    constexpr std::uint64_t smallest_texel = 4;
     std::uint64_t most = traits.max_storage_range;
     if (texel_format != VK_FORMAT_UNDEFINED)
-        most = std::min(most, traits.max_texel_elements * smallest_texel);
+        most = std::min(most, traits.max_texel_elements * texel_bytes(texel_format));
     return std::max(bytes, std::min(bytes + bytes / 2, most / 16 * 16));
 }
 
