@@ -36,6 +36,24 @@ TEST_F(DeviceTest, TwoDevicesLiveSideBySide) {
     world.render();
 }
 
+// No message of validation's, and no memory taken.
+TEST_F(DeviceTest, TexelsOverTheDevicesLimitAreRefused) {
+    const std::uint64_t before = device().memory().total();
+    for (const auto& [format, bytes] :
+         {std::pair(VK_FORMAT_R16_UNORM, 2), std::pair(VK_FORMAT_R32_UINT, 4), std::pair(VK_FORMAT_R32G32_UINT, 8)}) {
+        gpu::BufferDescription description;
+        description.name = "many texels";
+        description.size = (device().traits().max_texel_elements + 1) * std::uint64_t(bytes);
+        description.usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+        description.texel_format = format;
+        const auto buffer = gpu::Buffer::create(device(), description);
+        ASSERT_FALSE(buffer) << bytes;
+        EXPECT_EQ(buffer.error().code, ErrorCode::unsupported) << buffer.error().message;
+        EXPECT_NE(buffer.error().message.find("'many texels'"), std::string::npos) << buffer.error().message;
+    }
+    EXPECT_EQ(device().memory().total(), before);
+}
+
 TEST_F(DeviceTest, MemoryIsHandedOutWithoutOverlapAndGivenBack) {
     const std::uint64_t before = device().memory().total();
     RandomSequence random(SequenceKind::pseudo_random, 1, 1);

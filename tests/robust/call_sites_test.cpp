@@ -109,7 +109,7 @@ TEST_F(RobustCallSites, AreAllReachedByTheStoriesOfFaults) {
         Story story;
         for (int frame = 0; frame < frames; ++frame) {
             ASSERT_TRUE(story.step(**context, frame));
-            ASSERT_TRUE(program.frame(**context, 0));
+            ASSERT_TRUE(program.frame(**context, 0, Story::show(program, frame)));
         }
         program.wait();
     }

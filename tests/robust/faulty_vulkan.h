@@ -28,6 +28,8 @@ struct State {
     std::vector<std::uint8_t> sequence;                   // which function each call is
     std::set<std::pair<std::uint8_t, const void*>> sites; // functions, and where calls of them return to
     int within = 0;                                       // calls under way, on this thread
+    bool names_fail = false;                              // of objects, for captures
+    std::uint64_t names_failed = 0;
     std::array<void*, fallible_names.size()> real{};
     std::array<void*, destroying_names.size()> real_destroying{};
     PFN_vkGetDeviceProcAddr get_device = nullptr;
@@ -112,10 +114,17 @@ inline VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_device_proc_addr(VkDevice de
     return function;
 }
 
+inline VKAPI_ATTR VkResult VKAPI_CALL fail_to_name(VkDevice, const VkDebugUtilsObjectNameInfoEXT*) {
+    ++state.names_failed;
+    return VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
 // For host::VulkanHandles.
 inline VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL get_instance_proc_addr(VkInstance instance, const char* name) {
     state.get_instance = gpu::loader_functions();
     const PFN_vkVoidFunction function = state.get_instance(instance, name);
+    if (state.names_fail && std::string_view(name) == "vkSetDebugUtilsObjectNameEXT")
+        return reinterpret_cast<PFN_vkVoidFunction>(&fail_to_name);
     if (std::string_view(name) != "vkGetDeviceProcAddr")
         return function;
     state.get_device = reinterpret_cast<PFN_vkGetDeviceProcAddr>(function);

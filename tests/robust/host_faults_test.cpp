@@ -93,10 +93,12 @@ Outcome play(HostProgram& program) {
         if (failed(story.step(**context, frame))) {
             EXPECT_TRUE(story.step(**context, frame));
         }
-        if (failed(program.frame(**context, 0)) && !outcome.lost) {
-            EXPECT_TRUE(program.frame(**context, 0));
+        const HostOptions options = Story::show(program, frame);
+        if (failed(program.frame(**context, 0, options)) && !outcome.lost) {
+            EXPECT_TRUE(program.frame(**context, 0, options));
         }
     }
+    program.resize(false);
     counting = false;
     // The frames until the picture has settled make calls, too.
     if (!outcome.lost && failed(program.settle(**context, 0)) && !outcome.lost) {
@@ -122,7 +124,7 @@ void expect_named(const Error& error, VkResult result) {
 
 // A frame without times is right, too, and another pool does as well as one that is used up.
 bool may_be_ignored(const std::string& function, VkResult code) {
-    return function == "vkCreateQueryPool" || function == "vkGetQueryPoolResults" ||
+    return function == "vkCreateQueryPool" || (function == "vkGetQueryPoolResults" && code != VK_ERROR_DEVICE_LOST) ||
            (function == "vkAllocateDescriptorSets" &&
             (code == VK_ERROR_FRAGMENTED_POOL || code == VK_ERROR_OUT_OF_POOL_MEMORY));
 }
@@ -197,6 +199,33 @@ TEST_F(RobustHostFaults, EveryCallOfVulkanMayFail) {
         if (reached.count(std::uint8_t(i)) == 0)
             std::printf(" %s", faulty::fallible_names[i]);
     std::puts("");
+}
+
+TEST_F(RobustHostFaults, LossIsNoticedWhereTimesAreRead) {
+    HostProgram program(device());
+    const HostPicture expected = play(program).picture;
+    const std::vector<std::uint8_t> sequence = faulty::state.sequence;
+    for (std::size_t i = sequence.size(); i-- > 0;)
+        if (faulty::fallible_names[sequence[i]] == std::string_view("vkGetQueryPoolResults")) {
+            FaultTally tally;
+            try_fault(program, i + 1, VK_ERROR_DEVICE_LOST, expected, tally);
+            EXPECT_EQ(tally.lost, 1u);
+            return;
+        }
+    ADD_FAILURE() << "no times are read";
+}
+
+// Nobody needs them.
+TEST_F(RobustHostFaults, NamesOfObjectsMayFail) {
+    HostProgram program(device());
+    const HostPicture expected = play(program).picture;
+    faulty::state = {};
+    faulty::state.names_fail = true;
+    const Outcome outcome = play(program);
+    EXPECT_GT(faulty::state.names_failed, 100u);
+    EXPECT_TRUE(outcome.errors.empty());
+    EXPECT_EQ(outcome.picture, expected);
+    EXPECT_EQ(faulty::state.live, 0);
 }
 
 // Allocation number `allocation` of the calling thread fails.

@@ -1,5 +1,5 @@
 // What a host does from frame to frame while its calls, or Vulkan's, fail: a closed room, a box that moves in it,
-// settings that change.
+// settings that change, a picture that has another size for a while, and other images.
 #pragma once
 
 #include "tests/support/host_program.h"
@@ -25,6 +25,13 @@ inline const int frames = int(number_from_environment("SUNFLECK_FRAMES", by_size
 struct Story {
     std::uint32_t extra = ~0u;
 
+    // What the frame's picture is like. From a third on, normals have to be converted.
+    static HostOptions show(HostProgram& program, int frame) {
+        program.resize(frame >= frames / 2 && frame < frames * 2 / 3);
+        HostOptions options;
+        options.shading_normals = frame >= frames / 3 && frame < frames * 5 / 6;
+        return options;
+    }
     static Status begin(host::Context& context) {
         const HostCall call;
         for (const auto& [name, value] : {std::pair("lights", "12"), std::pair("shadow_map_resolution", "32")})

@@ -63,7 +63,7 @@ public:
     void wait() { ASSERT_TRUE(device_.wait_idle()); }
 
     // A frame; the surface is that of `instance`.
-    Status frame(host::Context& context, std::uint32_t instance) {
+    Status frame(host::Context& context, std::uint32_t instance, const HostOptions& options = {}) {
         const host::Frame frame = next_frame();
         Status status = [&] {
             const HostCall call;
@@ -71,7 +71,7 @@ public:
         }();
         if (status) {
             draw(context.surface_id(instance));
-            const host::FrameImages all = images();
+            const host::FrameImages all = images(options);
             const HostCall call;
             status = context.record(commands_, camera_, all);
         }
