@@ -36,7 +36,7 @@ struct FrameInput {
     // drawn or copied is done again.
     bool previous_frame_lost = false;
     // Shadow maps redrawn in this frame at most. Maps that wait stay as they were; ShadowSettings::map_priority says
-    // which go first. With a budget, light is baked in portions as short as that, too.
+    // which go first. With a budget, light is baked, and light maps are summed, in short portions, too.
     std::uint32_t map_budget = 0xffffffffu;
     // Samples whose strength changes in this frame at most while they stay where they are (a lamp that is switched,
     // light that a door lets in, `indirect_scale`): the others follow in later frames, in turn. It bounds what such a

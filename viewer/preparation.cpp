@@ -27,6 +27,7 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
         SUNFLECK_TRY(renderer.render_and_wait(request));
         const gi::Report& counters = renderer.statistics().counters;
         more = (counters["shadow_maps_stale"] > 0 && counters["shadow_map_updates"] > 0) ||
+               counters["light_maps_waiting"] > 0 ||
                (counters["baked_light_waiting"] > 0 && counters["baked_light_updates"] > 0);
         const float stale =
             float(counters["shadow_maps_stale"]) / float(std::max<std::uint64_t>(counters["light_samples"], 1));

@@ -13,8 +13,9 @@ struct PreparationOptions {
     std::function<bool(float)> progress;
 };
 
-// Makes light samples and visibility, then draws all shadow maps and bakes light. `request`: of the frames that follow,
-// but at any size, since nothing of it is kept but maps and light: small pictures take less time. Waits for the GPU.
+// Makes light samples and visibility, then draws all shadow maps, sums light maps and bakes light. `request`: of the
+// frames that follow, but at any size, since nothing of it is kept but maps and light: small pictures take less time.
+// Waits for the GPU.
 Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options);
 
 } // namespace sunfleck::viewer

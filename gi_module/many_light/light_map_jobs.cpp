@@ -77,12 +77,19 @@ void LightMapJobs::split(std::uint32_t invocations) {
     jobs_ = std::move(parts);
 }
 
-std::vector<LightMapJobs::Piece> LightMapJobs::pieces(std::uint64_t most_bytes) const {
+std::size_t LightMapJobs::end_of_portion(std::size_t first, std::uint64_t evaluations) const {
+    for (std::uint64_t done = 0; first < jobs_.size() && done < evaluations; ++first)
+        done += std::uint64_t(jobs_[first].count) * jobs_[first].change_count;
+    return first;
+}
+
+std::vector<LightMapJobs::Piece> LightMapJobs::pieces(std::uint64_t most_bytes,
+                                                      std::span<const shared::LightMapJob> jobs) const {
     const std::uint64_t most_jobs = most_bytes / sizeof(shared::LightMapJob);
     const std::uint64_t most_changes = most_bytes / sizeof(std::uint32_t);
     std::vector<Piece> pieces;
     std::uint32_t first = 0; // of the piece's changes
-    for (shared::LightMapJob job : jobs_) {
+    for (shared::LightMapJob job : jobs) {
         const std::uint64_t end = std::uint64_t(job.first_change) + job.change_count;
         if (pieces.empty() || end - first > most_changes || pieces.back().jobs.size() >= most_jobs) {
             pieces.emplace_back();

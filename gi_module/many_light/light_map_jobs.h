@@ -32,13 +32,17 @@ public:
     // `invocations`.
     void split(std::uint32_t invocations);
 
-    // All of them in order, in as few pieces as have at most so many bytes of jobs, and of changes, each: a shader sees
-    // only so much of a buffer. A piece's jobs count changes from its own first; one job may be larger than that.
+    // Of those jobs in order, in as few pieces as have at most so many bytes of jobs, and of changes, each: a shader
+    // sees only so much of a buffer. A piece's jobs count changes from its own first; one job may be larger than that.
     struct Piece {
         std::vector<shared::LightMapJob> jobs;
         std::span<const std::uint32_t> changes; // of this list
     };
-    std::vector<Piece> pieces(std::uint64_t most_bytes) const;
+    std::vector<Piece> pieces(std::uint64_t most_bytes, std::span<const shared::LightMapJob> jobs) const;
+    std::vector<Piece> pieces(std::uint64_t most_bytes) const { return pieces(most_bytes, jobs_); }
+    // After split(): the end of those jobs from `first` on that together evaluate so many samples at texels, or one
+    // job more.
+    std::size_t end_of_portion(std::size_t first, std::uint64_t evaluations) const;
 
     bool empty() const { return jobs_.empty(); }
     std::span<const shared::LightMapJob> jobs() const { return jobs_; }

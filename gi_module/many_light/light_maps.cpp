@@ -14,7 +14,9 @@ constexpr std::uint32_t invocations = 64;    // of a work group: light_maps.comp
 constexpr std::uint32_t max_texels = 256;    // along a patch's side
 constexpr std::uint64_t max_bytes = std::uint64_t(128) << 20;
 constexpr float highest_sum = 1073741824.0f; // of all samples at once: 2^30 leaves room in 32 bits
-constexpr double rounding_share = 0.002;     // of the mean light: more is not lost to the steps
+// Samples times texels that a portion evaluates at most, and one job more: about 20 ms on two cores.
+constexpr std::uint64_t evaluations_of_portion = 3000000;
+constexpr double rounding_share = 0.002; // of the mean light: more is not lost to the steps
 
 // Of what maps may cover, in units of the scene.
 double covered_area(const VisibilityDatabase& database) {
@@ -100,23 +102,25 @@ void LightMaps::follow_changes(const VisibilityDatabase& database, std::span<con
     std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (i == 0 || wanted[i].first != wanted[i - 1].first)
-            jobs_.add(database.patches().nodes()[wanted[i].first], node_rows_[wanted[i].first], false);
-        jobs_.add_change(wanted[i].second);
+            changes_.add(database.patches().nodes()[wanted[i].first], node_rows_[wanted[i].first], false);
+        changes_.add_change(wanted[i].second);
     }
 }
 
 Status LightMaps::update(const VisibilityDatabase& database, std::span<const LightSample> samples,
-                         std::span<const shared::LightRow> rows, gpu::FrameResources& resources) {
-    jobs_.clear();
+                         std::span<const shared::LightRow> rows, bool in_portions, gpu::FrameResources& resources) {
+    changes_.clear();
+    portion_ = next_;
     std::vector<std::uint32_t> changed;
-    if (generation_ == database.generation() && find_changed_intensities(samples, summed_rows_, rows, changed)) {
+    const bool first = generation_ != database.generation();
+    if (!first && find_changed_intensities(samples, summed_rows_, rows, changed)) {
         job_rows_ = summed_rows_;
         for (const std::uint32_t sample : changed)
             job_rows_.push_back(rows[sample]);
         follow_changes(database, samples, changed);
-        jobs_.split(invocations);
+        changes_.split(invocations);
         summed_rows_.assign(rows.begin(), rows.end());
-        counters_.updates = jobs_.changes().size();
+        take_portion(in_portions && changes_.empty() && changed.empty());
         return {};
     }
     generation_ = database.generation();
@@ -139,7 +143,22 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     const double rounding = std::sqrt(double(samples.size()) / 12.0) / double(fixed_point_);
     steps_are_coarse_ = flux > 0.0 && rounding * covered_area(database) > rounding_share * flux;
     SUNFLECK_TRY(lay_out(database, light_map_texel(bound), resources));
-    jobs_.add_all(node_rows_.size(), [&](LightMapJobs& jobs, std::uint32_t node) {
+    sum_all(database, samples);
+    take_portion(in_portions && first);
+    return {};
+}
+
+void LightMaps::restart() {
+    generation_ = 0;
+    sums_ = {};
+    portion_ = next_ = 0;
+    counters_.waiting = 0;
+}
+
+void LightMaps::sum_all(const VisibilityDatabase& database, std::span<const LightSample> samples) {
+    sums_ = {};
+    portion_ = next_ = 0;
+    sums_.add_all(node_rows_.size(), [&](LightMapJobs& jobs, std::uint32_t node) {
         if (node_rows_[node].first_texel == shared::no_light_map)
             return;
         jobs.add(database.patches().nodes()[node], node_rows_[node], true);
@@ -147,16 +166,32 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
             if (held_by_light_maps(samples[sample]) && reaches(database.state(node, sample)))
                 jobs.add_change(sample);
     });
-    jobs_.split(invocations);
-    counters_.updates = jobs_.changes().size();
-    return {};
+    sums_.split(invocations);
+}
+
+// What is left, or a portion of it. Once all is done, nothing of it is kept.
+void LightMaps::take_portion(bool only_one) {
+    if (portion_ == sums_.jobs().size()) {
+        sums_ = {};
+        portion_ = 0;
+    }
+    next_ = only_one ? sums_.end_of_portion(portion_, evaluations_of_portion) : sums_.jobs().size();
+    counters_.waiting = sums_.jobs().size() - next_;
+    counters_.updates = changes_.changes().size();
+    for (std::size_t i = portion_; i < next_; ++i)
+        counters_.updates += sums_.jobs()[i].change_count;
 }
 
 Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
-    if (jobs_.empty())
+    const std::span<const shared::LightMapJob> portion = sums_.jobs().subspan(portion_, next_ - portion_);
+    if (portion.empty() && changes_.empty())
         return {};
     SUNFLECK_ASSIGN(const gpu::UploadSlice rows, resources.upload(std::span<const shared::LightRow>(job_rows_)));
-    for (const LightMapJobs::Piece& piece : jobs_.pieces(device_.traits().max_storage_range)) {
+    const std::uint64_t most = device_.traits().max_storage_range;
+    std::vector<LightMapJobs::Piece> pieces = sums_.pieces(most, portion);
+    for (LightMapJobs::Piece& piece : changes_.pieces(most))
+        pieces.push_back(std::move(piece));
+    for (const LightMapJobs::Piece& piece : pieces) {
         SUNFLECK_ASSIGN(const gpu::UploadSlice jobs,
                         resources.upload(std::span<const shared::LightMapJob>(piece.jobs)));
         SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(piece.changes));

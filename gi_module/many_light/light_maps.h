@@ -21,6 +21,7 @@ float light_map_texel(float bound);
 struct LightMapCounters {
     std::uint64_t updates = 0; // single contributions added or subtracted in the last update
     std::uint64_t texels = 0;
+    std::uint64_t waiting = 0; // jobs that later frames do
 };
 
 class LightMaps {
@@ -29,14 +30,17 @@ public:
 
     // Follows the database's changes; `rows` are the samples' rows by index. Everything is summed again when the
     // database's generation, the samples or their bound changed; of samples that only changed their strength (doors do
-    // that), the old light is subtracted and the new one added.
+    // that), the old light is subtracted and the new one added. `in_portions`: the first sums of a database are
+    // divided among frames, until something in them changes; meanwhile, no map is complete().
     Status update(const VisibilityDatabase& database, std::span<const LightSample> samples,
-                  std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
+                  std::span<const shared::LightRow> rows, bool in_portions, gpu::FrameResources& resources);
     // All is summed again by the next update.
-    void restart() { generation_ = 0; }
+    void restart();
     // Adds the passes that bring the maps up to date; nothing if they are.
     Status add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resources);
 
+    // After this frame's passes, all maps hold what they should; else, nobody may read them.
+    bool complete() const { return counters_.waiting == 0; }
     // By node of the database.
     const std::vector<shared::NodeRow>& node_rows() const { return node_rows_; }
     const gpu::Buffer& texels() const { return texels_; }
@@ -48,6 +52,8 @@ private:
     explicit LightMaps(gpu::Device& device) : device_(device) {}
     std::uint64_t place_maps(const VisibilityDatabase& database, float texel_side);
     Status lay_out(const VisibilityDatabase& database, float texel_side, gpu::FrameResources& resources);
+    void sum_all(const VisibilityDatabase& database, std::span<const LightSample> samples);
+    void take_portion(bool only_one);
     void follow_changes(const VisibilityDatabase& database, std::span<const LightSample> samples,
                         std::span<const std::uint32_t> changed);
 
@@ -59,7 +65,9 @@ private:
     std::uint64_t generation_ = 0;
     std::vector<shared::LightRow> summed_rows_; // what the maps were made with
     std::vector<shared::LightRow> job_rows_;    // those, then the new ones of samples whose strength changed
-    LightMapJobs jobs_;
+    LightMapJobs sums_;                         // of all, from the start
+    std::size_t portion_ = 0, next_ = 0;        // of sums_: this frame's begin and end
+    LightMapJobs changes_;                      // after those
     const gpu::Pipeline* kernel_ = nullptr;
     LightMapCounters counters_;
 };

@@ -35,7 +35,7 @@ void ManyLight::restart() {
 Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& options, gpu::FrameResources& resources) {
     VisibilityDatabase& database = scene.database;
     if (options.light_maps && options.visibility)
-        SUNFLECK_TRY(light_maps_->update(database, scene.samples, scene.rows, resources));
+        SUNFLECK_TRY(light_maps_->update(database, scene.samples, scene.rows, options.bake_in_portions, resources));
     else
         light_maps_->restart(); // they miss what changes meanwhile
     if (std::exchange(baked_with_filter_, options.filter) != options.filter)
@@ -47,7 +47,9 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
         baked_light_->forget();
     shared::NodeRow bare{};
     bare.first_texel = shared::no_light_map;
-    std::vector<shared::NodeRow> node_rows = light_maps_->node_rows();
+    std::vector<shared::NodeRow> node_rows;
+    if (light_maps_->complete())
+        node_rows = light_maps_->node_rows();
     node_rows.resize(std::max<std::size_t>(database.node_count(), 1), bare);
     const bool changed =
         node_rows.size() != node_rows_.size() ||

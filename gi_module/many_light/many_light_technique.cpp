@@ -13,6 +13,8 @@ constexpr std::uint64_t max_curved_points = std::uint64_t(1) << 20; // of baked 
 
 constexpr Counter map_updates{"light_map_updates", "contributions", "light maps",
                               "Contributions of single samples added to or subtracted from light maps in this frame"};
+constexpr Counter maps_waiting{"light_maps_waiting", "jobs", "light maps",
+                               "Parts of light maps that later frames sum; until then, no light map is used"};
 constexpr Counter map_texels{"light_map_texels", "texels", "light maps", "Texels of all light maps"};
 constexpr Counter baked_updates{"baked_light_updates", "contributions", "light maps",
                                 "Contributions of single samples to baked light in this frame"};
@@ -25,8 +27,8 @@ constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "re
 constexpr Counter pass_fill{"pass_fill", "", "render passes",
                             "Pairs of object and light drawn in those passes, over those needed"};
 constexpr Counter memory{"many_light", "B", memory_group, "Lists, sums, light maps, baked light and tables on the GPU"};
-constexpr Counter technique_counters[] = {map_updates,   map_texels,          baked_updates, baked_waiting,
-                                          render_passes, render_passes_alone, pass_fill,     memory};
+constexpr Counter technique_counters[] = {map_updates,   maps_waiting,        map_texels, baked_updates, baked_waiting,
+                                          render_passes, render_passes_alone, pass_fill,  memory};
 
 constexpr std::string_view samples_legend = "share of all samples: cyan none, green a quarter, yellow half, red all";
 constexpr DebugView technique_views[] = {
@@ -151,6 +153,7 @@ Status ManyLightTechnique::light_pixels(const PixelStage& stage, Services& servi
 void ManyLightTechnique::report(Report& report) const {
     report.add(light_batch_counter, double(batches_));
     report.set(map_updates, double(lighting_->light_maps().counters().updates));
+    report.set(maps_waiting, double(lighting_->light_maps().counters().waiting));
     report.set(map_texels, double(lighting_->light_maps().counters().texels));
     report.set(baked_updates, double(lighting_->baked_light().counters().updates));
     report.set(baked_waiting, double(lighting_->baked_light().counters().waiting));

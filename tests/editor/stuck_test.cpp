@@ -86,10 +86,13 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     const Window second = drag(); // cancels what is prepared for the first
     editor->point_at(*editor->find("viewport/picture"));
     Window after{second.end, 0.0};
-    do // until all light is there
-        move(100, 3, 0);
-    while (now() - after.begin < 120.0 && editor->value("status/settled") != "yes");
-    after.end = now();
+    // Until all light is there, and a while longer: what the widgets say may be of before. To and fro, since a pointer
+    // at the edge of the screen moves no more.
+    for (int round = 0, rested = 0; rested < 2 && now() - after.begin < 120.0; ++round) {
+        move(100, round % 2 == 0 ? 3 : -3, 0);
+        after.end = now();
+        rested = editor->value("status/settled") == "yes" ? rested + 1 : 0;
+    }
     ASSERT_TRUE(editor->settles());
     const auto report = editor->end();
     ASSERT_TRUE(report.is_object()) << editor->log();
@@ -105,9 +108,7 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     // The short size shares its machine with whatever else runs there.
     const double room = whole ? 1.0 : 1.2;
     EXPECT_LE(longest, room * 3.0 * frame);
-    // The target is 3 here, too. The first frame that makes light compiles its shaders, for which a software device
-    // keeps everybody waiting: 4 frames long.
-    EXPECT_LE(longest_after, (whole ? 3.0 : 8.0) * frame);
+    EXPECT_LE(longest_after, room * 3.0 * frame);
     EXPECT_LE(dragged, room * 1.5 * frame);
     EXPECT_TRUE(prepares || !whole) << "light is made behind the frames";
 }

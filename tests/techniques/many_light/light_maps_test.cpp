@@ -1,5 +1,6 @@
 // Light maps of surface patches: none lost, and no drift.
 #include "gi_module/many_light/many_light_settings.h"
+#include "tests/support/settled_pictures.h"
 #include "tests/support/test_size.h"
 #include "tests/techniques/many_light/many_light.h"
 
@@ -76,6 +77,71 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
     ASSERT_EQ(kept.size(), fresh.size());
     EXPECT_EQ(kept, fresh);
     EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
+}
+
+gi::Settings with_many_portions() {
+    gi::Settings settings;
+    settings.lights = 600;
+    settings.clamp_scale = 8.0f; // small radius, fine texels
+    settings.patch_levels = 0;
+    settings.shadow_map_resolution = 32;
+    settings.low_resolution = 1;
+    return settings.with("baked_light", "off");
+}
+
+std::uint64_t waiting(GpuWorld& world) {
+    return world.renderer->lighting().counters()["light_maps_waiting"];
+}
+
+// With a budget for shadow maps, maps are summed over several frames, whose pictures are those of a scene without maps;
+// then they are what one frame sums, to the bit.
+TEST_F(ManyLightTest, LightMapsAreSummedInPortions) {
+    GpuWorld at_once(assets::make_near_occluder, "view"), world(assets::make_near_occluder, "view"),
+        bare(assets::make_near_occluder, "view");
+    gi::Settings settings = with_many_portions();
+    at_once.set(settings);
+    world.set(settings);
+    bare.set(settings.with("light_maps", "off"));
+    world.request.map_budget = bare.request.map_budget = 1000;
+    at_once.render();
+    EXPECT_EQ(waiting(at_once), 0u);
+    world.render();
+    bare.render();
+    const io::Picture before = world.picture();
+    EXPECT_GT(waiting(world), 0u);
+    expect_same_picture(before, bare.picture());
+    int frames = 0;
+    for (; waiting(world) > 0 && frames < 200; ++frames)
+        world.render();
+    EXPECT_GT(frames, 1);
+    EXPECT_EQ(read_texels(world, tests::many_light(world.renderer->lighting()).light_maps()),
+              read_texels(at_once, tests::many_light(at_once.renderer->lighting()).light_maps()));
+}
+
+// What changes meanwhile ends the portions: all is summed in the frame of the change.
+TEST_F(ManyLightTest, ChangesEndThePortionsOfLightMaps) {
+    std::vector<std::int32_t> texels[2];
+    for (const bool portions : {false, true}) {
+        GpuWorld world(make_room_of_screens, "view");
+        gi::Settings settings = with_many_portions();
+        settings.patch_levels = gi::Settings().patch_levels; // boxes hide whole patches
+        world.set(settings);
+        if (portions)
+            world.request.map_budget = 1000;
+        world.render();
+        EXPECT_EQ(waiting(world) > 0, portions);
+        std::vector<ecs::Entity> boxes;
+        world.renderer->registry().view<scene::Mover>().each(
+            [&](ecs::Entity entity, const scene::Mover&) { boxes.push_back(entity); });
+        std::mt19937 random(21);
+        for (int frame = 0; frame < 3; ++frame) { // too few for all portions
+            scatter(world.renderer->registry(), boxes, random);
+            world.render();
+        }
+        EXPECT_EQ(waiting(world), 0u);
+        texels[portions] = read_texels(world, tests::many_light(world.renderer->lighting()).light_maps());
+    }
+    EXPECT_EQ(texels[0], texels[1]);
 }
 
 // Large patches with fine maps and many samples are many turns of a kernel's loops. Maps interpolate between texels, so
