@@ -156,17 +156,31 @@ TEST_F(EditorWindow, RestsWhileNothingHappens) {
             words.push_back(word);
         return double(std::stol(words[11]) + std::stol(words[12])) / double(sysconf(_SC_CLK_TCK));
     };
+    const auto now = [] {
+        return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+    };
     const std::string picture = editor->value("viewport/picture");
-    const double began = processor();
+    const double began = processor(), rest = now();
     const int seconds = tests::by_size(5, 60);
     std::this_thread::sleep_for(std::chrono::seconds(seconds));
+    const double pointing = now();
     EXPECT_LE(processor() - began, 0.005 * seconds + 0.011)
         << "one tick of the clock more than half a percent of a core";
     for (int x = 20; x < 200; x += 5)
         editor->point_at(x, 200 + x);
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    const double end = now();
     EXPECT_EQ(editor->value("viewport/picture"), picture) << "the pointer over panels draws no scene";
-    editor->end();
+    const auto report = editor->end();
+    ASSERT_TRUE(report.is_object());
+    const auto frames = [&](const char* kind, double from, double until) {
+        return std::count_if(report[kind].begin(), report[kind].end(),
+                             [&](double at) { return at >= from && at <= until; });
+    };
+    EXPECT_LE(frames("gui_frames_at", rest, pointing), 2);
+    EXPECT_GT(frames("gui_frames_at", pointing, end), 5) << "they are counted";
+    EXPECT_EQ(frames("scene_frames_at", rest, end), 0);
+    EXPECT_GT(frames("scene_frames_at", 0.0, rest), 0);
 }
 
 // While the GUI rests, time passes all the same: two clicks with a pause between them are no double click, and a key
