@@ -16,6 +16,8 @@ using CostClock = std::chrono::steady_clock;
 
 constexpr int warm_up_blocks = 3, frames_of_block = 3;
 constexpr std::uint32_t small_width = 64, small_height = 36;
+// Whether the interval is narrow enough is looked at when there are so many pairs, and then each time that their number
+// has grown by half: who looks after every pair stops at the narrow ones among many, and those miss more often.
 constexpr std::size_t fewest_pairs = 16;
 constexpr double precise_share = 0.05;   // of the frame: how wide the interval may be
 constexpr double telling_interval = 0.5; // s: the GUI's own frames disturb what is measured
@@ -26,6 +28,8 @@ viewer::FrameRequest request_of(const ViewRequest& view) {
     request.camera = view.camera;
     request.width = view.width;
     request.height = view.height;
+    request.antialiasing = view.look.antialiasing;
+    request.glare = view.look.glare;
     return request;
 }
 
@@ -192,6 +196,7 @@ Status CostThread::measure(Work& work) {
     }
     work.began = CostClock::now();
     CostClock::time_point told = work.began;
+    std::size_t next_look = fewest_pairs;
     for (bool precise = false; !precise && seconds_of(CostClock::now() - work.began) < effort_.longest;) {
         std::map<std::string, double> times[2];
         double frame_ms[2] = {};
@@ -210,9 +215,11 @@ Status CostThread::measure(Work& work) {
             differences.push_back(times[1][name] - times[0][name]);
         const double usual_ms = statistics::median(work.frame_ms);
         const CostInterval interval = cost_of_ratios(work.log_ratios, usual_ms);
-        precise = work.log_ratios.size() >= fewest_pairs &&
-                  seconds_of(CostClock::now() - work.began) >= effort_.shortest &&
-                  interval.high - interval.low <= precise_share * usual_ms;
+        if (work.log_ratios.size() >= next_look) {
+            next_look += next_look / 2;
+            precise = seconds_of(CostClock::now() - work.began) >= effort_.shortest &&
+                      interval.high - interval.low <= precise_share * usual_ms;
+        }
         if (const auto now = CostClock::now(); !precise && seconds_of(now - told) > telling_interval) {
             told = now;
             publish(work, false);

@@ -55,11 +55,11 @@ protected:
 };
 
 // Ten settings, three of which need other samples (lights, bounces, direct_share), and some without effect here.
-constexpr Change all_changes[] = {{"low_resolution", "2"},   {"lights", "500"},
-                                  {"shadow_filter", "true"}, {"bounces", "1"},
-                                  {"baked_light", "false"},  {"light_maps", "false"},
-                                  {"visibility", "false"},   {"repair_angle", "2"},
-                                  {"direct_share", "0.75"},  {"transfer_reflections", "0"}};
+constexpr Change all_changes[] = {{"low_resolution", "2"},    {"lights", "500"},
+                                  {"shadow_filter", "false"}, {"bounces", "1"},
+                                  {"baked_light", "false"},   {"light_maps", "false"},
+                                  {"visibility", "false"},    {"repair_angle", "2"},
+                                  {"direct_share", "0.75"},   {"transfer_reflections", "0"}};
 
 // What was found for one of them, as a line of JSON.
 struct Found {
