@@ -11,6 +11,14 @@ void History::add(HistoryEntry entry) {
     position_ = entries_.size();
 }
 
+std::map<std::string, std::string> History::old_settings() const {
+    std::map<std::string, std::string> result;
+    for (std::size_t i = 0; i < position_; ++i)
+        for (const SettingChange& change : entries_[i].settings)
+            result[change.name] = change.before;
+    return result;
+}
+
 std::size_t History::overhead() const {
     std::size_t bytes = 0;
     for (const HistoryEntry& entry : entries_)

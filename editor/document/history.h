@@ -5,6 +5,7 @@
 #include "engine/ecs/registry.h"
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ public:
     std::size_t position() const { return position_; }
     // Of the newest entry that is done; 0: none.
     std::uint64_t serial() const { return position_ == 0 ? 0 : entries_[position_ - 1].serial; }
+    // Of the settings that were changed, by name: what they were before the newest change that is done.
+    std::map<std::string, std::string> old_settings() const;
     // Memory of the entries without the values of components, bytes.
     std::size_t overhead() const;
 

@@ -18,7 +18,12 @@ public:
 private:
     bool shown(const Field& field) const;
     void part(Session& session, const gi::Settings::ConstPart& now, const gi::Settings::ConstPart& usual);
+    void cost_row(Session& session, const Field& field, const std::string& value, const std::string& usual);
+    std::string old_value(const Session& session, const std::string& setting, const std::string& usual);
     std::string filter_;
+    // Of this entry of this document's history.
+    std::map<std::string, std::string> old_settings_;
+    std::pair<const Document*, std::uint64_t> old_of_;
     bool only_changed_ = false;
 };
 
@@ -47,10 +52,21 @@ std::string budget_text(const Session& session, const Cost& cost) {
     return text;
 }
 
-// What the value costs over the usual one: asked for, or found.
-void cost_row(Session& session, const Field& field, bool changed) {
+// What it was before its last change; `usual` where it was never changed here.
+std::string Lighting::old_value(const Session& session, const std::string& setting, const std::string& usual) {
+    const std::pair<const Document*, std::uint64_t> now(session.document.get(), session.document->history().serial());
+    if (std::exchange(old_of_, now) != now)
+        old_settings_ = session.document->history().old_settings();
+    const auto found = old_settings_.find(setting);
+    return found != old_settings_.end() ? found->second : usual;
+}
+
+// What the value costs over the old one: asked for, or found.
+void Lighting::cost_row(Session& session, const Field& field, const std::string& value, const std::string& usual) {
     const Cost cost = session.cost != nullptr ? session.cost->cost() : Cost();
     const bool is_measured = cost.setting == field.name;
+    const std::string old = old_value(session, std::string(field.name), usual);
+    const bool changed = value != old;
     if (!changed && !is_measured)
         return;
     const ui::Scope scope(field.name);
@@ -58,9 +74,9 @@ void cost_row(Session& session, const Field& field, bool changed) {
     ImGui::TableNextColumn();
     ImGui::TableNextColumn();
     if (changed && (!is_measured || cost.finished)) {
-        if (ui::button("Measure",
-                       "What this value costs over the default: both are drawn by turns, for a minute at most"))
-            session.measure_cost(std::string(field.name));
+        if (ui::button("Measure", "What this value costs over the one before, " + old +
+                                      ": both are drawn by turns, for a minute at most"))
+            session.measure_cost(std::string(field.name), old);
         ImGui::SameLine();
     }
     if (!is_measured)
@@ -104,7 +120,7 @@ void Lighting::part(Session& session, const gi::Settings::ConstPart& now, const 
             return session.document->set_setting(field->name, text);
         };
         field_row(session, source);
-        cost_row(session, *field, field_to_text(*field, now.values) != field_to_text(*field, usual.values));
+        cost_row(session, *field, field_to_text(*field, now.values), field_to_text(*field, usual.values));
     }
     end_fields();
 }

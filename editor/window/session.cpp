@@ -4,7 +4,6 @@
 #include "editor/window/comparison.h"
 #include "editor/window/cost_thread.h"
 #include "editor/window/opening.h"
-#include "viewer/quality.h"
 #include "viewer/scene_renderer.h"
 
 #include <algorithm>
@@ -115,15 +114,15 @@ void Session::say_what_was_opened(const std::filesystem::path& path) {
                                    " on what was left out: Messages"));
 }
 
-void Session::measure_cost(const std::string& setting) {
+void Session::measure_cost(const std::string& setting, const std::string& old_value) {
     if (cost == nullptr)
         cost = make_cost_thread();
     SceneChange everything = ChangeCollector::everything(document);
     HiddenFilter::hide(hidden, everything);
     everything.settings = document->settings();
-    gi::Settings usual = document->settings();
-    if (messages.check(usual.set(setting, viewer::usual_lighting().get(setting))) && messages.check(usual.validate()))
-        cost->measure(std::move(everything), setting, usual, shown);
+    gi::Settings old = document->settings();
+    if (messages.check(old.set(setting, old_value)) && messages.check(old.validate()))
+        cost->measure(std::move(everything), setting, old, shown);
 }
 
 void Session::recover(const Recovered& one) {

@@ -149,8 +149,8 @@ public:
     void open_now(const std::filesystem::path& path);
     // How much, and whether something was left out.
     void say_what_was_opened(const std::filesystem::path& path);
-    // Begins to measure what the setting's value costs over its default.
-    void measure_cost(const std::string& setting);
+    // Begins to measure what the setting's value costs over an old one.
+    void measure_cost(const std::string& setting, const std::string& old_value);
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
     std::function<void()> wake; // from the program; from any thread: there is something new to draw
     // Reads the file that the scene came from again, and takes over what has changed in it; edits stay.

@@ -94,6 +94,27 @@ TEST_F(EditorDocument, ADragIsOneEntryAndAGestureThatIsGivenUpNone) {
     EXPECT_EQ(document.history().entries().size(), before + 1);
 }
 
+// What costs are measured against.
+TEST_F(EditorDocument, HistoryKnowsWhatSettingsWereBefore) {
+    Document document;
+    const auto set = [&](const char* value) {
+        document.begin("Set lights");
+        ASSERT_TRUE(document.set_setting("lights", value));
+        document.commit();
+    };
+    const std::string usual = document.settings().get("lights");
+    EXPECT_TRUE(document.history().old_settings().empty());
+    set("500");
+    set("600");
+    EXPECT_EQ(document.history().old_settings(), (std::map<std::string, std::string>{{"lights", "500"}}));
+    document.undo();
+    EXPECT_EQ(document.history().old_settings().at("lights"), usual);
+    document.undo();
+    EXPECT_TRUE(document.history().old_settings().empty());
+    document.redo();
+    EXPECT_EQ(document.history().old_settings().at("lights"), usual);
+}
+
 TEST_F(EditorDocument, NamesAreDistinctAndClean) {
     Document document;
     const Entity a = add(document, "Box"), b = add(document, "Box"), c = add(document, "Box");
