@@ -18,6 +18,7 @@ public:
 
 private:
     void controls(Session& session);
+    void step(const std::deque<ProfiledFrame>& frames);
     void save(Session& session, bool trace) const;
     void history(const std::deque<ProfiledFrame>& frames, double budget);
     void graph(const char* name, const std::vector<gpu::ScopeTime>& scopes, double whole);
@@ -73,12 +74,27 @@ void Profile::save(Session& session, bool trace) const {
         session.messages.say("Wrote " + path.string());
 }
 
+// To the frame before or after.
+void Profile::step(const std::deque<ProfiledFrame>& frames) {
+    const auto end = frames.end();
+    auto place = std::find_if(frames.begin(), end, [&](const ProfiledFrame& one) { return one.number == chosen_; });
+    if (place == end && !frames.empty())
+        place = std::prev(end); // the newest
+    ImGui::SameLine();
+    if (ui::button("<##before", "The frame before", place != frames.begin()))
+        chosen_ = std::prev(place)->number;
+    ImGui::SameLine();
+    if (ui::button(">##after", "The frame after", place != end && std::next(place) != end))
+        chosen_ = std::next(place)->number;
+}
+
 void Profile::controls(Session& session) {
     if (ui::button(session.profiling ? "Pause##pause" : "Go on##pause", "Whether further frames are kept"))
         session.profiling = !session.profiling;
     ImGui::SameLine();
     if (ui::button("Newest", "Follow the newest frame", chosen_ != 0))
         chosen_ = 0;
+    step(session.frames);
     ImGui::SameLine();
     if (ui::button("Save trace", "sunfleck_trace.json here, for chrome://tracing or ui.perfetto.dev",
                    !session.frames.empty()))
