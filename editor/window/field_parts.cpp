@@ -89,6 +89,16 @@ std::string text_with_part(const Field& field, const void* object, int part, dou
     return field_to_text(whole, &turned);
 }
 
+std::string text_with_part(const Field& field, const void* object, int part, const std::string& text) {
+    if (field.kind != FieldKind::vector3 || text.find(',') != std::string::npos)
+        return text;
+    const vec3 before = read<vec3>(field, object);
+    std::string whole;
+    for (int i = 0; i < 3; ++i)
+        whole += (i > 0 ? "," : "") + (i == part ? text : number(double(before[i])));
+    return whole;
+}
+
 bool is_colour(const Field& field) {
     if (field.kind != FieldKind::vector3 || field.minimum < 0.0)
         return false;

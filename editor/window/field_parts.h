@@ -14,6 +14,8 @@ double shown_factor(const Field& field);
 double read_part(const Field& field, const void* object, int part);
 // The value as text, with one part replaced. `object` is not changed.
 std::string text_with_part(const Field& field, const void* object, int part, double value);
+// The same with what is no number; a text with commas is the whole value.
+std::string text_with_part(const Field& field, const void* object, int part, const std::string& text);
 // Values of light or colour, which have a colour picker.
 bool is_colour(const Field& field);
 vec3 colour_of(const Field& field, const void* object);

@@ -64,9 +64,15 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
     case Phase::typed: {
         char* end = nullptr;
         const double value = std::strtod(edit.text.c_str(), &end);
+        // What the box shows of a rotation are angles, whatever it is stored as.
+        if (source.field->kind == FieldKind::quaternion && *end != '\0' && edit.text.find(',') == std::string::npos) {
+            session.messages.say("'" + edit.text + "' is not an angle in degrees", Message::Kind::error);
+            return;
+        }
         const bool is_number = end != edit.text.c_str() && *end == '\0' && std::isfinite(value);
         return apply_field_text(session, source, [&](const void* object) {
-            return is_number ? text_with_part(*source.field, object, part, value) : edit.text;
+            return is_number ? text_with_part(*source.field, object, part, value)
+                             : text_with_part(*source.field, object, part, edit.text);
         });
     }
     case Phase::none:

@@ -72,6 +72,7 @@ void EditorWindowFirst::measure_and_compare() {
     // More light samples, and what they cost.
     ASSERT_TRUE(editor->click("tab Lighting"));
     ASSERT_NO_FATAL_FAILURE(search("lighting/search", "lights"));
+    const std::string before = editor->value("lighting/lights/value");
     ASSERT_TRUE(editor->enter("lighting/lights/value", "600"));
     ASSERT_TRUE(editor->wait_for("lighting/lights/value", "600"));
     ASSERT_TRUE(editor->settles());
@@ -79,6 +80,13 @@ void EditorWindowFirst::measure_and_compare() {
     EXPECT_TRUE(editor->wait_until(
         [&] { return editor->value("lighting/lights/cost").find(" ms") != std::string::npos; }, 120.0))
         << editor->value("lighting/lights/cost");
+    EXPECT_NE(editor->value("lighting/lights/cost").find("over " + before), std::string::npos)
+        << editor->value("lighting/lights/cost");
+
+    // From one frame of the profile to the one before, and back.
+    ASSERT_TRUE(editor->click("tab Profile"));
+    ASSERT_TRUE(editor->click("profile/<"));
+    ASSERT_TRUE(editor->click("profile/>"));
 
     // Held against the path tracer, as a split and as an error map.
     ASSERT_TRUE(editor->click("tab Compare"));

@@ -44,6 +44,17 @@ TEST_F(EditorWindow, EditsUndoesSavesAndOpensAgain) {
         EXPECT_EQ(editor->value("inspector/Material/roughness/value"), "0.25");
     }
 
+    const std::string place = editor->value("inspector/Transform/position/x");
+    ASSERT_TRUE(editor->enter("inspector/Transform/position/x", "none"));
+    EXPECT_TRUE(editor->wait_until([&] {
+        return editor->value("status/message").find("'none' is not a value of 'position'") != std::string::npos;
+    })) << editor->value("status/message");
+    ASSERT_TRUE(editor->enter("inspector/Transform/rotation/y", "none"));
+    EXPECT_TRUE(editor->wait_until([&] {
+        return editor->value("status/message").find("'none' is not an angle") != std::string::npos;
+    })) << editor->value("status/message");
+    EXPECT_EQ(editor->value("inspector/Transform/position/x"), place);
+
     menu("File", "Save as...");
     ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
     ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
