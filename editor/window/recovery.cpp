@@ -232,15 +232,18 @@ void Recovery::write_base(Copy& copy, const Recovered& about) const {
 // The scene first: about.json says that it is complete.
 void Recovery::write(std::unique_ptr<Copy>& copy) {
     Recovered about;
+    SceneChange change;
     {
         const std::scoped_lock lock(mutex_);
-        if (next_.everything)
-            copy = std::make_unique<Copy>();
-        if (next_.source != nullptr) {
-            copy_revision_ = next_.revision;
-            copy->apply(std::exchange(next_, {}));
-        }
+        change = std::exchange(next_, {});
         about = about_;
+    }
+    if (change.everything)
+        copy = std::make_unique<Copy>();
+    if (change.source != nullptr) {
+        copy_revision_ = change.revision;
+        copy->apply(change);
+        change = {}; // and the document may go
     }
     if (about.count == 0)
         return write_base(*copy, about);
