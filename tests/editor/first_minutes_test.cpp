@@ -83,11 +83,6 @@ void EditorWindowFirst::measure_and_compare() {
     EXPECT_NE(editor->value("lighting/lights/cost").find("over " + before), std::string::npos)
         << editor->value("lighting/lights/cost");
 
-    // From one frame of the profile to the one before, and back.
-    ASSERT_TRUE(editor->click("tab Profile"));
-    ASSERT_TRUE(editor->click("profile/<"));
-    ASSERT_TRUE(editor->click("profile/>"));
-
     // Held against the path tracer, as a split and as an error map.
     ASSERT_TRUE(editor->click("tab Compare"));
     ASSERT_TRUE(editor->click("compare/Reference"));
