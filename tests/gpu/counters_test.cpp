@@ -57,6 +57,7 @@ struct Course {
     std::uint32_t strength_budget = 0xffffffffu;
     float last_indirect_scale = 1.0f; // in the last frame
     std::uint32_t view = shared::view_irradiance;
+    std::uint32_t map_budget = 0xffffffffu; // of the host
 };
 
 // Small scenes in which, together, each counter has something to count.
@@ -74,6 +75,16 @@ const std::vector<Course>& courses() {
         {assets::make_ring, {{"specular", "gloss"}}, 64, 48, {}, 0xffffffffu, 1.0f, shared::view_final},
         {assets::make_cornell, {}, 64, 48, {}, 2, 0.5f}, // bounced light is dimmed, two samples a frame
         {assets::make_cornell, {{"repair_contrast", "0"}, {"repair_angle", "0.1"}, {"low_resolution", "4"}}, 640, 480},
+        // Fine light maps of many samples, in portions.
+        {assets::make_near_occluder,
+         {{"lights", "600"}, {"clamp_scale", "8"}, {"patch_levels", "0"}},
+         64,
+         48,
+         {},
+         0xffffffffu,
+         1.0f,
+         shared::view_irradiance,
+         1000},
     };
     return list;
 }
@@ -93,6 +104,7 @@ void count(const Course& course, std::map<std::string, double>& greatest) {
     change(course.changes);
     world.request.width = course.width;
     world.request.strength_budget = course.strength_budget;
+    world.request.map_budget = course.map_budget;
     world.request.height = course.height;
     world.request.view = course.view;
     std::set<std::string_view> declared;
