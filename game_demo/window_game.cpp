@@ -28,7 +28,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr int pad_start = 7;
-
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -357,6 +356,7 @@ private:
     Status finish(const Status& played) {
         hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
+        end_soon();
         loading_.reset(); // may take a moment
         if (played)
             SUNFLECK_TRY(display_->device().wait_idle());

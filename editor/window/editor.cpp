@@ -19,10 +19,9 @@ namespace sunfleck::editor {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
 constexpr float usual_scale = 0.875f; // of letters of 16 pixels
 constexpr int frames_after_event = 3; // until Dear ImGui has settled
-constexpr double longest_sleep = 0.5; // s: how soon a signal that asks for the end is seen
+constexpr double longest_sleep = 0.1; // s: how soon a signal that asks for the end is seen
 constexpr std::chrono::nanoseconds flying_interval{1000000000 / 60};
 
 class Program {
@@ -33,10 +32,12 @@ public:
         SUNFLECK_TRY(start());
         const Status drawn = viewer::survive_lost_devices([&, first = true]() mutable -> Status {
             if (!std::exchange(first, false))
-                SUNFLECK_TRY(take_new_device());
+                SUNFLECK_TRY(caught([&] { return take_new_device(); }));
             return caught([&] { return loop(); });
         });
         const bool edits_wait = !session_->quit && session_->document->unsaved(); // a signal, or an error
+        if (edits_wait)
+            recovery_->leave();
         Status finished = finish(bool(drawn), edits_wait);
         if (drawn)
             return finished;
@@ -375,11 +376,10 @@ Status Program::finish(bool whole, bool edits_wait) {
     const Status reported = options_.report.empty()
                                 ? Status()
                                 : write_report(options_.report, figures_, *session_, display_->validation_messages());
-    if (edits_wait)
-        recovery_->leave();
-    else if (recovered_from_)
+    if (!edits_wait && recovered_from_)
         Recovery::discard(*recovered_from_);
     recovery_.reset();
+    end_soon(); // all is saved
     session_->cost.reset();
     session_->comparison.reset();
     scene_.reset(); // cancels, and lets go of its pictures once the GUI has

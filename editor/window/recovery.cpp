@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
 #include <sys/file.h>
@@ -139,6 +140,7 @@ Recovery::~Recovery() {
     {
         const std::scoped_lock lock(mutex_);
         stop_ = true;
+        leave_ = leave_ || std::uncaught_exceptions() > 0; // else nobody had the time to save
     }
     changed_.notify_one();
     thread_.join();

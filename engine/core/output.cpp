@@ -166,6 +166,10 @@ void flush_folder(const fs::path& folder) {
 
 Status replace(const OutputTarget& target, std::string_view content, unsigned permissions, const fs::path& path) {
     fs::path temporary;
+    // Nobody reads of the new content what they may not of the old, not for a moment.
+    struct stat before {};
+    if (target.kind == OutputKind::regular_file && ::stat(target.path.c_str(), &before) == 0)
+        permissions &= before.st_mode;
     SUNFLECK_ASSIGN(const Descriptor file, create_temporary(target.path, permissions, path, temporary));
     Status status = write_all(file, content, path);
     if (status && target.kind == OutputKind::regular_file)

@@ -19,6 +19,12 @@ void end_now(int) {
     ::_exit(exit_stopped_by(int(first_signal)));
 }
 
+void begin_grace() {
+    itimerspec moment{};
+    moment.it_value.tv_nsec = 150'000'000; // a large level's memory takes as long again to give back
+    ::timer_settime(grace, 0, &moment, nullptr);
+}
+
 // Calls that wait are interrupted: there is no SA_RESTART.
 void note_signal(int signal) {
     if (signal == first_signal) // pressed again: at once
@@ -26,10 +32,19 @@ void note_signal(int signal) {
     if (first_signal != 0)
         return;
     first_signal = signal;
-    itimerspec moment{};
-    moment.it_value.tv_nsec = 150'000'000; // a large level's memory takes as long again to give back
     if (has_grace != 0)
-        ::timer_settime(grace, 0, &moment, nullptr);
+        begin_grace();
+}
+
+void allow_grace() {
+    static const bool made = [] {
+        struct sigaction action {};
+        action.sa_handler = end_now;
+        sigemptyset(&action.sa_mask);
+        ::sigaction(SIGALRM, &action, nullptr);
+        return ::timer_create(CLOCK_MONOTONIC, nullptr, &grace) == 0; // its signal is SIGALRM
+    }();
+    has_grace = made ? 1 : 0;
 }
 
 void watch(int signal) {
@@ -53,14 +68,14 @@ void watch_interrupts() {
 }
 
 void end_at_interrupts() {
-    if (has_grace == 0) {
-        struct sigaction action {};
-        action.sa_handler = end_now;
-        sigemptyset(&action.sa_mask);
-        ::sigaction(SIGALRM, &action, nullptr);
-        has_grace = ::timer_create(CLOCK_MONOTONIC, nullptr, &grace) == 0 ? 1 : 0; // its signal is SIGALRM
-    }
+    allow_grace();
     watch_interrupts();
+}
+
+void end_soon() {
+    allow_grace();
+    if (has_grace != 0 && first_signal != 0)
+        begin_grace();
 }
 
 void watch_stop_signals() {

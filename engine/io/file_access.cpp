@@ -10,10 +10,15 @@ namespace sunfleck::io {
 namespace fs = std::filesystem;
 
 Status FileAccess::check(const fs::path& path) const {
+    const Result<fs::path> resolved = resolve(path);
+    return resolved ? Status() : Status(resolved.error());
+}
+
+Result<fs::path> FileAccess::resolve(const fs::path& path) const {
     if (root.empty() && !allow_outside)
         return Error{"'" + shortened(path.string()) + "' names no readable file"};
     if (allow_outside)
-        return {};
+        return path;
     std::error_code code;
     const fs::path base = fs::canonical(root, code);
     const fs::path target = code ? fs::path() : fs::weakly_canonical(path, code);
@@ -23,15 +28,13 @@ Status FileAccess::check(const fs::path& path) const {
     if (end != base.end())
         return Error{"'" + shortened(path.string()) + "' is not allowed: it lies outside the scene's folder '" +
                      base.string() + "' (--allow-outside, for scenes that you trust)"};
-    return {};
+    return target;
 }
 
 Result<std::string> FileAccess::read(const fs::path& path, std::size_t size_limit) const {
-    SUNFLECK_TRY(check(path));
-    // By the name that was checked: a link that is changed in between leads nowhere else.
-    std::error_code code;
-    const fs::path resolved = fs::weakly_canonical(path, code);
-    SUNFLECK_ASSIGN(std::string bytes, read_file(code ? path : resolved, size_limit));
+    // By the name that was checked, without its links: one that is changed in between leads nowhere else.
+    SUNFLECK_ASSIGN(const fs::path resolved, resolve(path));
+    SUNFLECK_ASSIGN(std::string bytes, read_file(resolved, size_limit));
     if (content_hash != nullptr) {
         const std::uint64_t size = bytes.size(); // where one file ends and the next begins
         *content_hash = hash_bytes(hash_bytes(*content_hash, &size, sizeof size), bytes.data(), bytes.size());

@@ -15,6 +15,8 @@ struct FileAccess {
 
     // Whether `path` may be read, however it is spelled and whatever links are on the way.
     Status check(const std::filesystem::path& path) const;
+    // The path without links, under which it may be read.
+    Result<std::filesystem::path> resolve(const std::filesystem::path& path) const;
     // Regular files only.
     Result<std::string> read(const std::filesystem::path& path, std::size_t size_limit = usual_size_limit) const;
 };

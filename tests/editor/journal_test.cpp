@@ -206,6 +206,28 @@ TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
 }
 
 // What was kept is from the future then.
+// Whatever throws on the way out of the program, before anything was saved.
+TEST_F(EditorJournal, AnExceptionLosesNothing) {
+    const std::shared_ptr<Document> document = open();
+    try {
+        ChangeCollector collector;
+        Recovery recovery(folder_ / "recovery");
+        recovery.change(*collector.collect(document));
+        recovery.saved(document->path().string());
+        tests::RandomEdits edits(*document, 5);
+        for (int i = 0; i < 20; ++i)
+            edit(document, edits, collector, &recovery);
+        throw std::runtime_error("any");
+    } catch (const std::runtime_error&) {
+    }
+    const std::vector<Recovered> left = Recovery::left_behind(folder_ / "recovery");
+    ASSERT_EQ(left.size(), 1u);
+    auto found = Recovery::load(left[0]);
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_EQ(content(**found), content(*document));
+    Recovery::discard(left[0]);
+}
+
 TEST_F(EditorJournal, AClockThatWasSetBack) {
     for (const int pause : {0, 9000}) {
         edit_and_die(5, 20, pause);
