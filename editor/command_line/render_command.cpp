@@ -103,6 +103,14 @@ void note_frame(const viewer::FrameStatistics& statistics, bool traced, Rendered
         frames.trace.add(statistics);
 }
 
+// The first frame makes all of the light; its shadow maps, of many triangles, can take minutes.
+Status draw(viewer::SceneRenderer& renderer, const viewer::FrameRequest& request, bool first) {
+    if (!first)
+        return renderer.render_and_wait(request);
+    const viewer::Patience patience("drawing the first picture with all of its light");
+    return renderer.render_and_wait(request);
+}
+
 // Leaves `request` as it was for the last frame.
 Result<RenderedFrames> render_frames(const RenderOptions& options, viewer::SceneRenderer& renderer,
                                      viewer::FrameRequest& request) {
@@ -119,7 +127,7 @@ Result<RenderedFrames> render_frames(const RenderOptions& options, viewer::Scene
     for (std::uint32_t frame = 0; frame < total; ++frame) {
         request.camera = camera_of_frame(start, options.scene, frame);
         request.step = step_of_frame(options.scene, frame);
-        SUNFLECK_TRY(renderer.render_and_wait(request));
+        SUNFLECK_TRY(draw(renderer, request, frame == 0));
         if (interrupted())
             return Error{"interrupted; nothing was written"};
         if (frame >= options.scene.warmup)
