@@ -100,7 +100,7 @@ std::vector<std::string> built_in_files() {
         const std::filesystem::path path = folder.path / "scene.glb";
         if (!io::export_gltf(path, world.registry, world.meshes, world.textures))
             continue;
-        if (std::string bytes = read_file(path).value(); bytes.size() < 300000)
+        if (std::string bytes = read_file(path).value(); bytes.size() < 3000000)
             result.push_back(std::move(bytes));
     }
     return result;
@@ -147,7 +147,9 @@ void replace_each_number(const json& file,
         for (const std::string& number : odd_numbers) {
             std::string copy = text;
             copy.replace(at, 10, number);
-            visit(pointer + " = " + number, copy);
+            std::string what = pointer;
+            what.append(" = ").append(number);
+            visit(what, copy);
         }
     }
 }

@@ -36,11 +36,14 @@ inline std::vector<std::string> sample_files() {
     GltfBuilder square;
     square.add_square();
     std::vector<std::string> result = {square.glb()};
+    square.primitive()["targets"] = {{{"POSITION", 0}}, json::object()};
+    square.file["nodes"][0]["weights"] = {0.5, 0.25};
+    result.push_back(square.glb());
     for (const char* folder : {SUNFLECK_SOURCE_DIR "/tests/corpus", "/usr/share/assimp/models/glTF2"}) {
         std::error_code code;
         std::vector<fs::path> paths;
         for (const auto& entry : fs::recursive_directory_iterator(folder, code))
-            if (entry.is_regular_file() && entry.file_size() < 300000 &&
+            if (entry.is_regular_file() && entry.file_size() < 3000000 &&
                 (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf"))
                 paths.push_back(entry.path());
         std::sort(paths.begin(), paths.end());
