@@ -5,6 +5,7 @@
 #include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 #include "engine/simulation/path_movers.h"
+#include "engine/statistics/sample_series.h"
 #include "engine/statistics/summary.h"
 #include "game_demo/game/solution.h"
 #include "game_demo/hitch_log.h"
@@ -22,23 +23,25 @@
 namespace sunfleck::demo {
 namespace {
 
+using Series = statistics::SampleSeries<double>;
+
 struct Times {
-    std::vector<double> frames;
-    std::map<std::string, std::vector<double>> gpu, cpu;
+    Series frames;
+    std::map<std::string, Series> gpu, cpu;
 
     void add(const viewer::FrameStatistics& statistics) {
-        frames.push_back(statistics.frame_ms);
+        frames.add(statistics.frame_ms);
         for (const auto& [name, time] : statistics.gpu_ms)
-            gpu[name].push_back(time);
+            gpu[name].add(time);
         for (const auto& [name, time] : statistics.cpu_ms)
-            cpu[name].push_back(time);
+            cpu[name].add(time);
     }
 };
 
-nlohmann::ordered_json medians(const std::map<std::string, std::vector<double>>& times) {
+nlohmann::ordered_json medians(const std::map<std::string, Series>& times) {
     nlohmann::ordered_json result = nlohmann::ordered_json::object();
-    for (const auto& [name, values] : times)
-        result[name] = statistics::median(values);
+    for (const auto& [name, series] : times)
+        result[name] = statistics::median(series.values());
     return result;
 }
 
@@ -51,15 +54,15 @@ nlohmann::ordered_json statistics_of(Level& level, const Options& options, const
     return {{"device", device},
             {"scene", options.scene},
             {"preset", field_to_text(*DemoSettings::description().find("preset"), &settings)},
-            {"frames", times.frames.size()},
+            {"frames", times.frames.count()},
             {"steps", level.simulation().steps()},
             {"world_hash", hash},
             {"ev100", level.shown_exposure()},
             {"frame_ms",
-             {{"median", statistics::median(times.frames)},
-              {"p95", statistics::percentile(times.frames, 0.95)},
-              {"min", statistics::percentile(times.frames, 0.0)},
-              {"max", statistics::percentile(times.frames, 1.0)}}},
+             {{"median", statistics::median(times.frames.values())},
+              {"p95", statistics::percentile(times.frames.values(), 0.95)},
+              {"min", statistics::percentile(times.frames.values(), 0.0)},
+              {"max", statistics::percentile(times.frames.values(), 1.0)}}},
             {"cpu_ms", medians(times.cpu)},
             {"gpu_ms", medians(times.gpu)},
             {"counters",
@@ -101,7 +104,7 @@ public:
             for (std::uint32_t k = 0; k < stride_; ++k)
                 step(level);
             if (level.game().has_sensors())
-                times_.cpu["light sensors"].push_back(level.take_sensor_milliseconds());
+                times_.cpu["light sensors"].add(level.take_sensor_milliseconds());
             level.adapt(settings_, simulation::step_seconds * double(stride_));
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
@@ -206,10 +209,11 @@ Result<std::size_t> walk_length(const LevelSource& source) {
 }
 
 void print_result(const Playback& playback, const Options& options) {
-    const std::vector<double>& frames = playback.times().frames;
-    std::printf("%zu frames, %.1f ms in the median, 95 %% within %.1f ms; %u picture%s and stats.json in '%s'\n",
-                frames.size(), statistics::median(frames), statistics::percentile(frames, 0.95), playback.pictures(),
-                playback.pictures() == 1 ? "" : "s", options.output.c_str());
+    const std::vector<double>& frames = playback.times().frames.values();
+    std::printf("%llu frames, %.1f ms in the median, 95 %% within %.1f ms; %u picture%s and stats.json in '%s'\n",
+                static_cast<unsigned long long>(playback.times().frames.count()), statistics::median(frames),
+                statistics::percentile(frames, 0.95), playback.pictures(), playback.pictures() == 1 ? "" : "s",
+                options.output.c_str());
 }
 
 // On a device of its own.

@@ -20,8 +20,11 @@ std::string HitchLog::add(double milliseconds, const viewer::FrameStatistics& st
         for (const auto& [time, ignored] : before_)
             times.push_back(time);
         const double usual = statistics::median(times);
-        ratios_.push_back(milliseconds / usual);
-        if (ratios_.back() > noticed)
+        const double ratio = milliseconds / usual;
+        ratios_.add(ratio);
+        longest_ = std::max(longest_, ratio);
+        noticed_ += ratio > noticed;
+        if (ratio > noticed)
             line = explain(milliseconds, usual, parts);
         before_.pop_front();
     }
@@ -58,12 +61,11 @@ std::string HitchLog::explain(double milliseconds, double usual, const Parts& pa
 }
 
 std::string HitchLog::summary() const {
-    const auto above = std::count_if(ratios_.begin(), ratios_.end(), [](double ratio) { return ratio > noticed; });
     char text[160];
     std::snprintf(text, sizeof text,
-                  "%zu frames: 99 %% below %.1f times the median of the %zu before, the longest %.1f, %td above %.0f",
-                  frames_, ratios_.empty() ? 0.0 : statistics::percentile(ratios_, 0.99), window,
-                  ratios_.empty() ? 0.0 : *std::max_element(ratios_.begin(), ratios_.end()), above, noticed);
+                  "%zu frames: 99 %% below %.1f times the median of the %zu before, the longest %.1f, %zu above %.0f",
+                  frames_, ratios_.count() == 0 ? 0.0 : statistics::percentile(ratios_.values(), 0.99), window,
+                  longest_, noticed_, noticed);
     return text;
 }
 

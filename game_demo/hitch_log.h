@@ -1,6 +1,7 @@
 // Frames that took much longer than those before, and why.
 #pragma once
 
+#include "engine/statistics/sample_series.h"
 #include "viewer/scene_renderer.h"
 
 #include <deque>
@@ -17,8 +18,6 @@ public:
     // A frame's time, ms, and what it was spent on. A frame of more than `noticed` times the median of the `window`
     // frames before gives a line that names the passes and stages that grew most.
     std::string add(double milliseconds, const viewer::FrameStatistics& statistics);
-    // Frame times over the median of the frames before, of all frames that had enough before them.
-    const std::vector<double>& ratios() const { return ratios_; }
     // "470 frames: 99 % below 1.4 times the median of the 30 before, the longest 2.1, 1 above 2"
     std::string summary() const;
 
@@ -27,8 +26,9 @@ private:
     std::string explain(double milliseconds, double usual, const Parts& parts) const;
 
     std::deque<std::pair<double, Parts>> before_;
-    std::vector<double> ratios_;
-    std::size_t frames_ = 0;
+    statistics::SampleSeries<double> ratios_;
+    double longest_ = 0.0;
+    std::size_t frames_ = 0, noticed_ = 0;
 };
 
 // The same for a window, written to the log.

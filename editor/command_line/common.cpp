@@ -99,7 +99,7 @@ Json measurement_json(const gpu::Device& device, const Measurement& measurement)
     json["settings"]["width"] = measurement.size.width;
     json["settings"]["height"] = measurement.size.height;
     json["ev100"] = measurement.ev100;
-    json["frames"] = measurement.frame_ms.size();
+    json["frames"] = measurement.frames > 0 ? measurement.frames : measurement.frame_ms.size();
     json["frame_ms"] = {{"median", median(measurement.frame_ms)},
                         {"p95", percentile(measurement.frame_ms, 0.95)},
                         {"min", percentile(measurement.frame_ms, 0.0)},

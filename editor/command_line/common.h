@@ -69,6 +69,7 @@ struct Measurement {
     std::string scene;
     gi::Settings settings;
     Size size{};
+    std::uint64_t frames = 0; // all that were measured, where long runs keep some of their times; 0: those of frame_ms
     std::vector<double> frame_ms;
     std::vector<std::map<std::string, double>> cpu_ms, gpu_ms;
     gi::Report counters; // of the last frame

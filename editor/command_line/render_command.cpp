@@ -5,6 +5,7 @@
 #include "engine/core/log.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "engine/statistics/sample_series.h"
 #include "viewer/lost_devices.h"
 #include "viewer/quality.h"
 #include "viewer/trace.h"
@@ -91,13 +92,15 @@ Status expose_automatically(const RenderOptions& options, viewer::SceneRenderer&
 
 struct RenderedFrames {
     Measurement measurement;
+    statistics::SampleSeries<double> frame_ms;
+    statistics::SampleSeries<std::map<std::string, double>> cpu_ms, gpu_ms;
     viewer::Trace trace;
 };
 
 void note_frame(const viewer::FrameStatistics& statistics, bool traced, RenderedFrames& frames) {
-    frames.measurement.frame_ms.push_back(statistics.frame_ms);
-    frames.measurement.cpu_ms.push_back(statistics.cpu_ms);
-    frames.measurement.gpu_ms.push_back(statistics.gpu_ms);
+    frames.frame_ms.add(statistics.frame_ms);
+    frames.cpu_ms.add(statistics.cpu_ms);
+    frames.gpu_ms.add(statistics.gpu_ms);
     frames.measurement.counters = statistics.counters;
     if (traced)
         frames.trace.add(statistics);
@@ -135,6 +138,10 @@ Result<RenderedFrames> render_frames(const RenderOptions& options, viewer::Scene
         if (total > 20)
             progress.show(double(frame + 1) / total, "");
     }
+    frames.measurement.frames = frames.frame_ms.count();
+    frames.measurement.frame_ms = frames.frame_ms.values();
+    frames.measurement.cpu_ms = frames.cpu_ms.values();
+    frames.measurement.gpu_ms = frames.gpu_ms.values();
     return frames;
 }
 
