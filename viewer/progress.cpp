@@ -32,7 +32,7 @@ Patience::Patience(std::string what)
           using Seconds = std::chrono::duration<int>;
           const auto began = std::chrono::steady_clock::now();
           std::unique_lock lock(mutex_);
-          for (Seconds next(2); !ended_.wait_until(lock, began + next, [this] { return end_; }); next *= 2)
+          for (Seconds next(10); !ended_.wait_until(lock, began + next, [this] { return end_; }); next *= 2)
               std::fprintf(stderr, "%s: %d s so far\n", what.c_str(), next.count());
       }) {}
 

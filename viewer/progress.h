@@ -26,8 +26,8 @@ private:
     bool drawn_ = false;
 };
 
-// For work in one piece, of which nobody knows how far it is: while this lives, a line on standard error after 2, 4, 8,
-// ... seconds says that it goes on.
+// For work in one piece, of which nobody knows how far it is: while this lives, a line on standard error after 10, 20,
+// 40, ... seconds says that it goes on.
 class Patience {
 public:
     explicit Patience(std::string what);

@@ -102,8 +102,11 @@ void Profile::controls(Session& session) {
     ImGui::SameLine();
     if (ui::button("Save CSV", "sunfleck_frames.csv here", !session.frames.empty()))
         save(session, false);
+    const float width = 7.0f * ui::unit();
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(7.0f * ui::unit());
+    if (ImGui::GetContentRegionAvail().x < width) // in a narrow panel on a line of its own
+        ImGui::NewLine();
+    ImGui::SetNextItemWidth(width);
     ImGui::DragFloat("##budget", &session.budgets.frame_ms, 0.1f, 1.0f, 1000.0f, "budget %.1f ms");
     ui::note("budget", ui::number_text(double(session.budgets.frame_ms), false));
     ui::tooltip("What a frame may take; the status bar and measured costs are held against it");

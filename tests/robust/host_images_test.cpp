@@ -72,9 +72,12 @@ bool is_overlooked(VkImageLayout layout, bool of_depth) {
             (layout == VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL || layout == VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL));
 }
 
-class WithValidation : public testing::Test {
+// A device of its own, whose messages are expected. That of all tests keeps driver and layers loaded: what they keep
+// until the process ends could not be told by name otherwise.
+class WithValidation : public GpuTest {
 protected:
     void SetUp() override {
+        GpuTest::SetUp();
         gpu::DeviceOptions options;
         options.validation = true;
         device_ = gpu::Device::create(options).value();

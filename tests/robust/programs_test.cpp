@@ -94,18 +94,21 @@ TEST_F(RobustPrograms, ScenesAreOldOrNew) {
 }
 
 // In what takes seconds before there is anything to save: while the first frame's light is made.
-TEST_F(RobustPrograms, TheDemoEndsWhereverItIsInterrupted) {
-    for (const char* seconds : {"0.3", "1", "2", "3"}) {
-        const std::string demo = SUNFLECK_DEMO " --headless --scene lantern_house --preset ultra --size 32x18 -o out";
-        const Outcome outcome = in_folder("{ " + demo + " > log 2>&1 & P=$!; sleep " + seconds +
-                                          "; B=$(date +%s%N); kill -INT $P; wait $P; S=$?; "
-                                          "echo ms $((($(date +%s%N) - B) / 1000000)); exit $S; }");
-        EXPECT_EQ(outcome.status, exit_stopped_by(SIGINT)) << outcome.output << content("log");
-        const std::size_t number = outcome.output.find("ms ");
-        ASSERT_NE(number, std::string::npos);
-        // 0.3 s are asked for; the rest is for a machine with other work.
-        EXPECT_LT(std::atoi(outcome.output.c_str() + number + 3), 1000) << "after " << seconds << " s";
-    }
+TEST_F(RobustPrograms, ProgramsEndWhereverTheyAreInterrupted) {
+    for (const char* program : {SUNFLECK_DEMO " --headless --scene lantern_house --preset ultra --size 32x18 -o out",
+                                SUNFLECK_TOOL " render lantern_house --lights 2000 --size 32x18 -o out.png",
+                                SUNFLECK_TOOL " reference lantern_house --spp 100000 --size 320x180 -o out.exr"})
+        for (const char* seconds : {"0.3", "1", "2", "3"}) {
+            const Outcome outcome = in_folder("{ " + std::string(program) + " > log 2>&1 & P=$!; sleep " + seconds +
+                                              "; B=$(date +%s%N); kill -INT $P; wait $P; S=$?; "
+                                              "echo ms $((($(date +%s%N) - B) / 1000000)); exit $S; }");
+            EXPECT_EQ(outcome.status, exit_stopped_by(SIGINT)) << program << outcome.output << content("log");
+            const std::size_t number = outcome.output.find("ms ");
+            ASSERT_NE(number, std::string::npos);
+            // 0.3 s are asked for (0.18 measured on an idle machine); the rest is for one with other work.
+            EXPECT_LT(std::atoi(outcome.output.c_str() + number + 3), 2000) << program << " after " << seconds << " s";
+            EXPECT_FALSE(fs::exists(folder / "out.png"));
+        }
 }
 
 TEST_F(RobustPrograms, StepsTryTheirOutputsFirst) {

@@ -136,6 +136,44 @@ TEST(SceneFiles, DamagedJsonIsAnError) {
     }
 }
 
+// By no spelling and no link does a scene reach what lies beside its folder, unless that is allowed.
+TEST(SceneFiles, WhatLiesOutsideIsNotRead) {
+    const Folder folder;
+    const fs::path inner = folder.path / "inner";
+    fs::create_directories(inner / "deeper");
+    save_good_scene(inner);
+    save_good_scene(folder.path);
+    const fs::path picture = SUNFLECK_SOURCE_DIR "/tests/corpus/image/two.hdr";
+    fs::copy_file(picture, inner / "sky.hdr");
+    fs::copy_file(picture, folder.path / "sky.hdr");
+    fs::create_directory_symlink("..", inner / "up");
+    fs::create_directory_symlink(folder.path, inner / "deeper" / "far");
+    for (const char* name : {"good.glb", "sky.hdr"})
+        fs::create_symlink(fs::path("..") / name, inner / (std::string("link_") + name));
+    const auto load = [&](const std::string& gltf, const std::string& sky, bool allowed) {
+        const nlohmann::json file = {
+            {"sunfleck_scene", 2},
+            {"gltf", gltf},
+            {"entities", {{"sky", {{"Environment", {{"radiance", {1, 1, 1}}}}, {"EnvironmentMap", {{"file", sky}}}}}}}};
+        EXPECT_TRUE(write_file(inner / "a.scene.json", file.dump()));
+        World world;
+        io::ImportOptions options;
+        options.allow_outside = allowed;
+        const auto report =
+            io::load_scene(inner / "a.scene.json", world.registry, world.meshes, world.textures, options);
+        return report ? std::string() : report.error().message;
+    };
+    ASSERT_EQ(load("good.glb", "sky.hdr", false), "");
+    EXPECT_EQ(load("./deeper/../good.glb", "up/inner/sky.hdr", false), "") << "it lies inside, whichever way";
+    for (const std::string& way : {std::string("../"), std::string("deeper/../../"), std::string("up/"),
+                                   std::string("deeper/far/"), std::string("link_"), folder.path.string() + "/"}) {
+        for (const std::string& message :
+             {load(way + "good.glb", "sky.hdr", false), load("good.glb", way + "sky.hdr", false)})
+            EXPECT_NE(message.find("lies outside the scene's folder"), std::string::npos) << way << ": " << message;
+        EXPECT_EQ(load(way + "good.glb", way + "sky.hdr", true), "") << way;
+    }
+}
+
 // Every byte of a scene file and its .glb matters: one bit changed anywhere is told (or was in white space).
 TEST(SceneFiles, ChecksumsTellDamage) {
     const Folder folder;
