@@ -305,7 +305,7 @@ Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshSto
     self.cursor.saw(changes);
     if (differences.static_geometry || differences.movers)
         self.list_instances(changes, differences.static_geometry);
-    if (differences.static_geometry || differences.movers)
+    if (differences.static_geometry) // else most of it is there already, and would count twice
         SUNFLECK_TRY(self.check_size());
     self.rebuild(differences);
     if (const RTCError error = rtcGetDeviceError(self.device.get()); error != RTC_ERROR_NONE)
