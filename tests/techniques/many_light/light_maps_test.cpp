@@ -79,14 +79,18 @@ TEST_F(ManyLightTest, LightMapsNeverDrift) {
     EXPECT_NE(std::count_if(kept.begin(), kept.end(), [](std::int32_t v) { return v > 0; }), 0);
 }
 
-gi::Settings with_many_portions() {
+gi::Settings with_large_maps() {
     gi::Settings settings;
     settings.lights = 600;
     settings.clamp_scale = 8.0f; // small radius, fine texels
     settings.patch_levels = 0;
     settings.shadow_map_resolution = 32;
     settings.low_resolution = 1;
-    return settings.with("baked_light", "off");
+    return settings;
+}
+
+gi::Settings with_many_portions() {
+    return with_large_maps().with("baked_light", "off");
 }
 
 std::uint64_t waiting(GpuWorld& world) {
@@ -150,12 +154,7 @@ TEST_F(ManyLightTest, LargeLightMapsAreFilledToTheEnd) {
     GpuWorld world(assets::make_near_occluder, "view");
     world.request.width = 96;
     world.request.height = 72;
-    gi::Settings settings;
-    settings.lights = 600;
-    settings.clamp_scale = 8.0f; // small radius, fine texels
-    settings.patch_levels = 0;
-    settings.shadow_map_resolution = 32;
-    settings.low_resolution = 1;
+    gi::Settings settings = with_large_maps();
     world.set(settings);
     const io::Picture with = world.picture();
     EXPECT_GT(world.renderer->lighting().counters()["light_map_texels"], 100000u);
