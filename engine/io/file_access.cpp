@@ -1,6 +1,7 @@
 #include "engine/io/file_access.h"
 
 #include "engine/core/hash.h"
+#include "engine/core/memory_limit.h"
 #include "engine/io/uri.h"
 
 #include <algorithm>
@@ -34,6 +35,10 @@ Result<fs::path> FileAccess::resolve(const fs::path& path) const {
 Result<std::string> FileAccess::read(const fs::path& path, std::size_t size_limit) const {
     // By the name that was checked, without its links: one that is changed in between leads nowhere else.
     SUNFLECK_ASSIGN(const fs::path resolved, resolve(path));
+    std::error_code code; // a scene may name one file many times
+    if (const std::uintmax_t size = fs::file_size(resolved, code); !code && size <= size_limit)
+        SUNFLECK_TRY(
+            check_memory(size, "'" + shortened(path.filename().string()) + "'", "the size or number of files"));
     SUNFLECK_ASSIGN(std::string bytes, read_file(resolved, size_limit));
     if (content_hash != nullptr) {
         const std::uint64_t size = bytes.size(); // where one file ends and the next begins

@@ -15,7 +15,7 @@ inline constexpr std::size_t nesting_limit = 256; // of JSON, and of the node hi
 bool nesting_is_sane(std::string_view json);
 
 // Version, types of sections, references between them, the node graph (a forest: each node has at most one parent),
-// overlapping buffer views, required extensions. The message names the place. What is broken and not used is emptied,
+// ranges of buffer views, required extensions. The message names the place. What is broken and not used is emptied,
 // and noted (gltf_references.h).
 Status check_gltf_json(nlohmann::json& file, std::vector<std::string>& notes);
 

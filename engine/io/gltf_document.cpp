@@ -94,7 +94,7 @@ Result<std::string> buffer_bytes(const json& buffer, std::size_t index, Chunks& 
             return Error{place + " has a URI that is not text"};
         auto read = files.read(*uri);
         if (!read)
-            return Error{place + ": " + read.error().message};
+            return Error{place + ": " + read.error().message, read.error().code};
         bytes = std::move(*read);
     } else if (is_meshopt_fallback(buffer)) {
         return std::string();
@@ -228,6 +228,7 @@ Result<std::string> image_bytes(const json& image, const tinygltf::Model& model,
     if (!image.contains("bufferView"))
         return Error{"it has neither a URI nor a buffer view"};
     SUNFLECK_ASSIGN(const std::span<const unsigned char> bytes, view_bytes(model, image["bufferView"].get<int>()));
+    SUNFLECK_TRY(check_memory(bytes.size(), "the file of an image", level_detail)); // many may be of the same view
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
@@ -261,8 +262,10 @@ Status read_buffers(const json& file, Chunks& chunks, const FileSource& files, G
         model.buffers[i].data.clear();
         auto content = buffer_bytes(file["buffers"][i], i, chunks, files);
         SUNFLECK_TRY(noted_if_unused(content ? Status() : Status(content.error()), "buffers", i, document));
-        if (content)
+        if (content) {
+            SUNFLECK_TRY(check_memory(content->size(), "buffer " + std::to_string(i), level_detail));
             model.buffers[i].data.assign(content->begin(), content->end());
+        }
         if (has_undefined_bytes(file["buffers"][i], i, chunks))
             read_as_zeros(i, document);
     }
@@ -279,7 +282,9 @@ Status read_images(const json& file, const FileSource& files, GltfDocument& docu
     for (std::size_t i = 0; i < images->size(); ++i) {
         auto content = image_bytes((*images)[i], document.model, files);
         const Status status =
-            content ? Status() : Status(Error{"image " + std::to_string(i) + ": " + content.error().message});
+            content
+                ? Status()
+                : Status(Error{"image " + std::to_string(i) + ": " + content.error().message, content.error().code});
         SUNFLECK_TRY(noted_if_unused(status, "images", i, document));
         document.images.push_back(content ? std::move(*content) : std::string());
     }

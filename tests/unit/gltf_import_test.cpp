@@ -294,6 +294,27 @@ TEST(GltfImport, RareButValidFormsAreRead) {
         << "a data URI that is not base64";
 }
 
+// Indices may begin within the view of the positions and end behind it.
+TEST(GltfImport, ViewsMayOverlap) {
+    World plain;
+    GltfBuilder file;
+    file.add_square();
+    ASSERT_TRUE(plain.import(file.glb()));
+    for (const int back : {12, 48}) { // partly; from the same begin on
+        World overlapping;
+        json& view = file.file["bufferViews"][1];
+        view["byteOffset"] = 48 - back;
+        view["byteLength"] = 12 + back;
+        file.file["accessors"][1]["byteOffset"] = back;
+        const auto report = overlapping.import(file.glb());
+        ASSERT_TRUE(report) << report.error().message;
+        EXPECT_TRUE(report->notes.empty());
+        ASSERT_EQ(overlapping.meshes.size(), 1u);
+        EXPECT_EQ(overlapping.meshes[0].indices, plain.meshes[0].indices);
+        EXPECT_EQ(overlapping.meshes[0].positions, plain.meshes[0].positions);
+    }
+}
+
 // Broken parts that nothing uses do no harm; those that something uses are named.
 TEST(GltfImport, BrokenPartsMatterWhereTheyAreUsed) {
     struct Case {
