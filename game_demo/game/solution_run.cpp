@@ -4,6 +4,7 @@
 #include "engine/core/log.h"
 #include "engine/core/stop_signals.h"
 #include "engine/io/scene_file.h"
+#include "engine/simulation/input_recording.h"
 #include "engine/statistics/summary.h"
 #include "game_demo/game/solution.h"
 
@@ -17,11 +18,13 @@ namespace {
 constexpr std::size_t most_steps = 30 * 3600; // steps: half an hour
 
 struct Run {
+    explicit Run(const std::filesystem::path& record) : recording(record) {}
     ecs::Registry registry;
     scene::MeshStore meshes;
     scene::TextureStore textures;
     std::unique_ptr<GameWorld> world;
-    std::vector<simulation::StepInput> played;
+    std::size_t played = 0; // steps
+    simulation::RecordingWriter recording;
     std::vector<double> milliseconds; // of the sensors, by step
     std::set<std::string> open;
     nlohmann::ordered_json opened = nlohmann::ordered_json::array();
@@ -32,14 +35,16 @@ void note_open(Run& run) {
         [&](ecs::Entity, const scene::SensorReading& reading, const scene::Name& name) {
             if (!reading.open || !run.open.insert(name.name).second)
                 return;
-            run.opened.push_back({{"sensor", name.name}, {"step", run.played.size()}, {"share", reading.share}});
-            std::printf("step %6zu: '%s' opens\n", run.played.size(), name.name.c_str());
+            run.opened.push_back({{"sensor", name.name}, {"step", run.played}, {"share", reading.share}});
+            std::printf("step %6zu: '%s' opens\n", run.played, name.name.c_str());
         });
 }
 
 Status take_step(Run& run, const simulation::StepInput& input) {
     SUNFLECK_TRY(run.world->step(input));
-    run.played.push_back(input);
+    ++run.played;
+    run.recording.add(input);
+    run.recording.save_if_due();
     run.milliseconds.push_back(run.world->sensors().milliseconds());
     note_open(run);
     return stop_requested() ? Status(Error{std::string("stopped by ") + signal_name(stop_signal())}) : Status();
@@ -57,7 +62,7 @@ Status play_all(Run& run, const std::string& input, std::string& problem) {
     Solution solution(*run.world);
     if (!solution.problem().empty())
         return Error{solution.problem() + "; --input FILE plays a recording"};
-    while (!solution.ended() && run.played.size() < most_steps)
+    while (!solution.ended() && run.played < most_steps)
         SUNFLECK_TRY(take_step(run, solution.next()));
     problem = solution.problem();
     return {};
@@ -69,7 +74,7 @@ std::string statistics_of(Run& run, const std::string& problem) {
                   static_cast<unsigned long long>(run.world->simulation().world_hash(run.registry)));
     const nlohmann::ordered_json json = {{"finished", run.world->finished()},
                                          {"problem", problem},
-                                         {"steps", run.played.size()},
+                                         {"steps", run.played},
                                          {"world_hash", hash},
                                          {"opened", run.opened},
                                          {"sensors_ms",
@@ -82,16 +87,19 @@ std::string statistics_of(Run& run, const std::string& problem) {
 } // namespace
 
 Status run_solution(const SolutionRun& options) {
-    Run run;
+    Run run(options.record);
     io::ImportOptions import;
     import.allow_outside = options.allow_outside;
     scene::register_components(run.registry);
     SUNFLECK_TRY(io::load_scene(options.scene, run.registry, run.meshes, run.textures, import));
     SUNFLECK_ASSIGN(run.world, GameWorld::create(run.registry, run.meshes, &run.textures, options.sensors));
-    std::string problem;
-    SUNFLECK_TRY(play_all(run, options.input, problem));
     if (!options.record.empty())
-        SUNFLECK_TRY(simulation::write_recording(options.record, run.played));
+        watch_stop_signals(); // from now on there is something to save
+    std::string problem;
+    const Status played = play_all(run, options.input, problem);
+    const Status recorded = run.recording.finish(); // whatever ended the game
+    SUNFLECK_TRY(played);
+    SUNFLECK_TRY(recorded);
     std::error_code code;
     std::filesystem::create_directories(options.output, code);
     SUNFLECK_TRY(write_file(std::filesystem::path(options.output) / "stats.json", statistics_of(run, problem)));

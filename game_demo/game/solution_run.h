@@ -11,7 +11,7 @@ namespace sunfleck::demo {
 struct SolutionRun {
     std::filesystem::path scene; // file
     std::string input;           // recording; empty: the solution
-    std::string record;          // file to write the inputs to; or empty
+    std::string record;          // file to write the inputs to, every second while it runs; or empty
     std::string output;          // folder for stats.json
     bool allow_outside = false;
     gi::SensorSettings sensors;

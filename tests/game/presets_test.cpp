@@ -6,10 +6,13 @@
 #include "tests/support/command_line.h"
 #include "tests/support/test_size.h"
 
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::demo {
 namespace {
+
+namespace fs = std::filesystem;
 
 using tests::CommandLine, tests::Outcome, tests::shell;
 
@@ -92,6 +95,33 @@ TEST_F(CommandLine, TheGameIsTheSameWithEveryPreset) {
         EXPECT_EQ(drawn["world_hash"], expected["world_hash"]) << all[i].preset << " " << all[i].steps_per_frame;
         EXPECT_TRUE(drawn["cpu_ms"].contains("light sensors"));
     }
+}
+
+// A game that is played without pictures, and ended by a signal some time after its recording appeared.
+Outcome play_until(const std::string& folder, const char* signal) {
+    return shell("{ cd " + folder +
+                 " && rm -f kept.txt; " SUNFLECK_DEMO
+                 " --headless --simulate --scene lantern_game -o out --record kept.txt & game=$!; "
+                 "while kill -0 $game && [ $(wc -c < kept.txt || echo 0) -lt 400 ]; do sleep 0.05; done 2>/dev/null; "
+                 "cp kept.txt before.txt; sleep 0.3; kill -" +
+                 signal + " $game; wait $game; }");
+}
+
+TEST_F(CommandLine, GamesWithoutPicturesAreRecordedWhileTheyArePlayed) {
+    const auto steps = [&](const char* name) {
+        const auto recording = simulation::read_recording(folder / name);
+        EXPECT_TRUE(recording) << recording.error().message;
+        return recording ? recording->size() : 0;
+    };
+    const Outcome killed = play_until(folder.string(), "KILL");
+    ASSERT_EQ(killed.status, 128 + SIGKILL) << killed.output;
+    EXPECT_GE(steps("kept.txt"), steps("before.txt"));
+    EXPECT_GT(steps("kept.txt"), 10u);
+    const Outcome stopped = play_until(folder.string(), "TERM");
+    ASSERT_EQ(stopped.status, 128 + SIGTERM) << stopped.output;
+    EXPECT_NE(stopped.output.find("SIGTERM"), std::string::npos) << stopped.output;
+    EXPECT_GT(steps("kept.txt"), steps("before.txt")) << "what came after the last write";
+    EXPECT_FALSE(fs::exists(folder / "out/stats.json")) << "of a game that did not end";
 }
 
 } // namespace
