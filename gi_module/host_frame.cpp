@@ -124,14 +124,22 @@ Status Context::Implementation::follow(const Frame& frame, bool lost) {
     if (changes.space != self.space)
         self.view_projection.reset();
     self.space = changes.space;
-    SUNFLECK_TRY(self.rays->update(changes, description.meshes, &description.textures));
-    SUNFLECK_TRY(self.gpu_scene->stage_meshes(description.meshes, *resources));
+    constexpr float until_meshes = 0.1f, until_light = 0.2f; // of the work, where all of it is to be done
+    float done = 0.0f;
+    const auto part = [&](float end) {
+        return frame.progress ? [&, begin = done, end](float share) {
+            done = end;
+            return frame.progress(begin + (end - begin) * share);
+        } : std::function<bool(float)>();
+    };
+    SUNFLECK_TRY(self.rays->update(changes, description.meshes, &description.textures, part(until_meshes)));
+    SUNFLECK_TRY(self.gpu_scene->stage_meshes(description.meshes, *resources, part(until_light)));
     SUNFLECK_TRY(self.gpu_scene->update(changes, description.meshes, *resources));
     gi::FrameInput input;
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
-    input.progress = frame.progress;
+    input.progress = part(1.0f);
     input.view_projection = self.view_projection;
     gi::set_measured_times(input, timers->latest());
     input.previous_frame_lost = lost;

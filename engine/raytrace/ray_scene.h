@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -72,8 +73,10 @@ public:
     // Follows the scene: builds what is new, moves movers, drops what is gone, and does nothing where nothing changed.
     // The static scene is rebuilt only if static geometry changed.
     // Masked and blended surfaces have their holes for all rays. Without `textures`, surfaces are as if they had none.
+    // `progress` is called with the share that is done while static geometry or a mover's mesh is built, from any
+    // thread, never concurrently; if it returns false, that is an error, and the next update builds what is missing.
     Status update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
-                  const scene::TextureStore* textures = nullptr);
+                  const scene::TextureStore* textures = nullptr, const std::function<bool(float)>& progress = {});
     // The same for whoever has no ChangeTracker; world transforms must be up to date.
     Status update(ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore* textures = nullptr);

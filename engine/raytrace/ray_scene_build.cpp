@@ -72,6 +72,36 @@ Instance instance_of(const scene::Drawable& drawable) {
 
 } // namespace
 
+bool BuildWatch::go_on(double share) {
+    if (!progress_ || stopped_ || asking_.test_and_set(std::memory_order_acquire))
+        return !stopped_;
+    try {
+        stopped_ = !progress_(begin_ + (end_ - begin_) * std::clamp(float(share), 0.0f, 1.0f));
+    } catch (...) {
+        exception_ = std::current_exception();
+        stopped_ = true;
+    }
+    asking_.clear(std::memory_order_release);
+    return !stopped_;
+}
+
+void BuildWatch::watch(RTCScene scene) {
+    if (progress_)
+        rtcSetSceneProgressMonitorFunction(
+            scene, [](void* self, double share) { return static_cast<BuildWatch*>(self)->go_on(share); }, this);
+}
+
+void BuildWatch::end_watch(RTCScene scene) const {
+    if (progress_)
+        rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+}
+
+Status BuildWatch::end() {
+    if (exception_)
+        std::rethrow_exception(exception_);
+    return stopped_ ? Status(Error{"building the ray scene was stopped", ErrorCode::stopped}) : Status();
+}
+
 ScenePointer RayScene::Implementation::new_scene() const {
     ScenePointer made(rtcNewScene(device.get()));
     // Robust: no ray slips between the triangles that share an edge.
@@ -109,11 +139,26 @@ void RayScene::Implementation::attach_triangles(RTCScene target, const Instance&
     rtcReleaseGeometry(geometry);
 }
 
-void RayScene::Implementation::build_static() {
+Status RayScene::Implementation::commit(RTCScene scene, BuildWatch& watch) const {
+    watch.watch(scene);
+    rtcCommitScene(scene);
+    watch.end_watch(scene);
+    if (watch.stopped())
+        rtcGetDeviceError(device.get()); // that it was cancelled is known
+    return watch.end();
+}
+
+Status RayScene::Implementation::build_static(BuildWatch& watch) {
+    constexpr std::uint32_t at_once = 1024; // meshes
+    constexpr float until_trees = 0.3f;     // of the work: the rest is Embree's
+    static_unbuilt = top_unbuilt = true;
+    watch.begin_part(0.0f, until_trees);
     static_scene = new_scene();
     static_filters.clear();
     double area = 0;
     for (std::uint32_t i = 0; i < static_count; ++i) {
+        if (i % at_once == 0 && !watch.go_on(double(i) / static_count))
+            return watch.end();
         const scene::Mesh& mesh = (*meshes)[instances[i].mesh];
         attach_triangles(static_scene.get(), instances[i], instances[i].matrix, i, static_filters);
         for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
@@ -123,20 +168,29 @@ void RayScene::Implementation::build_static() {
             area += 0.5 * double(glm::length(glm::cross(p[1] - p[0], p[2] - p[0])));
         }
     }
-    rtcCommitScene(static_scene.get());
+    watch.begin_part(until_trees, 1.0f);
+    SUNFLECK_TRY(commit(static_scene.get(), watch));
     static_area = float(area);
     ++static_builds;
+    static_unbuilt = false;
+    return {};
 }
 
-RTCScene RayScene::Implementation::mesh_scene(const Instance& instance) {
+Result<RTCScene> RayScene::Implementation::mesh_scene(const Instance& instance, BuildWatch& watch) {
     const EntityBits owner = (instance.needs_triangles_of_its_own() ? instance.entity : ecs::null_entity).bits();
     MeshScene& stored = mesh_scenes[{instance.mesh, owner}];
     // What has filters is built again whenever the movers are: they may have changed.
-    if (!stored.scene || stored.revision != instance.revision || instance.needs_triangles_of_its_own()) {
-        stored.scene = new_scene();
+    const bool known = stored.scene != nullptr && stored.revision == instance.revision;
+    if (!known || instance.needs_triangles_of_its_own()) {
+        stored.scene.reset();
+        ScenePointer made = new_scene();
+        attach_triangles(made.get(), instance, mat4(1.0f), 0, mover_filters);
+        if (known) // quick, as it was
+            rtcCommitScene(made.get());
+        else
+            SUNFLECK_TRY(commit(made.get(), watch));
+        stored.scene = std::move(made);
         stored.revision = instance.revision;
-        attach_triangles(stored.scene.get(), instance, mat4(1.0f), 0, mover_filters);
-        rtcCommitScene(stored.scene.get());
     }
     return stored.scene.get();
 }
@@ -159,19 +213,25 @@ ScenePointer RayScene::Implementation::placed_scene(const Instance& instance) {
 }
 
 // The static scene is instance 0 of the top scene; mover k of the list is instance 1 + k.
-void RayScene::Implementation::build_top() {
+Status RayScene::Implementation::build_top(BuildWatch& watch) {
+    top_unbuilt = true;
+    watch.begin_part(1.0f, 1.0f);
     top_scene = new_scene();
     const std::vector<std::unique_ptr<HoleFilter>> previous = std::move(mover_filters);
     mover_filters.clear();
     attach_instance(static_scene.get(), mat4(1.0f), 0);
     for (std::uint32_t i = static_count; i < instances.size(); ++i) {
         const std::uint32_t id = 1 + i - static_count;
-        if (has_inverse(instances[i].matrix))
-            attach_instance(mesh_scene(instances[i]), instances[i].matrix, id);
-        else
+        if (has_inverse(instances[i].matrix)) {
+            SUNFLECK_ASSIGN(RTCScene shared, mesh_scene(instances[i], watch));
+            attach_instance(shared, instances[i].matrix, id);
+        } else {
             attach_instance(placed_scene(instances[i]).get(), mat4(1.0f), id);
+        }
     }
     rtcCommitScene(top_scene.get());
+    top_unbuilt = false;
+    return {};
 }
 
 void RayScene::Implementation::move_in_top(std::span<const std::uint32_t> moved) {
@@ -275,22 +335,23 @@ Status RayScene::Implementation::check_size() const {
                         "the level's detail");
 }
 
-void RayScene::Implementation::rebuild(const Differences& differences) {
+Status RayScene::Implementation::rebuild(const Differences& differences, BuildWatch& watch) {
     if (differences.static_geometry)
-        build_static();
+        SUNFLECK_TRY(build_static(watch));
     if (differences.static_geometry || differences.static_reflection)
         ++static_generation;
     if (differences.static_geometry || differences.static_reflection || differences.static_emission ||
         differences.movers || !differences.moved.empty())
         ++generation;
     if (differences.static_geometry || differences.movers)
-        build_top();
-    else if (!differences.moved.empty())
+        return build_top(watch);
+    if (!differences.moved.empty())
         move_in_top(differences.moved);
+    return {};
 }
 
 Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshStore& meshes,
-                        const scene::TextureStore* textures) {
+                        const scene::TextureStore* textures, const std::function<bool(float)>& progress) {
     Implementation& self = *implementation_;
     const bool first = self.meshes != &meshes || self.static_builds == 0;
     self.meshes = &meshes;
@@ -300,14 +361,15 @@ Status RayScene::update(const scene::SceneChanges& changes, const scene::MeshSto
         differences = self.take_over(changes.drawables);
     else
         differences = self.take_over(self.compare_all(changes));
-    if (first)
-        differences.static_geometry = differences.movers = true;
+    differences.static_geometry = differences.static_geometry || first || self.static_unbuilt;
+    differences.movers = differences.movers || first || self.top_unbuilt;
     self.cursor.saw(changes);
     if (differences.static_geometry || differences.movers)
         self.list_instances(changes, differences.static_geometry);
     if (differences.static_geometry) // else most of it is there already, and would count twice
         SUNFLECK_TRY(self.check_size());
-    self.rebuild(differences);
+    BuildWatch watch(progress);
+    SUNFLECK_TRY(self.rebuild(differences, watch));
     if (const RTCError error = rtcGetDeviceError(self.device.get()); error != RTC_ERROR_NONE)
         return Error{"Embree could not build the ray scene (not enough memory, or damaged geometry)",
                      error == RTC_ERROR_OUT_OF_MEMORY ? ErrorCode::memory : ErrorCode::other};

@@ -4,7 +4,9 @@
 #include "engine/raytrace/ray_scene.h"
 #include "engine/raytrace/surface_materials.h"
 
+#include <atomic>
 #include <embree3/rtcore.h>
+#include <exception>
 #include <map>
 #include <unordered_map>
 
@@ -52,6 +54,28 @@ struct HoleFilter {
     }
 };
 
+// Asks whoever waits for a build whether it shall go on. Embree does so from any of its threads, and an exception must
+// not go through it.
+class BuildWatch {
+public:
+    explicit BuildWatch(const std::function<bool(float)>& progress) : progress_(progress) {}
+    // From now on a build is the part of all work from `begin` to `end`.
+    void begin_part(float begin, float end) { begin_ = begin, end_ = end; }
+    bool go_on(double share);
+    void watch(RTCScene scene);
+    void end_watch(RTCScene scene) const;
+    bool stopped() const { return stopped_; }
+    // An error if it was stopped; or the exception.
+    Status end();
+
+private:
+    const std::function<bool(float)>& progress_;
+    float begin_ = 0.0f, end_ = 1.0f;
+    std::atomic_flag asking_;
+    std::atomic<bool> stopped_{false};
+    std::exception_ptr exception_;
+};
+
 struct RayScene::Implementation {
     struct MeshScene {
         ScenePointer scene;
@@ -73,6 +97,7 @@ struct RayScene::Implementation {
     std::vector<Instance> instances; // static ones first; geometry id in static_scene = place in this list
     std::uint32_t static_count = 0;
     std::uint32_t static_builds = 0;
+    bool static_unbuilt = false, top_unbuilt = false; // a build was stopped
     std::uint64_t static_generation = 0;
     std::uint64_t generation = 0;
     float static_area = 0.0f;
@@ -87,17 +112,18 @@ struct RayScene::Implementation {
     void attach_triangles(RTCScene target, const Instance& instance, const mat4& matrix, std::uint32_t id,
                           std::vector<std::unique_ptr<HoleFilter>>& filters) const;
     void measure_bounds();
-    void build_static();
-    RTCScene mesh_scene(const Instance& instance);
+    Status commit(RTCScene scene, BuildWatch& watch) const;
+    Status build_static(BuildWatch& watch);
+    Result<RTCScene> mesh_scene(const Instance& instance, BuildWatch& watch);
     ScenePointer placed_scene(const Instance& instance);
     void attach_instance(RTCScene target, const mat4& matrix, std::uint32_t id) const;
-    void build_top();
+    Status build_top(BuildWatch& watch);
     void move_in_top(std::span<const std::uint32_t> moved);
     std::vector<scene::DrawableChange> compare_all(const scene::SceneChanges& changes) const;
     Differences take_over(std::span<const scene::DrawableChange> changes);
     void list_instances(const scene::SceneChanges& changes, bool static_ones);
     Status check_size() const;
-    void rebuild(const Differences& differences);
+    Status rebuild(const Differences& differences, BuildWatch& watch);
     SurfacePoint describe(const Instance& instance, const TrianglePlace& place, const vec3* position) const;
 
     RTCScene scope_scene(Scope scope) const {

@@ -38,14 +38,24 @@ Status GpuScene::update_textures(const TextureStore& textures, gpu::Submission& 
     return textures_.update(textures, submission);
 }
 
-GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
+Result<GpuScene::Geometry> GpuScene::gather(const MeshStore& meshes, const std::function<bool(float)>& progress) {
     Geometry geometry;
     auto& [positions, normals, coordinates, tangents, colours, indices] = geometry;
     ranges_.clear();
     ranges_changed_ = true;
     removals_ = meshes.removals();
+    constexpr std::size_t unseen_triangles = 1u << 16; // at most, between calls of `progress`
+    std::size_t unseen = unseen_triangles;
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
+        bool went_on = true;
+        const auto go_on = [&] {
+            unseen = 0;
+            return went_on = went_on && (!progress || progress(float(i) / float(meshes.size())));
+        };
         const Mesh& mesh = meshes[i];
+        unseen += mesh.triangle_count();
+        if (unseen > unseen_triangles)
+            go_on();
         ranges_.push_back({std::uint32_t(indices.size()),
                            std::uint32_t(mesh.indices.size()),
                            std::uint32_t(mesh.positions.size()),
@@ -67,7 +77,9 @@ GpuScene::Geometry GpuScene::gather(const MeshStore& meshes) {
             colours.push_back(packed_colour(colour));
         colours.resize(positions.size(), 0xffffffffu);
         indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
-        const std::vector<MeshDetail> details = make_mesh_details(mesh);
+        const std::vector<MeshDetail> details = make_mesh_details(mesh, go_on);
+        if (!went_on)
+            return Error{"preparing the meshes was stopped", ErrorCode::stopped};
         ranges_.back().closed = is_closed(details.front().indices);
         for (const MeshDetail& detail : details) {
             ranges_.back().details.push_back({std::uint32_t(indices.size()), std::uint32_t(detail.indices.size()),
@@ -94,7 +106,7 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
         return {};
     SUNFLECK_TRY(device_.wait_idle());
     forget_meshes(nullptr);
-    const Geometry geometry = gather(meshes);
+    SUNFLECK_ASSIGN(const Geometry geometry, gather(meshes, {}));
     const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
                           VkBufferUsageFlags usage) -> Status {
         SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));
@@ -103,11 +115,12 @@ Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submiss
     return for_each_buffer(geometry, make);
 }
 
-Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources) {
+Status GpuScene::stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources,
+                              const std::function<bool(float)>& progress) {
     if (has_all(meshes))
         return {};
     forget_meshes(&resources);
-    const Geometry geometry = gather(meshes);
+    SUNFLECK_ASSIGN(const Geometry geometry, gather(meshes, progress));
     const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
                           VkBufferUsageFlags usage) -> Status {
         SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));

@@ -11,6 +11,7 @@
 #include "engine/scene/material_shared.h"
 #include "engine/scene/scene_changes.h"
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -58,7 +59,10 @@ public:
     // Uploads meshes that are new in the store. Submits and waits when there are any: loading time, not frame time.
     Status update_meshes(const MeshStore& meshes, gpu::Submission& submission);
     // The same without submitting anything: add_passes copies them in this frame. For hosts with loops of their own.
-    Status stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources);
+    // `progress` is called with the share that is done while there are any; if it returns false, that is an error, and
+    // the next call begins again.
+    Status stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources,
+                        const std::function<bool(float)>& progress = {});
     Status update_textures(const TextureStore& textures, gpu::Submission& submission);
 
     // Brings the draw list and the instance rows up to date; once a frame. Only what changed is described again, and
@@ -125,7 +129,7 @@ private:
         return ranges_.size() == meshes.size() && removals_ == meshes.removals() && indices_;
     }
     void forget_meshes(gpu::FrameResources* resources);
-    Geometry gather(const MeshStore& meshes);
+    Result<Geometry> gather(const MeshStore& meshes, const std::function<bool(float)>& progress);
     struct VertexCopy {
         gpu::UploadSlice positions, normals, tangents;
         bool has_tangents = false;

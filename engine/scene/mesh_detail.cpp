@@ -27,7 +27,7 @@ std::vector<std::uint32_t> join_vertices(const Mesh& mesh) {
 
 } // namespace
 
-std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
+std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool()>& go_on) {
     std::vector<MeshDetail> details(1);
     details.reserve(32); // keeps `whole` in place
     MeshDetail& whole = details.front();
@@ -39,6 +39,8 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh) {
     const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
     std::size_t target = whole.indices.size() / 6 * 3;
     while (details.size() < 32 && mesh.triangle_count() >= min_mesh && target / 3 >= min_triangles) {
+        if (go_on && mesh.triangle_count() > large_mesh && !go_on())
+            break;
         MeshDetail detail;
         detail.indices.resize(details.front().indices.size());
         float error = 0.0f;

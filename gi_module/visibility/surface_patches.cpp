@@ -97,8 +97,8 @@ std::vector<Chart> cut(const ChartRectangle& whole, const ChartCuts& cuts, ecs::
 
 } // namespace
 
-void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
-                           StaticBlockers& blockers) {
+bool SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
+                           StaticBlockers& blockers, const std::function<bool(float)>& progress) {
     *this = {};
     space_ = options.space;
     std::vector<Surface> surfaces;
@@ -112,6 +112,8 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
     constexpr std::size_t at_once = 512;
     std::vector<FlatMesh> flat;
     for (std::size_t first = 0; first < placed.size(); first += at_once) {
+        if (progress && !progress(0.5f * float(first) / float(placed.size())))
+            return false;
         flat.assign(std::min(at_once, placed.size() - first), {});
         parallel_for_chunks(flat.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
@@ -128,9 +130,13 @@ void SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
         }
     }
     blockers.build();
-    for (const Surface& surface : surfaces)
-        add_surface(surface, blockers, options);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (i % at_once == 0 && progress && !progress(0.5f + 0.5f * float(i) / float(surfaces.size())))
+            return false;
+        add_surface(surfaces[i], blockers, options);
+    }
     roots_ = std::uint32_t(nodes_.size());
+    return true;
 }
 
 SurfacePatches::Surface SurfacePatches::surface_of(ecs::Entity entity, const FlatMesh& mesh, std::uint32_t body) {

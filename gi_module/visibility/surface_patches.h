@@ -51,9 +51,11 @@ struct PatchOptions {
 
 class SurfacePatches {
 public:
-    // Finds charts and boxes of all static mesh instances, and fills `blockers` with the same geometry.
-    void build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
-               StaticBlockers& blockers);
+    // Finds charts and boxes of all static mesh instances, and fills `blockers` with the same geometry. `progress` is
+    // called with the share that is done; if it returns false, the build stops, and what there is must not be used.
+    // False: it was stopped.
+    bool build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
+               StaticBlockers& blockers, const std::function<bool(float)>& progress = {});
 
     const scene::SceneSpace& space() const { return space_; }
     const std::vector<SurfacePatch>& nodes() const { return nodes_; }

@@ -26,20 +26,29 @@ PairState state_of(Blocking blocking) {
 bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& meshes,
                                std::span<const LightSample> samples, const VisibilityOptions& options,
                                const std::function<bool(float)>& progress) {
+    constexpr float until_patches = 0.1f; // of the work
+    const auto part = [&](float begin, float end) {
+        return progress ? [&progress, begin, end](float share) { return progress(begin + (end - begin) * share); }
+                        : std::function<bool(float)>();
+    };
     options_ = options;
     samples_ = samples;
     static_blockers_ = {};
-    patches_.build(registry, meshes, options.patches, static_blockers_);
+    bool stopped = !patches_.build(registry, meshes, options.patches, static_blockers_, part(0.0f, until_patches));
     movers_.clear();
     mover_slots_.clear();
     unlit_slots_.clear();
     changes_.clear();
     affected_.assign(samples_.size(), 0);
     static_states_.clear();
-    make_groups();
-    choose_exact_roots();
-    Status status = check_size();
-    if (status && !split_and_decide(progress))
+    Status status;
+    if (!stopped) {
+        make_groups();
+        choose_exact_roots();
+        status = check_size();
+        stopped = status && !split_and_decide(part(until_patches, 1.0f));
+    }
+    if (stopped)
         status = Error{"preparing the lighting was stopped", ErrorCode::stopped};
     if (!status) {
         const std::uint64_t generation = generation_;

@@ -1,8 +1,11 @@
-// gi::System as a whole: several on one registry, and frames that never reach the GPU.
+// gi::System as a whole: several on one registry, frames that never reach the GPU, and updates that a host ends.
+#include "tests/support/host_program.h"
 #include "tests/support/system_frames.h"
 #include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace sunfleck::tests {
@@ -148,6 +151,82 @@ std::string fate_name(const testing::TestParamInfo<Fate>& fate) {
 INSTANTIATE_TEST_SUITE_P(Fates, LostFrames,
                          testing::Values(Fate::stopped, Fate::not_declared, Fate::not_executed, Fate::not_submitted),
                          fate_name);
+
+// Below the room: many fixed cubes, and a mover of many triangles.
+void describe_much(host::Context& context) {
+    describe_room(context);
+    constexpr std::uint32_t cubes = 2500, side = 270;
+    for (std::uint32_t i = 0; i < cubes; ++i)
+        ASSERT_TRUE(
+            context.add_instance({1, box_matrix(vec3(float(i % 50) - 25, -20, float(i) / 50 - 25), vec3(0.5f))}));
+    std::vector<float> positions;
+    std::vector<std::uint32_t> indices;
+    for (std::uint32_t i = 0; i <= side; ++i)
+        for (std::uint32_t j = 0; j <= side; ++j) {
+            const float x = 8.0f * float(i) / side, z = 8.0f * float(j) / side;
+            positions.insert(positions.end(), {x, -10.0f + 0.1f * std::sin(3 * x) * std::sin(2 * z), z});
+            const std::uint32_t a = i * (side + 1) + j, b = a + side + 1;
+            if (i < side && j < side)
+                indices.insert(indices.end(), {a, a + 1, b, b, a + 1, b + 1});
+        }
+    const auto field = context.add_mesh({positions, {}, indices, {}});
+    ASSERT_TRUE(field);
+    ASSERT_TRUE(context.add_instance({*field, host::identity, host::Mobility::moving}));
+}
+
+TEST_F(Systems, HostsSeeAndEndWhatComesBeforeTheLight) {
+    HostProgram program(device());
+    const auto fresh = make_context(program), stopped = make_context(program);
+    describe_much(*fresh);
+    describe_much(*stopped);
+    // Without a visibility database, all that takes long comes before the light.
+    for (const char* name : {"direct", "indirect"})
+        for (host::Context* context : {fresh.get(), stopped.get()}) {
+            ASSERT_TRUE(context->set(name, "brute_force"));
+            ASSERT_TRUE(context->set("kept_maps", "off"));
+        }
+    std::vector<float> shares;
+    const auto update = [&](host::Context& context, float until) {
+        shares.clear();
+        host::Frame frame = program.next_frame();
+        frame.progress = [&](float share) {
+            shares.push_back(share);
+            return share < until;
+        };
+        const Status status = context.update(frame);
+        program.submit_empty();
+        return status;
+    };
+    ASSERT_TRUE(update(*fresh, 2.0f));
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    const auto between = [&](float begin, float end) {
+        return std::count_if(shares.begin(), shares.end(), [&](float share) { return share >= begin && share < end; });
+    };
+    EXPECT_GT(between(0.0f, 0.03f), 1) << "vertices";
+    EXPECT_GT(between(0.03f, 0.1f), 1) << "Embree's trees";
+    EXPECT_GT(between(0.1f, 0.2f), 0) << "levels of detail";
+    ASSERT_TRUE(update(*fresh, 2.0f));
+    EXPECT_TRUE(shares.empty()) << "nothing to build";
+    // All light, so that patches and visibility come, too.
+    for (host::Context* context : {fresh.get(), stopped.get()})
+        for (const char* name : {"direct", "indirect"})
+            ASSERT_TRUE(context->set(name, "light_samples"));
+    // Up to 0.2 geometry is prepared; once that is there, light takes all of the share: patches up to 0.1.
+    for (const float until : {0.0f, 0.02f, 0.05f, 0.09f, 0.1f, 0.15f, 0.2f, 0.02f, 0.08f, 0.15f, 0.0f}) {
+        const Status status = update(*stopped, until);
+        ASSERT_FALSE(status) << until;
+        EXPECT_EQ(status.error().code, ErrorCode::stopped) << status.error().message;
+        EXPECT_GE(shares.back(), until);
+        EXPECT_LT(shares.back(), until + 0.2f) << "it goes on for long";
+    }
+    const HostPicture expected = picture_of_room(program, *fresh);
+    EXPECT_EQ(picture_of_room(program, *stopped), expected);
+    // Of something that comes and goes.
+    const std::uint32_t guest = stopped->add_instance({1, box_matrix(vec3(0, 0.3f, 0.6f), vec3(0.5f))}).value();
+    ASSERT_FALSE(update(*stopped, 0.0f));
+    ASSERT_TRUE(stopped->remove_instance(guest));
+    EXPECT_EQ(picture_of_room(program, *stopped), expected);
+}
 
 } // namespace
 } // namespace sunfleck::tests
