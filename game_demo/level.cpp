@@ -1,7 +1,7 @@
 #include "game_demo/level.h"
 
-#include "engine/core/file.h"
 #include "engine/core/log.h"
+#include "engine/core/user_folders.h"
 #include "engine/ecs/world_copy.h"
 #include "game_demo/presets.h"
 #include "viewer/built_in_scenes.h"

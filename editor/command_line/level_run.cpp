@@ -1,7 +1,7 @@
 #include "editor/command_line/level_run.h"
 
-#include "engine/core/file.h"
 #include "engine/core/hash.h"
+#include "engine/core/user_folders.h"
 #include "gi_module/technique.h"
 #include "viewer/exposure.h"
 #include "viewer/picture_settings.h"

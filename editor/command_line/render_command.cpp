@@ -5,6 +5,7 @@
 #include "engine/core/log.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/output.h"
+#include "engine/core/user_folders.h"
 #include "engine/statistics/sample_series.h"
 #include "viewer/lost_devices.h"
 #include "viewer/quality.h"

@@ -1,6 +1,6 @@
 #include "editor/window/scene_copy.h"
 
-#include "engine/core/file.h"
+#include "engine/core/user_folders.h"
 
 namespace sunfleck::editor {
 

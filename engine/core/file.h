@@ -23,7 +23,4 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t siz
 // names are replaced: pipes and devices are written to; folders and sockets are refused.
 Status write_file(const std::filesystem::path& path, std::string_view content, unsigned permissions = 0666);
 
-// $XDG_CACHE_HOME/sunfleck or ~/.cache/sunfleck, for data that can be recomputed. Empty if neither variable is set.
-std::filesystem::path user_cache_folder();
-
 } // namespace sunfleck

@@ -1,7 +1,5 @@
 #include "engine/core/user_folders.h"
 
-#include "engine/core/file.h"
-
 #include <cstdlib>
 
 namespace sunfleck {
