@@ -2,9 +2,10 @@
 // that tests ask for, and the images that are written.
 #pragma once
 
-#include "tests/support/gpu_world.h"
+#include "tests/support/gpu_device.h"
 
 #include "engine/core/octahedral.h"
+#include "engine/gpu/submission.h"
 #include "engine/scene/camera_shared.h"
 #include "sunfleck/host.h"
 
