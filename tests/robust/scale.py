@@ -3,8 +3,10 @@
 
 Usage: scale.py BUILD_FOLDER [FIRST LAST]     numbers of the rows below; default: all
 The first picture has 64x36 pixels and all of its light. Interrupts come at eight moments of that time. A level of more
-objects may take no more than n^1.2, and nobody waits longer than 0.3 s for an interrupt (a second for 100,000 objects:
-the system takes that long to have gigabytes back).
+objects may take no more than n^1.2, 10,000 objects no more than 12 s (a tenth of what they took before they were counted
+on), and nobody waits longer than 0.3 s for an interrupt (a second for 100,000 objects: the system takes that long to have
+gigabytes back). Memory: what a level takes beyond a level of 10 objects grows by no more than n^1.2, either, and no level
+takes more than --memory promises by default: three quarters of what is free.
 """
 import math
 import os
@@ -24,7 +26,10 @@ LEVELS = [("1,000 objects", {"objects": 1000}, []), ("10,000 objects", {"objects
           ("1,000 lights", {"objects": 100, "lights": 1000}, []), ("500 movers", {"objects": 500, "movers": 500}, []),
           ("65,536 samples", {"objects": 100}, ["--lights", "65536"])]
 GROWS_FROM = {1: (0, 10), 2: (1, 10), 4: (3, 10), 5: (4, 10)}  # row: (smaller row, times as many)
+POWER = 1.2
 LATEST, LATEST_OF = 0.3, {2: 1.0}  # s; others by row
+LONGEST_OF = {1: 12.0}  # s, by row
+UNCOUNTED = 64  # MB: pieces under 64 MiB are let through until they add up to as much (engine/core/memory_limit.h)
 
 
 def start(tool, level, more):
@@ -45,7 +50,7 @@ def interrupt(tool, level, more, seconds):
     process = start(tool, level, more)
     time.sleep(seconds)
     sent = time.time()
-    process.send_signal(signal.SIGINT)
+    os.kill(process.pid, signal.SIGINT)  # send_signal would take the status of one that is done, and finish finds none
     status, output, _ = finish(process)
     if status == 0:
         return None
@@ -53,34 +58,52 @@ def interrupt(tool, level, more, seconds):
     return time.time() - sent
 
 
+def free_megabytes():
+    with open("/proc/meminfo") as file:
+        return next(int(line.split()[1]) for line in file if line.startswith("MemAvailable")) / 1024
+
+
+def grown(row, values, fixed=0.0):
+    """How what a row takes beyond a fixed part grows from a smaller level on: the power of n; None without such a row.
+    A tenth of the fixed part is taken for its own spread."""
+    before, factor = GROWS_FROM.get(row, (None, None))
+    if before not in values:
+        return None
+    return math.log(max(values[row] - 0.9 * fixed, 1e-9) / max(values[before] - 0.9 * fixed, 1e-9)) / math.log(factor)
+
+
 def main():
-    tool, wrong, times = str(pathlib.Path(sys.argv[1]) / "bin/sunfleck"), 0, {}
+    tool, wrong, times, memory = str(pathlib.Path(sys.argv[1]) / "bin/sunfleck"), 0, {}, {}
     first, last = (int(a) for a in sys.argv[2:4]) if len(sys.argv) > 3 else (1, len(LEVELS))
-    print("| level | to the first picture, s | grows as | MB | an interrupt takes, s |\n|---|---|---|---|---|", flush=True)
+    print("| level | to the first picture, s | grows as | MB | grows as | an interrupt takes, s |\n|---|---|---|---|---|---|",
+          flush=True)
     with tempfile.TemporaryDirectory() as folder:
         warm = pathlib.Path(folder) / "warm.glb"  # compiles the shaders
         make_level.make(warm, objects=10, movers=2)
         finish(start(tool, warm, []))
+        fixed = finish(start(tool, warm, []))[2]
         for row in range(first - 1, last):
             name, what, more = LEVELS[row]
             level = pathlib.Path(folder) / f"{row}.glb"
             make_level.make(level, **what)
-            begin = time.time()
-            status, output, megabytes = finish(start(tool, level, more))
+            begin, most = time.time(), 0.75 * free_megabytes() + fixed + UNCOUNTED
+            status, output, memory[row] = finish(start(tool, level, more))
             times[row] = time.time() - begin
             if status != 0:
                 wrong += 1
-                print(f"| {name} | refused: {output.decode(errors='replace')[-200:]} | | | |", flush=True)
+                del times[row], memory[row]
+                print(f"| {name} | refused: {output.decode(errors='replace')[-200:]} | | | | |", flush=True)
                 continue
-            grows = ""
-            if row in GROWS_FROM and GROWS_FROM[row][0] in times:
-                before, factor = GROWS_FROM[row]
-                power = math.log(times[row] / times[before]) / math.log(factor)
-                wrong += power > 1.2
-                grows = f"n^{power:.2f}"
+            powers = grown(row, times), grown(row, memory, fixed)
+            problems = [part for part, is_so in (("time", (powers[0] or 0) > POWER or times[row] > LONGEST_OF.get(row, 1e9)),
+                                                 ("memory", (powers[1] or 0) > POWER or memory[row] > most)) if is_so]
             waits = [w for i in range(8) if (w := interrupt(tool, level, more, times[row] * (i + .5) / 8)) is not None]
-            wrong += max(waits, default=0) > LATEST_OF.get(row, LATEST)
-            print(f"| {name} | {times[row]:.1f} | {grows} | {megabytes:.0f} | {max(waits, default=0):.2f} |", flush=True)
+            if max(waits, default=0) > LATEST_OF.get(row, LATEST):
+                problems.append("interrupt")
+            wrong += len(problems)
+            shown = ["" if power is None else f"n^{power:.2f}" for power in powers]
+            print(f"| {name} | {times[row]:.1f} | {shown[0]} | {memory[row]:.0f} | {shown[1]} | {max(waits, default=0):.2f} |"
+                  + "".join(f" too much: {problem}" for problem in problems), flush=True)
             level.unlink()
     print(f"{last - first + 1} tried, {wrong} wrong")
     return 1 if wrong else 0
