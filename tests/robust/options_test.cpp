@@ -2,10 +2,7 @@
 // shows, and what it refuses is named, with the range, in one message and exit status 2.
 #include "game_demo/command_line.h"
 #include "gi_module/settings.h"
-#include "test_places.h"
-#include "tests/support/folder.h"
 #include "tests/support/option_values.h"
-#include "tests/support/run_tool.h"
 #include "viewer/lost_devices.h"
 
 namespace sunfleck::tests {
@@ -98,28 +95,6 @@ TEST(RobustDevices, WorkGoesOnOnNewDevicesTwice) {
         return Error{"out of memory", ErrorCode::memory};
     }));
     EXPECT_EQ(runs, 1) << "only lost devices are worth another try";
-}
-
-// The programs themselves: nothing on standard output, status 2, and no file left.
-TEST(RobustOptions, ProgramsSayWhatIsWrongAndEnd) {
-    const tests::Folder folder("sunfleck_options");
-    const std::string in_folder = "cd '" + folder.path.string() + "' && ";
-    for (const char* program : {SUNFLECK_TOOL " render cornell -o x.png", SUNFLECK_TOOL " reference cornell -o x.png",
-                                SUNFLECK_TOOL " bench kernel", SUNFLECK_DEMO " --headless", SUNFLECK_EDITOR}) {
-        std::size_t tried = 0;
-        for (const Option& option : options_of(shell(std::string(program) + " --help").output)) {
-            if (!range_of(option.type))
-                continue;
-            for (const char* value : {"nan", "''", "99999999999999999999999999", "5x"}) {
-                const Outcome outcome =
-                    shell("( " + in_folder + program + " " + option.name + "=" + value + " 2>&1 >/dev/null )");
-                expect_refused({outcome.status, outcome.output}, option, option.name + " " + value);
-                ++tried;
-            }
-        }
-        EXPECT_GE(tried, 8u) << program;
-    }
-    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
 }
 
 } // namespace

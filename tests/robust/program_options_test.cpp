@@ -1,0 +1,149 @@
+// Every option of the programs as they are, of whichever kind, with values that make no sense: exit status 2 with a
+// message that names the option and what is allowed, or 1 with one that names what could not be had; no file is left.
+// Flags, and options that a program has no use for, are taken.
+#include "test_places.h"
+#include "tests/support/folder.h"
+#include "tests/support/option_values.h"
+#include "tests/support/run_tool.h"
+
+#include <algorithm>
+
+namespace sunfleck::tests {
+namespace {
+
+enum class Kind { flag, number, size, setting, choice, name };
+
+Kind kind_of(const Option& option) {
+    const auto begins = [&](const char* word) { return option.type.rfind(word, 0) == 0; };
+    if (option.type.empty())
+        return Kind::flag;
+    if (range_of(option.type))
+        return Kind::number;
+    if (begins("WIDTHxHEIGHT"))
+        return Kind::size;
+    if (begins("NAME=VALUE"))
+        return Kind::setting;
+    return begins("TEXT") || begins("FILE") || begins("FOLDER") ? Kind::name : Kind::choice;
+}
+
+// What no option of the kind takes. Names have none in common but no name at all.
+std::vector<std::string> wrong_values(Kind kind) {
+    switch (kind) {
+    case Kind::flag:
+        return {"nan"};
+    case Kind::number:
+        return {"nan", "", "99999999999999999999999999", "5x"};
+    case Kind::size:
+        return {"nan", "", "4294967297x1", "5x"};
+    case Kind::setting:
+        return {"nan", "", "no_such=1", "lights=5x"};
+    case Kind::choice:
+        return {"nan", "", "no_such", "5x"};
+    case Kind::name:
+        return {""};
+    }
+    return {};
+}
+
+// A short run; an option comes after it.
+struct Program {
+    std::string name, run;
+};
+const Program render{"render", SUNFLECK_TOOL " render cornell --size 16x9 --lights 4 --warmup 0"};
+const Program reference{"reference", SUNFLECK_TOOL " reference cornell --size 16x9 --spp 1"};
+const Program demo_walk{"demo", SUNFLECK_DEMO " --headless --size 16x9 --frames 1 --pictures 0"};
+
+struct RobustProgramOptions : testing::Test {
+    static std::vector<Option> options(const Program& program) {
+        return options_of(shell(program.run + " --help").output);
+    }
+    // What the run needs beside the option.
+    static std::string rest(const Program& program, const std::string& option) {
+        const bool is_demo = program.name == "demo";
+        std::string words;
+        if (option != "--output")
+            words += is_demo ? " -o out" : " -o out.png";
+        if (is_demo && option != "--scene")
+            words += " --scene cornell";
+        return words;
+    }
+    Outcome run(const Program& program, const std::string& words) const {
+        return shell("( cd '" + folder.path.string() + "' && " + program.run + words + " 2>&1 >/dev/null )");
+    }
+    tests::Folder folder{"sunfleck_options"};
+};
+
+TEST_F(RobustProgramOptions, OfNoSenseAreNamedWithWhatIsAllowed) {
+    const Program programs[] = {
+        render, reference, demo_walk, {"bench", SUNFLECK_TOOL " bench kernel"}, {"editor", SUNFLECK_EDITOR}};
+    for (const Program& program : programs) {
+        std::size_t tried = 0;
+        for (const Option& option : options(program)) {
+            const Kind kind = kind_of(option);
+            for (const std::string& value : wrong_values(kind)) {
+                std::string words = " " + option.name;
+                words.append(value.empty() ? " " : "=").append("'").append(value).append("'");
+                const Outcome outcome = run(program, words);
+                expect_refused({outcome.status, outcome.output}, option, program.name + words);
+                ++tried;
+            }
+        }
+        EXPECT_GE(tried, 15u) << program.name;
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path));
+}
+
+// Options whose value a program has no use for: a name of nothing does no harm.
+const char* unused_because(const Program& program, const std::string& option) {
+    if (program.name == "reference" && option == "--device")
+        return "the path tracer runs on the CPU";
+    if (program.name == "demo" && (option == "--settings" || option == "--state" || option == "--screenshots"))
+        return "it is of the window";
+    return nullptr;
+}
+
+TEST_F(RobustProgramOptions, NamesOfNothingAreNamed) {
+    std::size_t tried = 0, unused = 0;
+    for (const Program& program : {render, reference, demo_walk})
+        for (const Option& option : options(program)) {
+            if (kind_of(option) != Kind::name)
+                continue;
+            const bool is_unused = unused_because(program, option.name) != nullptr;
+            for (const std::string value : {"/proc/no_such.png", "/dev/null/x.png", "/proc/no_such/x.png"}) {
+                const Outcome outcome = run(program, " " + option.name + " " + value + rest(program, option.name));
+                const std::string what = program.name + " " + option.name + " " + value + ": " + outcome.output;
+                ++tried;
+                if (is_unused) {
+                    EXPECT_EQ(outcome.status, exit_done) << what;
+                    ++unused;
+                    std::filesystem::remove(folder.path / "out.png"); // it draws
+                    break;
+                }
+                EXPECT_EQ(outcome.status, exit_failed) << what;
+                const std::size_t error = outcome.output.find("error:");
+                EXPECT_NE(error, std::string::npos) << what;
+                EXPECT_EQ(outcome.output.find("error:", error + 1), std::string::npos) << what;
+                EXPECT_NE(outcome.output.find(value.substr(0, 9), error), std::string::npos) << what;
+            }
+        }
+    EXPECT_GE(tried, 40u);
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "out.png"));
+    std::printf("%zu tried, %zu of which are of no use to the program\n", tried, unused);
+}
+
+TEST_F(RobustProgramOptions, FlagsAreTaken) {
+    const std::vector<std::string> others = {"--headless", "--simulate"}; // given already; plays for minutes
+    std::size_t tried = 0;
+    for (const Program& program : {render, reference, demo_walk})
+        for (const Option& option : options(program)) {
+            if (kind_of(option) != Kind::flag || std::count(others.begin(), others.end(), option.name) > 0)
+                continue;
+            const Outcome outcome = run(program, " " + option.name + rest(program, option.name));
+            EXPECT_EQ(outcome.status, exit_done) << program.name << " " << option.name << ": " << outcome.output;
+            ++tried;
+        }
+    EXPECT_GE(tried, 12u);
+}
+
+} // namespace
+} // namespace sunfleck::tests
