@@ -52,8 +52,9 @@ TEST_F(RobustLostDevice, AWalkIsTheSame) {
                      file(name));
     };
     ASSERT_EQ(walk("0", "whole").status, 0);
-    const Outcome outcome = walk("9,14", "lost");
+    const Outcome outcome = walk("9,5", "lost");
     ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_EQ(count(outcome.output, "new device"), 2) << outcome.output;
     int pictures = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path / "whole"))
         if (entry.path().extension() == ".png") {
@@ -61,6 +62,12 @@ TEST_F(RobustLostDevice, AWalkIsTheSame) {
             EXPECT_EQ(read_file(folder.path / "lost" / entry.path().filename()).value(), read_file(entry).value());
         }
     EXPECT_GT(pictures, 0);
+    const Outcome third = walk("9,5,7", "third");
+    EXPECT_EQ(third.status, 1) << third.output;
+    EXPECT_EQ(count(third.output, "new device"), 2) << third.output;
+    EXPECT_EQ(count(third.output, "error:"), 1) << third.output;
+    EXPECT_EQ(count(third.output, "3 times"), 1) << third.output;
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "third/stats.json")) << "it tells of frames that were not drawn";
 }
 
 // Nothing here waits for a time: each step is done when what it asks for is there, or after two minutes.
