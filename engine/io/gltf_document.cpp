@@ -19,6 +19,7 @@ struct Chunks {
     std::string json;
     std::string binary;
     bool is_binary = false;
+    std::vector<std::string> notes;
 };
 
 std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
@@ -53,6 +54,9 @@ Result<Chunks> split_chunks(std::string bytes) {
             chunks.json = bytes.substr(at + 8, length);
         } else if (type == binary_type && chunks.binary.empty()) {
             chunks.binary = bytes.substr(at + 8, length);
+        } else if (type == json_type || type == binary_type) {
+            chunks.notes.push_back(std::string("a second chunk of ") + (type == json_type ? "JSON" : "binary data") +
+                                   " is left out");
         }
         at += 8 + (length + 3) / 4 * 4;
     }
@@ -127,6 +131,18 @@ void make_whole_numbers_integers(json& value) {
 
 bool is_draco(const json& primitive) {
     return primitive.contains("extensions") && primitive["extensions"].contains("KHR_draco_mesh_compression");
+}
+
+// glTF allows one or the other; tinygltf reads the matrix.
+void note_two_transforms(const json& file, std::vector<std::string>& notes) {
+    const auto nodes = file.find("nodes");
+    for (std::size_t i = 0; nodes != file.end() && i < nodes->size(); ++i) {
+        const json& node = (*nodes)[i];
+        if (node.contains("matrix") &&
+            (node.contains("translation") || node.contains("rotation") || node.contains("scale")))
+            notes.push_back("nodes[" + std::to_string(i) +
+                            "] has a matrix, so its translation, rotation and scale are left out");
+    }
 }
 
 // Removes from the JSON what tinygltf must not handle: sources of bytes, and what it would reject.
@@ -304,8 +320,9 @@ Result<GltfDocument> parse_gltf_document(std::string bytes, const std::filesyste
     if (file.is_discarded())
         return Error{"its JSON is not valid"};
     make_whole_numbers_integers(file);
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = std::move(chunks.notes);
     SUNFLECK_TRY(check_gltf_json(file, notes));
+    note_two_transforms(file, notes);
     GltfDocument document{{}, {}, GltfUsage(file), std::move(notes)};
     tinygltf::TinyGLTF loader;
     std::string error, warning;

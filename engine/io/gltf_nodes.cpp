@@ -134,6 +134,45 @@ std::string NodeImport::unique_name(const std::string& wanted) {
     return name;
 }
 
+const tinygltf::Light* NodeImport::light_of(const tinygltf::Node& node) const {
+    const auto found = node.extensions.find("KHR_lights_punctual");
+    if (found == node.extensions.end() || !found->second.Has("light") || !found->second.Get("light").IsNumber())
+        return nullptr;
+    const int which = found->second.Get("light").GetNumberAsInt();
+    return in_range(which, model_->lights) ? &model_->lights[std::size_t(which)] : nullptr;
+}
+
+// What a node of a broken file asks for and cannot have.
+void NodeImport::note_left_out(int index) {
+    const tinygltf::Node& node = model_->nodes[std::size_t(index)];
+    const auto left_out = [&](bool is, const std::string& what) {
+        if (is)
+            notes.push_back("node " + std::to_string(index) + " ('" + node.name + "'): " + what);
+    };
+    std::size_t targets = 0;
+    bool has_joints = false;
+    if (in_range(node.mesh, content_.meshes))
+        for (const ImportedPrimitive& primitive : content_.meshes[std::size_t(node.mesh)]) {
+            targets = std::max(targets, primitive.mesh.targets.size());
+            has_joints = has_joints || primitive.mesh.influences > 0;
+        }
+    left_out(node.extensions.count("KHR_lights_punctual") > 0 && light_of(node) == nullptr,
+             "its light is none of the file's " + std::to_string(model_->lights.size()) + ", and is left out");
+    left_out(node.skin >= 0 && !has_joints, "it has a skin, but no mesh with joints: the skin is left out");
+    left_out(node.weights.size() > targets, "of its " + std::to_string(node.weights.size()) +
+                                                " weights, those beyond its mesh's " + std::to_string(targets) +
+                                                " morph targets are left out");
+    const auto animation = content_.animations.find(index);
+    if (animation == content_.animations.end())
+        return;
+    left_out(animation->second.weights.width > 0 && targets == 0,
+             "weights are animated, but it has no morph targets: they are left out");
+    std::set<scene::AnimationTarget> moved;
+    for (const scene::AnimationCurve& curve : animation->second.curves)
+        left_out(!moved.insert(curve.target).second,
+                 "several channels animate one property of it: all but the last are left out");
+}
+
 ecs::Entity NodeImport::child_of(ecs::Entity parent, const std::string& name, const scene::Transform& transform) {
     const ecs::Entity entity = registry_->create();
     registry_->emplace<scene::Name>(entity, {unique_name(name)});
@@ -180,13 +219,9 @@ void NodeImport::add_node(int index, ecs::Entity parent, bool visible) {
     }
     if (in_range(node.camera, model_->cameras))
         add_camera(model_->cameras[std::size_t(node.camera)], entity, name);
-    const auto light = node.extensions.find("KHR_lights_punctual");
-    if (visible && light != node.extensions.end() && light->second.Has("light") &&
-        light->second.Get("light").IsNumber()) {
-        const int which = light->second.Get("light").GetNumberAsInt();
-        if (in_range(which, model_->lights))
-            add_light(model_->lights[std::size_t(which)], entity);
-    }
+    if (const tinygltf::Light* light = light_of(node); visible && light != nullptr)
+        add_light(*light, entity);
+    note_left_out(index);
     for (const int child : node.children)
         add_node(child, entity, visible);
 }
@@ -269,6 +304,11 @@ void NodeImport::deform(int node, const ImportedPrimitive& primitive, ecs::Entit
 void NodeImport::bind_skins() {
     for (const auto& [entity, number] : skinned_) {
         const ImportedSkin& skin = content_.skins[std::size_t(number)];
+        const auto outside = std::count_if(skin.joints.begin(), skin.joints.end(),
+                                           [&](int joint) { return entities_[std::size_t(joint)].is_null(); });
+        if (outside > 0)
+            notes.push_back("skin " + std::to_string(number) + ": " + std::to_string(outside) +
+                            " of its joints are not in the scene: their transforms are left out");
         registry_->patch<scene::Deformation>(entity, [&](scene::Deformation& deformation) {
             for (const int joint : skin.joints)
                 deformation.joints.push_back(entities_[std::size_t(joint)]);

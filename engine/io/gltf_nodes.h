@@ -44,6 +44,8 @@ private:
     void add_primitive(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
     void deform(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
     void add_camera(const tinygltf::Camera& camera, ecs::Entity entity, const std::string& name);
+    const tinygltf::Light* light_of(const tinygltf::Node& node) const; // null where it has none
+    void note_left_out(int index);
     void add_light(const tinygltf::Light& light, ecs::Entity entity);
     void bind_skins();
     std::string unique_name(const std::string& wanted);

@@ -3,6 +3,8 @@
 #include "engine/scene/deformation.h"
 #include "tests/support/gltf_files.h"
 
+#include <cstring>
+
 namespace sunfleck {
 namespace {
 
@@ -33,6 +35,68 @@ TEST(GltfImport, NodesInstancesVisibilityAndNames) {
     EXPECT_EQ(vec3(third[3]), vec3(3.0f, 5.0f, 0.0f));
     EXPECT_FALSE(world.registry.has<scene::MeshInstance>(scene::find_by_name(world.registry, "node 2")));
     EXPECT_EQ(world.meshes.size(), 1u) << "instances share one mesh";
+}
+
+// Nothing of a broken file disappears silently.
+TEST(GltfImport, WhatNodesCannotHaveIsLeftOutAndSaid) {
+    const auto notes_of = [](const char* node, const char* channel) {
+        GltfBuilder file;
+        file.add_square();
+        const int times = file.floats({0, 1}, "SCALAR", 1), values = file.floats({0, 0, 0, 1, 0, 0}, "VEC3", 3),
+                  weights = file.floats({0, 1}, "SCALAR", 1);
+        file.file["nodes"][0].merge_patch(json::parse(node));
+        file.file["nodes"].push_back({{"name", "joint"}});
+        file.file["scenes"] = {{{"nodes", {0}}}};
+        file.file["skins"] = {{{"joints", {1}}}};
+        file.file["extensionsUsed"] = {"KHR_lights_punctual"};
+        json animation = {
+            {"samplers", {{{"input", times}, {"output", values}}, {{"input", times}, {"output", weights}}}},
+            {"channels", json::parse(channel)}};
+        if (!animation["channels"].empty())
+            file.file["animations"] = json::array({animation});
+        World world;
+        const auto report = world.import(file.glb());
+        EXPECT_TRUE(report) << report.error().message;
+        std::string all;
+        for (const std::string& note : report ? report->notes : std::vector<std::string>())
+            all += note + "\n";
+        return all;
+    };
+    const std::string moved = R"({"sampler":0,"target":{"node":0,"path":"translation"}})";
+    EXPECT_EQ(notes_of("{}", "[]"), "");
+    EXPECT_EQ(notes_of("{}", ("[" + moved + "]").c_str()), "");
+    struct Case {
+        std::string node, channels, said;
+    };
+    const Case cases[] = {
+        {R"({"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"scale":[2,2,2]})", "[]", "scale are left out"},
+        {R"({"extensions":{"KHR_lights_punctual":{"light":0}}})", "[]", "none of the file's 0"},
+        {R"({"extensions":{"KHR_lights_punctual":{}}})", "[]", "none of the file's 0"},
+        {R"({"skin":0})", "[]", "the skin is left out"},
+        {R"({"weights":[1]})", "[]", "weights, those beyond its mesh's 0"},
+        {"{}", R"([{"sampler":1,"target":{"node":0,"path":"weights"}}])", "weights are animated"},
+        {"{}", "[" + moved + "," + moved + "]", "all but the last"},
+    };
+    for (const Case& broken : cases)
+        EXPECT_NE(notes_of(broken.node.c_str(), broken.channels.c_str()).find(broken.said), std::string::npos)
+            << broken.node << broken.channels;
+}
+
+// What stands behind the first chunk of a kind cannot be referred to.
+TEST(GltfImport, SecondChunksAreLeftOutAndSaid) {
+    GltfBuilder file;
+    file.add_square();
+    const std::string whole = file.glb();
+    for (const char* type : {"JSON", "BIN\0"}) {
+        std::string bytes = whole + std::string("\4\0\0\0", 4) + std::string(type, 4) + "{}  ";
+        const auto length = std::uint32_t(bytes.size());
+        std::memcpy(bytes.data() + 8, &length, sizeof length);
+        World world;
+        const auto report = world.import(bytes);
+        ASSERT_TRUE(report) << report.error().message;
+        ASSERT_EQ(report->notes.size(), 1u);
+        EXPECT_NE(report->notes[0].find("a second chunk of"), std::string::npos) << report->notes[0];
+    }
 }
 
 TEST(GltfImport, ScenesVariantsAndAnimationsAreChosen) {
