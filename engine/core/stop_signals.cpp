@@ -2,9 +2,11 @@
 
 #include "engine/core/exit_status.h"
 
+#include <algorithm>
 #include <csignal>
 #include <ctime>
 #include <initializer_list>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace sunfleck {
@@ -20,8 +22,12 @@ void end_now(int) {
 }
 
 void begin_grace() {
+    // The system takes up to 30 ms a GiB to have a large level's memory back, after that.
+    constexpr long usual = 150'000'000, least = 30'000'000, per_gibibyte = 20'000'000; // ns
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
     itimerspec moment{};
-    moment.it_value.tv_nsec = 150'000'000; // a large level's memory takes as long again to give back
+    moment.it_value.tv_nsec = std::max(least, usual - (usage.ru_maxrss >> 20) * per_gibibyte);
     ::timer_settime(grace, 0, &moment, nullptr);
 }
 

@@ -6,8 +6,8 @@ namespace sunfleck {
 // From now on SIGINT only sets the flag; pressed again, it ends the program at once. Writes to closed pipes and beyond
 // limits of file size become errors.
 void watch_interrupts();
-// The same for work that has nothing to save: where it does not end by itself within 0.15 s, whatever it is doing, the
-// program ends.
+// The same for work that has nothing to save: where it does not end by itself within 0.15 s (of gigabytes of memory,
+// sooner), whatever it is doing, the program ends.
 void end_at_interrupts();
 // The same as watch_interrupts for SIGTERM, SIGQUIT, SIGXCPU and (unless it is ignored, as by nohup) SIGHUP: for work
 // that has something to save and looks at the flag often. All else is better ended by them at once, since no file is

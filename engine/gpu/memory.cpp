@@ -1,5 +1,6 @@
 #include "engine/gpu/memory.h"
 
+#include "engine/core/large_pages.h"
 #include "engine/core/memory_limit.h"
 #include "engine/gpu/device.h"
 
@@ -68,6 +69,8 @@ Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, 
             return vulkan_error(result, "mapping GPU memory for '" + what + "'");
         }
         block.mapped = static_cast<std::byte*>(mapped);
+        if (device_.traits().software)
+            prefer_large_pages(mapped, size);
     }
     block.size = size;
     block.type = type;

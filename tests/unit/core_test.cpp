@@ -2,6 +2,7 @@
 #include "engine/core/description.h"
 #include "engine/core/file.h"
 #include "engine/core/jobs.h"
+#include "engine/core/large_pages.h"
 #include "engine/core/memory_limit.h"
 #include "engine/core/octahedral.h"
 #include "engine/core/random.h"
@@ -14,7 +15,9 @@
 #include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 #include <sys/resource.h>
 
 namespace sunfleck {
@@ -209,6 +212,36 @@ TEST(MemoryLimit, FollowsControlGroupsAndThoseTheyLieIn) {
     EXPECT_EQ(free("4:cpu,memory:/old\n"), 150u);
     EXPECT_EQ(free(""), 5000u);
     fs::remove_all(mount);
+}
+
+// Whether the system was asked for large pages where `address` lies.
+bool asked_for_large_pages(const void* address) {
+    std::ifstream mappings("/proc/self/smaps");
+    bool inside = false;
+    for (std::string line; std::getline(mappings, line);) {
+        std::uintptr_t begin = 0, end = 0;
+        char minus = 0;
+        if (std::istringstream range(line); range >> std::hex >> begin >> minus >> end && minus == '-')
+            inside =
+                begin <= reinterpret_cast<std::uintptr_t>(address) && reinterpret_cast<std::uintptr_t>(address) < end;
+        else if (inside && line.starts_with("VmFlags:"))
+            return line.find(" hg") != std::string::npos;
+    }
+    return false;
+}
+
+TEST(LargePages, LargePiecesAlone) {
+    if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage"))
+        GTEST_SKIP() << "the system has no large pages";
+    for (const bool large : {false, true}) {
+        const std::size_t bytes = large ? large_piece + 1000 : large_piece / 2;
+        void* const mapping = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        ASSERT_NE(mapping, MAP_FAILED);
+        char* const piece = static_cast<char*>(mapping) + 16; // as malloc has it
+        prefer_large_pages(piece, bytes - 16);
+        EXPECT_EQ(asked_for_large_pages(piece + bytes / 2), large);
+        ::munmap(mapping, bytes);
+    }
 }
 
 } // namespace
