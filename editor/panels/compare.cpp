@@ -1,5 +1,5 @@
-// The scene against the path tracer, or against settings that were kept: as a split picture, by turns, as an error map;
-// presets, and what they differ in.
+// The scene, as it is lit now or with settings that were kept, against the path tracer or those settings: as a split
+// picture, by turns, as an error map; presets, and what they differ in.
 #include "editor/panels/panel.h"
 #include "editor/window/comparison.h"
 #include "editor/window/fields.h"
@@ -16,55 +16,74 @@ public:
     void draw(Session& session) override;
 
 private:
-    void choose(Session& session);
-    void figures(Session& session) const;
+    static void choose(Session& session);
+    static void show_as(Session& session);
+    static void figures(Session& session);
     void presets(Session& session);
     void differences(const Session& session) const;
     std::string name_;
 };
 
+// `next`: the name of the option that follows, on the same line where it fits; null: none does.
 template <typename T>
-void option(const char* name, T value, T& place, const char* tip, bool last = false) {
+void option(const char* name, T value, T& place, const char* tip, const char* next) {
     bool on = place == value;
     if (ImGui::RadioButton(name, on))
         place = value;
     ui::note(name, place == value ? "on" : "off");
     ui::tooltip(tip);
-    if (last)
+    if (next == nullptr)
         return;
     ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < 6.5f * ui::unit()) // of another one
+    const float button = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+    if (ImGui::GetContentRegionAvail().x < button + ImGui::CalcTextSize(next).x)
         ImGui::NewLine();
 }
 
 void Compare::choose(Session& session) {
     Comparison& comparison = *session.comparison;
-    ui::heading("Compare with");
-    option("Nothing", CompareWith::nothing, comparison.with, "The scene alone");
+    ui::heading("Compare");
+    option("Scene", CompareWhat::scene, comparison.what, "The scene as it is lit now", "Kept");
+    ImGui::BeginDisabled(!comparison.kept());
+    option("Kept", CompareWhat::kept_settings, comparison.what,
+           "The same scene, lit with the settings kept: against the reference", nullptr);
+    ImGui::EndDisabled();
+    ImGui::TextDisabled("with");
+    option("Nothing", CompareWith::nothing, comparison.with, "The scene alone", "Reference");
     option("Reference", CompareWith::reference, comparison.with, "The path tracer, which works while the scene rests",
-           true);
+           "Kept settings");
     ImGui::BeginDisabled(!comparison.kept());
     option("Kept settings", CompareWith::kept_settings, comparison.with, "The same scene, lit with the settings kept",
-           true);
+           nullptr);
     ImGui::EndDisabled();
-    option("Split", CompareAs::split, comparison.as, "The scene to the left of the line, which can be dragged");
-    option("Flip", CompareAs::flip, comparison.as, "One or the other, by the button or T");
-    option("Error", CompareAs::difference, comparison.as, "Eight times the difference", true);
+}
+
+void Compare::show_as(Session& session) {
+    Comparison& comparison = *session.comparison;
+    ui::heading("Show as");
+    option("Split", CompareAs::split, comparison.as, "What is compared to the left of the line, which can be dragged",
+           "Flip");
+    option("Flip", CompareAs::flip, comparison.as, "One or the other, by the button or T", "Error");
+    option("Error", CompareAs::difference, comparison.as, "Eight times the difference", "Heat");
+    option("Heat", CompareAs::heat, comparison.as,
+           "The largest difference of a pixel's channels, in colours from black to light yellow", nullptr);
     if (ui::button("Keep settings", "Keeps the settings as they are now, to be compared with"))
         comparison.keep(session.document->settings());
     ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize("Show the scene").x + ui::unit())
+    if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize("Show the other").x + ui::unit())
         ImGui::NewLine();
-    if (ui::button(comparison.flipped ? "Show the scene##flip" : "Show the other##flip", {},
+    if (ui::button(comparison.flipped ? "Show the first##flip" : "Show the other##flip", {},
                    comparison.on() && comparison.as == CompareAs::flip))
         comparison.flipped = !comparison.flipped;
 }
 
-void Compare::figures(Session& session) const {
+void Compare::figures(Session& session) {
     Comparison& comparison = *session.comparison;
     if (!comparison.on())
         return;
-    ui::text("state", comparison.state());
+    if (comparison.without_scene())
+        ui::text("state of one", comparison.name_of_one());
+    ui::text("state", comparison.name_of_other());
     const std::shared_ptr<const Difference> difference = comparison.difference();
     if (difference == nullptr)
         return ImGui::TextDisabled("Figures come when both pictures are at rest");
@@ -132,10 +151,11 @@ void Compare::draw(Session& session) {
         return;
     ImGui::TableNextColumn();
     choose(session);
+    ImGui::TableNextColumn();
+    show_as(session);
     figures(session);
     ImGui::TableNextColumn();
     presets(session);
-    ImGui::TableNextColumn();
     differences(session);
     ImGui::EndTable();
 }

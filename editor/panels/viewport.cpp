@@ -3,7 +3,7 @@
 
 #include "editor/document/picking.h"
 #include "editor/window/commands.h"
-#include "editor/window/comparison.h"
+#include "editor/window/comparison_overlay.h"
 #include "editor/window/field_parts.h"
 #include "editor/window/overlay.h"
 
@@ -203,41 +203,6 @@ void Viewport::navigate(Session& session, bool hovered) {
         session.camera.dolly(io.MouseWheel);
 }
 
-// The line between two pictures, and what they are. True if the pointer is on it.
-bool Viewport::split(Session& session) {
-    Comparison& comparison = *session.comparison;
-    if (!comparison.on())
-        return false;
-    const ImVec4 area = session.viewport_area;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const auto label = [&](float x, const std::string& text) {
-        const ImVec2 size = ImGui::CalcTextSize(text.c_str()), low(x, area.y + area.w - 1.8f * ui::unit());
-        list->AddRectFilled(ImVec2(low.x - 4.0f, low.y - 2.0f), ImVec2(low.x + size.x + 4.0f, low.y + size.y + 2.0f),
-                            IM_COL32(20, 18, 16, 200), 3.0f);
-        list->AddText(low, IM_COL32(255, 255, 255, 255), text.c_str());
-    };
-    const std::string other = comparison.with == CompareWith::reference ? "reference, " + comparison.state()
-                                                                        : "kept settings, " + comparison.state();
-    if (comparison.as != CompareAs::split) {
-        label(area.x + ui::unit(), comparison.as == CompareAs::difference ? "8 x error against " + other
-                                   : comparison.flipped                   ? other
-                                                                          : "scene");
-        return false;
-    }
-    const float x = area.x + comparison.split * area.z;
-    list->AddLine(ImVec2(x, area.y), ImVec2(x, area.y + area.w), IM_COL32(255, 255, 255, 200), 1.5f);
-    label(std::max(x - 4.5f * ui::unit(), area.x + 4.0f), "scene");
-    label(x + ui::unit(), other);
-    ImGui::SetCursorScreenPos(ImVec2(x - 5.0f, area.y + 3.0f * ui::unit()));
-    ImGui::InvisibleButton("split", ImVec2(10.0f, std::max(area.w - 6.0f * ui::unit(), 1.0f)));
-    ui::note("split", ui::number_text(double(comparison.split), false));
-    if (ImGui::IsItemActive())
-        comparison.split = std::clamp((ImGui::GetIO().MousePos.x - area.x) / area.z, 0.02f, 0.98f);
-    if (ImGui::IsItemHovered() || ImGui::IsItemActive())
-        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    return ImGui::IsItemHovered() || ImGui::IsItemActive();
-}
-
 // Puts the switch of that name to the right of the last one, or on a line of its own where the picture ends before.
 void beside_or_below(const Session& session, const char* name, float gap) {
     const float width = ImGui::CalcTextSize(name, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x;
@@ -321,7 +286,7 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
     const bool active = ImGui::IsItemActive();
     ImGui::PushClipRect(low, ImVec2(low.x + room.x, low.y + room.y), true);
     overlay(session);
-    const bool on_split = split(session);
+    const bool on_split = draw_comparison(session);
     const bool on_gizmo = gizmo_.draw(session, hovered && !flying_ && !on_split) || on_split;
     ImGui::PopClipRect();
     if (hovered && ImGui::IsMouseClicked(0)) {

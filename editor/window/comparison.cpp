@@ -1,6 +1,7 @@
 #include "editor/window/comparison.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunfleck::editor {
 
@@ -25,16 +26,23 @@ SceneChange Comparison::with_kept_settings(SceneChange change) const {
     return change;
 }
 
+void Comparison::keep(const gi::Settings& settings) {
+    kept_ = settings;
+    second_.reset(); // it is told them when it begins
+    differences_.reset();
+}
+
+// Begins and ends what makes the pictures.
 void Comparison::follow(const std::optional<SceneChange>& change, const std::function<SceneChange()>& everything,
                         const ViewRequest& view) {
     if (with != CompareWith::reference)
         reference_.reset();
-    if (with != CompareWith::kept_settings || !kept_)
+    if (!needs_second())
         second_.reset();
-    if (!on()) {
-        differences_.reset();
+    if (!on() || std::exchange(sides_, std::pair(with, without_scene())) != std::pair(with, without_scene()))
+        differences_.reset(); // they are of other pictures
+    if (!on())
         return;
-    }
     if (differences_ == nullptr)
         differences_ = std::make_unique<DifferenceThread>(*device_, wake_);
     // The exposure of the picture that it is compared with.
@@ -43,27 +51,34 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
     wanted.read_back = true;
     wanted.listing.clear();
     wanted.ev100 = now != nullptr ? std::optional<float>(now->ev100) : view.ev100;
-    const bool is_new = with == CompareWith::reference ? reference_ == nullptr : second_ == nullptr;
-    const bool view_changed = is_new || !same_view(wanted, view_);
+    const bool view_changed = !same_view(wanted, view_);
     view_ = wanted;
+    const auto tell = [&](auto& thread, bool is_new, auto&& adapt) {
+        if (is_new || change)
+            thread.change(adapt(is_new ? everything() : *change));
+        if (is_new || view_changed)
+            thread.show(wanted);
+    };
     if (with == CompareWith::reference) {
+        const bool is_new = reference_ == nullptr;
         if (is_new)
             reference_ = std::make_unique<ReferenceThread>(
-                *device_, [this] { return scene_.busy(); }, wake_);
-        if (is_new || change)
-            reference_->change(is_new ? everything() : *change);
-        if (view_changed)
-            reference_->show(wanted);
-    } else if (kept_) {
+                *device_, [this] { return scene_.busy() || (second_ != nullptr && second_->busy()); }, wake_);
+        tell(*reference_, is_new, [](SceneChange all) { return all; });
+    }
+    if (needs_second()) {
+        const bool is_new = second_ == nullptr;
         if (is_new)
             second_ = std::make_unique<SceneThread>(*device_, wake_);
-        if (is_new || change)
-            second_->change(with_kept_settings(is_new ? everything() : *change));
-        if (view_changed)
-            second_->show(wanted);
+        tell(*second_, is_new, [this](SceneChange all) { return with_kept_settings(std::move(all)); });
     }
-    if (const std::shared_ptr<ScenePicture> compared = other(); compared != nullptr && now != nullptr)
-        differences_->compare(now->pixels, compared->pixels);
+    const std::shared_ptr<ScenePicture> a = one(now), b = other();
+    if (a != nullptr && b != nullptr)
+        differences_->compare(a->pixels, b->pixels);
+}
+
+std::shared_ptr<ScenePicture> Comparison::one(const std::shared_ptr<ScenePicture>& now) const {
+    return !without_scene() ? now : second_ != nullptr ? second_->picture() : nullptr;
 }
 
 std::shared_ptr<ScenePicture> Comparison::other() const {
@@ -74,14 +89,24 @@ std::shared_ptr<const Difference> Comparison::difference() const {
     return differences_ != nullptr ? differences_->difference() : nullptr;
 }
 
-std::string Comparison::state() const {
-    if (reference_ != nullptr)
-        return reference_->error().empty() ? std::to_string(reference_->samples()) + " paths a pixel"
-                                           : reference_->error();
+std::string Comparison::state_of_second() const {
     if (second_ == nullptr)
-        return "";
+        return "kept settings";
     const SceneStatus status = second_->status();
-    return !status.error.empty() ? status.error : status.busy ? "settling" : "settled";
+    return "kept settings, " + (!status.error.empty() ? status.error : status.busy ? "settling" : "settled");
+}
+
+std::string Comparison::name_of_one() const {
+    return without_scene() ? state_of_second() : "scene";
+}
+
+std::string Comparison::name_of_other() const {
+    if (with != CompareWith::reference)
+        return state_of_second();
+    if (reference_ == nullptr)
+        return "reference";
+    const std::string error = reference_->error();
+    return "reference, " + (error.empty() ? std::to_string(samples()) + " paths a pixel" : error);
 }
 
 std::vector<app::Backdrop> Comparison::backdrops(const std::shared_ptr<ScenePicture>& now, VkRect2D area,
@@ -101,17 +126,19 @@ std::vector<app::Backdrop> Comparison::backdrops(const std::shared_ptr<ScenePict
                           {{int(first), 0}, {last - first, size.height}}});
         held.push_back(picture);
     };
-    const std::shared_ptr<ScenePicture> compared = on() ? other() : nullptr;
+    const std::shared_ptr<ScenePicture> first = on() ? one(now) : nullptr, second = on() ? other() : nullptr;
     const std::shared_ptr<const Difference> errors = difference();
-    if (compared == nullptr)
+    if (first == nullptr || second == nullptr)
         show(now, 0.0f, 1.0f);
     else if (as == CompareAs::difference && errors != nullptr)
         show(errors->map, 0.0f, 1.0f);
+    else if (as == CompareAs::heat && errors != nullptr)
+        show(errors->heat, 0.0f, 1.0f);
     else if (as == CompareAs::flip)
-        show(flipped ? compared : now, 0.0f, 1.0f);
+        show(flipped ? second : first, 0.0f, 1.0f);
     else {
-        show(now, 0.0f, split);
-        show(compared, split, 1.0f);
+        show(first, 0.0f, split);
+        show(second, split, 1.0f);
     }
     return result;
 }

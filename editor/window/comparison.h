@@ -1,5 +1,5 @@
-// Two pictures of one scene side by side, by turns or as their difference: as it is lit now, against the path tracer or
-// against other settings that were kept.
+// Two pictures of one scene side by side, by turns or as their difference: as it is lit now or with settings that were
+// kept, against the path tracer or against those settings.
 #pragma once
 
 #include "editor/window/difference_thread.h"
@@ -8,8 +8,9 @@
 
 namespace sunfleck::editor {
 
+enum class CompareWhat { scene, kept_settings };
 enum class CompareWith { nothing, reference, kept_settings };
-enum class CompareAs { split, flip, difference };
+enum class CompareAs { split, flip, difference, heat };
 
 class Comparison {
 public:
@@ -20,29 +21,38 @@ public:
     void forget_device();
     void use_device(gpu::Device& device) { device_ = &device; }
 
+    CompareWhat what = CompareWhat::scene; // kept settings are held against the reference alone
     CompareWith with = CompareWith::nothing;
     CompareAs as = CompareAs::split;
-    float split = 0.5f;   // share of the width that shows the scene as it is lit now
+    float split = 0.5f;   // share of the width that shows what is compared
     bool flipped = false; // the other one is shown
     const std::optional<gi::Settings>& kept() const { return kept_; }
-    void keep(const gi::Settings& settings) {
-        kept_ = settings;
-        second_.reset(); // it is told them when it begins
-    }
+    void keep(const gi::Settings& settings);
 
     bool on() const { return with != CompareWith::nothing; }
+    // Neither picture is of the scene as it is lit now.
+    bool without_scene() const {
+        return with == CompareWith::reference && what == CompareWhat::kept_settings && kept_.has_value();
+    }
     // Each frame of the GUI: `change` is what the scene thread is told, if anything, and `everything` makes all of it.
     void follow(const std::optional<SceneChange>& change, const std::function<SceneChange()>& everything,
                 const ViewRequest& view);
     // What is shown in `area` of the window; `now`: the scene's own picture. Pictures that are shown go to `held`.
     std::vector<app::Backdrop> backdrops(const std::shared_ptr<ScenePicture>& now, VkRect2D area,
                                          std::vector<std::shared_ptr<ScenePicture>>& held);
+    // What is compared, and what with; null until there is one. `now`: the scene's own picture.
+    std::shared_ptr<ScenePicture> one(const std::shared_ptr<ScenePicture>& now) const;
     std::shared_ptr<ScenePicture> other() const;
     std::shared_ptr<const Difference> difference() const;
-    // "64 paths a pixel", "settling", or what went wrong.
-    std::string state() const;
+    // Paths for each pixel of the reference.
+    std::uint32_t samples() const { return reference_ != nullptr ? reference_->samples() : 0; }
+    // What the two are, and how far: "kept settings, settling", "reference, 64 paths a pixel", or what went wrong.
+    std::string name_of_one() const;
+    std::string name_of_other() const;
 
 private:
+    bool needs_second() const { return kept_ && (with == CompareWith::kept_settings || without_scene()); }
+    std::string state_of_second() const;
     SceneChange with_kept_settings(SceneChange change) const;
     gpu::Device* device_;
     SceneThread& scene_;
@@ -52,6 +62,7 @@ private:
     std::unique_ptr<DifferenceThread> differences_;
     std::optional<gi::Settings> kept_;
     ViewRequest view_;
+    std::pair<CompareWith, bool> sides_{CompareWith::nothing, false}; // what differences_ is of: with, without_scene()
 };
 
 // Whether two requests show the same.

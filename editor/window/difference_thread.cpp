@@ -1,5 +1,6 @@
 #include "editor/window/difference_thread.h"
 
+#include "editor/window/heat_map.h"
 #include "editor/window/picture_upload.h"
 #include "engine/core/caught.h"
 #include "engine/core/log.h"
@@ -45,6 +46,7 @@ Result<std::shared_ptr<Difference>> DifferenceThread::make(const io::Picture& a,
     auto result = std::make_shared<Difference>();
     result->metrics = command_line::compare_pictures(a, b, false);
     SUNFLECK_ASSIGN(result->map, upload_picture(device_, *submission, command_line::difference_picture(a, b, false)));
+    SUNFLECK_ASSIGN(result->heat, upload_picture(device_, *submission, heat_picture(a, b)));
     return result;
 }
 

@@ -7,7 +7,8 @@
 namespace sunfleck::editor {
 
 struct Difference {
-    std::shared_ptr<ScenePicture> map; // eight times the difference, as display values
+    std::shared_ptr<ScenePicture> map;  // eight times the difference, as display values
+    std::shared_ptr<ScenePicture> heat; // heat_picture
     command_line::Metrics metrics;
 };
 

@@ -1,0 +1,186 @@
+// Two pictures of one scene: each is what it would be alone, the figures are those of `sunfleck compare`, and pictures
+// that were edited live are no worse than those of a start with the edited scene.
+#include "editor/window/comparison.h"
+#include "editor/window/heat_map.h"
+#include "tests/editor/editor_scene.h"
+
+#include <nlohmann/json.hpp>
+
+namespace sunfleck::editor {
+namespace {
+
+class EditorComparison : public EditorScene {
+protected:
+    void SetUp() override {
+        EditorScene::SetUp();
+        document_ = open_scene();
+        ASSERT_NE(document_, nullptr);
+        ASSERT_TRUE(kept_.set("lights", "24"));
+        kept_.seed = 77;
+        scene_ = std::make_unique<SceneThread>(tests::device(), [] {});
+        comparison_ = std::make_unique<Comparison>(tests::device(), *scene_, [] {});
+        comparison_->keep(kept_);
+        scene_->change(*collector_.collect(document_));
+        scene_->show(view(*document_));
+        ASSERT_NE(settled(*scene_, *document_), nullptr);
+        now_ = scene_->picture();
+    }
+    void TearDown() override {
+        comparison_.reset();
+        scene_.reset();
+    }
+    // As the GUI does at each frame, until it is as wanted.
+    bool follow_until(const std::function<bool()>& wanted) {
+        for (const auto end = Clock::now() + std::chrono::seconds(120); Clock::now() < end;) {
+            const auto change = collector_.collect(document_);
+            comparison_->follow(
+                change, [&] { return ChangeCollector::everything(document_); }, view(*document_));
+            if (change)
+                scene_->change(*change);
+            if (wanted())
+                return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        }
+        ADD_FAILURE() << "no such picture within two minutes";
+        return false;
+    }
+    static bool at_rest(const std::shared_ptr<ScenePicture>& picture) {
+        return picture != nullptr && picture->settled && picture->pixels != nullptr;
+    }
+    Picture kept_alone() const {
+        ViewRequest request = view(*document_);
+        request.ev100 = now_->ev100;
+        return alone(document_, kept_, request);
+    }
+    // What `sunfleck compare` says of two pictures.
+    nlohmann::json figures_of(const io::Picture& a, const io::Picture& b) const {
+        const fs::path one = folder_ / "one.png", other = folder_ / "other.png";
+        EXPECT_TRUE(io::write_picture(one, a));
+        EXPECT_TRUE(io::write_picture(other, b));
+        const tests::Outcome outcome =
+            tests::shell(std::string(SUNFLECK_TOOL) + " compare --json " + one.string() + " " + other.string());
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        return nlohmann::json::parse(outcome.output, nullptr, false);
+    }
+
+    std::shared_ptr<Document> document_;
+    gi::Settings kept_ = viewer::usual_lighting();
+    ChangeCollector collector_;
+    std::unique_ptr<SceneThread> scene_;
+    std::unique_ptr<Comparison> comparison_;
+    std::shared_ptr<ScenePicture> now_;
+};
+
+TEST_F(EditorComparison, EachHalfIsThatSettingAlone) {
+    comparison_->with = CompareWith::kept_settings;
+    ASSERT_TRUE(follow_until([&] { return at_rest(comparison_->other()); }));
+    const Picture wanted = kept_alone(), now = from_nothing(document_);
+    ASSERT_TRUE(wanted && now);
+    EXPECT_EQ(differing(*comparison_->other()->pixels, *wanted->pixels), 0u);
+    EXPECT_EQ(differing(*comparison_->one(now_)->pixels, *now->pixels), 0u);
+    EXPECT_GT(differing(*wanted->pixels, *now->pixels), width * height / 100u) << "the settings change nothing";
+    EXPECT_EQ(comparison_->name_of_one(), "scene");
+    EXPECT_EQ(comparison_->name_of_other(), "kept settings, settled");
+}
+
+// To three digits.
+TEST_F(EditorComparison, FiguresAreThoseOfCompare) {
+    comparison_->with = CompareWith::kept_settings;
+    ASSERT_TRUE(follow_until([&] { return at_rest(comparison_->other()) && comparison_->difference() != nullptr; }));
+    const auto figures = figures_of(*now_->pixels, *comparison_->other()->pixels);
+    const command_line::Metrics& shown = comparison_->difference()->metrics;
+    const std::pair<const char*, double> rows[] = {
+        {"relative_mse", shown.relative_mean_square_error}, {"mae", shown.mean_absolute_error}, {"flip", shown.flip}};
+    for (const auto& [name, value] : rows) {
+        ASSERT_TRUE(figures.contains(name)) << figures.dump();
+        EXPECT_GT(value, 0.0) << name;
+        EXPECT_NEAR(figures[name].get<double>(), value, 5e-4 * value) << name;
+    }
+}
+
+// Neither picture is the scene's then; what was worked out of other pictures is gone at once.
+TEST_F(EditorComparison, KeptSettingsAgainstTheReference) {
+    comparison_->with = CompareWith::kept_settings;
+    ASSERT_TRUE(follow_until([&] { return comparison_->difference() != nullptr; }));
+    comparison_->with = CompareWith::reference;
+    comparison_->what = CompareWhat::kept_settings;
+    ASSERT_TRUE(follow_until([] { return true; }));
+    EXPECT_EQ(comparison_->difference(), nullptr);
+    ASSERT_TRUE(follow_until([&] { return at_rest(comparison_->one(now_)) && comparison_->other() != nullptr; }));
+    EXPECT_NE(comparison_->one(now_), now_);
+    const Picture wanted = kept_alone();
+    ASSERT_NE(wanted, nullptr);
+    EXPECT_EQ(differing(*comparison_->one(now_)->pixels, *wanted->pixels), 0u);
+    EXPECT_EQ(comparison_->name_of_one(), "kept settings, settled");
+    EXPECT_EQ(comparison_->name_of_other().rfind("reference, ", 0), 0u) << comparison_->name_of_other();
+    ASSERT_TRUE(follow_until([&] { return comparison_->difference() != nullptr; }));
+
+    // Shown are these two, and never the scene.
+    std::vector<std::shared_ptr<ScenePicture>> held;
+    const VkRect2D area{{0, 0}, {width, height}};
+    EXPECT_EQ(comparison_->backdrops(now_, area, held).size(), 2u);
+    EXPECT_EQ(std::count(held.begin(), held.end(), now_), 0);
+    // Without settings that are kept, there is but the scene.
+    comparison_->what = CompareWhat::scene;
+    ASSERT_TRUE(follow_until([&] { return comparison_->other() != nullptr; }));
+    EXPECT_EQ(comparison_->one(now_), now_);
+}
+
+TEST_F(EditorComparison, HeatGrowsWithTheError) {
+    float brightness = -1.0f;
+    for (int i = 0; i <= 64; ++i) {
+        const float next = dot(heat_colour(float(i) / 64.0f), vec3(0.2126f, 0.7152f, 0.0722f));
+        EXPECT_GT(next, brightness) << i;
+        brightness = next;
+    }
+    io::Picture a, b;
+    a.width = b.width = 3;
+    a.height = b.height = 1;
+    a.pixels.assign(3, vec4(0.5f, 0.5f, 0.5f, 1.0f));
+    b.pixels = a.pixels;
+    b.pixels[1].g -= heat_end;
+    b.pixels[2] = vec4(0.0f);
+    const io::Picture heat = heat_picture(a, b);
+    EXPECT_EQ(vec3(heat.pixels[0]), heat_colour(0.0f));
+    EXPECT_EQ(vec3(heat.pixels[1]), heat_colour(1.0f));
+    EXPECT_EQ(vec3(heat.pixels[2]), heat_colour(0.0f)) << "pixels without alpha do not count";
+}
+
+// The relative squared error against the path tracer.
+double error_of(const io::Picture& picture, const io::Picture& reference) {
+    return command_line::compare_pictures(picture, reference, false).relative_mean_square_error;
+}
+
+// Where light follows edits behind the frames, it ends as good as that of a start with the edited scene. Both have the
+// noise of the same reference, which can only hide a difference that is smaller.
+TEST_F(EditorComparison, LiveEditsAreAsRightAsAStart) {
+    for (std::uint32_t seed = 1; seed <= by_size(3u, 20u); ++seed) {
+        if (!tests::in_part(seed))
+            continue;
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        document_ = open_scene();
+        ASSERT_NE(document_, nullptr);
+        tests::RandomEdits edits(*document_, seed);
+        for (std::uint32_t left = 4 + edits.below(8); left > 0; --left) {
+            edits.once();
+            if (auto change = collector_.collect(document_))
+                scene_->change(std::move(*change));
+            if (edits.below(3) == 0)
+                std::this_thread::sleep_for(std::chrono::milliseconds(edits.below(200)));
+        }
+        scene_->show(view(*document_));
+        const Picture edited = settled(*scene_, *document_), fresh = from_nothing(document_);
+        ASSERT_TRUE(edited && fresh);
+        if (differing(*edited->pixels, *fresh->pixels) == 0)
+            continue;
+        comparison_->with = CompareWith::reference;
+        ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= 256; }));
+        const io::Picture& truth = *comparison_->other()->pixels;
+        EXPECT_LE(error_of(*edited->pixels, truth), 1.2 * error_of(*fresh->pixels, truth));
+        comparison_->with = CompareWith::nothing;
+        ASSERT_TRUE(follow_until([] { return true; }));
+    }
+}
+
+} // namespace
+} // namespace sunfleck::editor
