@@ -8,6 +8,7 @@ namespace {
 
 constexpr float pointer_speed = 22.0f;  // 1e-4 rad per pixel
 constexpr float stick_speed = 26000.0f; // 1e-4 rad/s at full deflection
+constexpr float key_speed = 15000.0f;   // 1e-4 rad/s: a quarter turn in a second
 constexpr vec2 largest_turn(30000.0f);  // 1e-4 rad in a step
 constexpr int pad_a = 0, pad_b = 1, pad_x = 2, pad_y = 3, pad_left_bumper = 4;
 
@@ -21,8 +22,10 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     pad_before_ = pad_now_;
     pad_now_ = input.gamepad.buttons;
     watch_gamepad(input);
+    pad_of_menu_ &= pad_now_;
     held_ = {};
     if (!playing) {
+        pad_of_menu_ = pad_now_;
         look_ = vec2(0.0f);
         taps_ = 0;
         return;
@@ -34,7 +37,7 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     held_.forward = percent(axis(Action::forward, Action::back) - input.gamepad.left.y);
     held_.right = percent(axis(Action::right, Action::left) + input.gamepad.left.x);
     const auto button = [&](Action action, std::uint32_t bit, int pad) {
-        if (held(action) || input.gamepad.pressed(pad))
+        if (held(action) || (input.gamepad.pressed(pad) && (pad_of_menu_ & (1u << pad)) == 0))
             held_.buttons |= bit;
         if (input.hit(settings.bindings[std::size_t(action)]))
             taps_ |= bit;
@@ -45,6 +48,8 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     button(Action::put_down, simulation::button_put_down, pad_x);
     const float upwards = settings.invert_look ? 1.0f : -1.0f;
     const float bent = glm::length(input.gamepad.right); // finer control near the centre
+    look_ += settings.sensitivity * key_speed * float(seconds) *
+             vec2(axis(Action::look_left, Action::look_right), axis(Action::look_up, Action::look_down));
     look_ += settings.sensitivity * pointer_speed * vec2(-input.mouse_motion.x, upwards * input.mouse_motion.y);
     look_ += settings.sensitivity * stick_speed * float(seconds) * bent *
              vec2(-input.gamepad.right.x, upwards * input.gamepad.right.y);

@@ -18,7 +18,7 @@ FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, doubl
         gpu_ms += milliseconds;
     const FrameQuality quality = control_.next(std::max(work_ms_, gpu_ms), now, turns || level.moves());
     level.set_map_budget(quality.maps);
-    if (!std::exchange(told_, control_.out_of_reach()) && control_.out_of_reach())
+    if (control_.out_of_reach() && std::exchange(told_of_, target) != target)
         message_ = "Frames of " + std::to_string(std::lround(target)) +
                    " ms are out of reach here: they take longer with the least settings";
     return quality;

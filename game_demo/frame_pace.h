@@ -24,7 +24,8 @@ public:
 private:
     FrameTimeControl control_;
     double work_ms_ = 0.0;
-    bool told_ = false, playing_ = false;
+    double told_of_ = 0.0; // the target that was said to be out of reach
+    bool playing_ = false;
     std::string message_;
 };
 

@@ -108,6 +108,11 @@ void GameSession::update(double seconds) {
         save_checkpoint();
 }
 
+Status GameSession::keep() {
+    end_saving();
+    return has_folder_ && has_areas() && !world_->finished() ? files_.write(saved()) : Status();
+}
+
 void GameSession::show_hint() {
     hint_seconds_ = hint_time;
 }

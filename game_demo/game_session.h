@@ -32,6 +32,8 @@ public:
     // After a frame's steps: notices new areas, saves a checkpoint there, on a thread: no frame waits for the disk.
     void update(double seconds);
     void show_hint();
+    // Saves a checkpoint where the player stands, unless the game has ended: whoever quits goes on from there. Waits.
+    Status keep();
     GameProgress progress() const;
     // The game as a checkpoint would keep it; empty before it began.
     std::string saved() const { return world_ != nullptr ? save_game(*world_, level_) : std::string(); }

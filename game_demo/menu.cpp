@@ -2,11 +2,15 @@
 
 #include "game_demo/gui_parts.h"
 #include "game_demo/presets.h"
+#include "game_demo/prompt_text.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunfleck::demo {
 namespace {
+
+constexpr int pad_a = 0;
 
 void heading(const char* text, float scale) {
     ImGui::SetWindowFontScale(scale);
@@ -41,7 +45,7 @@ bool slider(const Field& field, const char* label, char* place) {
 // One size for all tabs, so that they stay under the pointer: room for the longest one, which otherwise scrolls.
 ImVec2 settings_size() {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    constexpr float rows = 13.0f; // heading, tabs, two sliders, seven rows of keys, gamepad, buttons
+    constexpr float rows = 15.0f; // heading, tabs, two sliders, nine rows of keys, gamepad, buttons
     const float height = rows * ImGui::GetFrameHeightWithSpacing() + 2.0f * unit();
     return {std::min(36.0f * unit(), 0.96f * screen.x), std::min(height, 0.96f * screen.y)};
 }
@@ -98,8 +102,9 @@ void Menu::back() {
 Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::InputState& input, bool& changed) {
     changed = false;
     selected_.clear();
-    // Until keyboard or gamepad navigation has selected something, Enter activates the first entry.
-    const bool enter = input.hit(app::key_enter) && !ImGui::GetIO().NavVisible;
+    // Until keyboard or gamepad navigation has selected something, Enter or A activates the first entry.
+    const bool a_before = std::exchange(a_is_down_, input.gamepad.pressed(pad_a));
+    const bool enter = (input.hit(app::key_enter) || (a_is_down_ && !a_before)) && !ImGui::GetIO().NavVisible;
     Decision decision = Decision::none;
     switch (screen_) {
     case Screen::title:
@@ -112,7 +117,7 @@ Decision Menu::draw(DemoSettings& settings, const OverlayData& data, const app::
         settings_screen(settings, input, changed);
         break;
     case Screen::help:
-        help_screen(settings);
+        help_screen(settings, data.is_game);
         break;
     case Screen::finished:
         decision = end_screen(data, enter);
@@ -342,24 +347,33 @@ void Menu::bindings_tab(DemoSettings& settings, const app::InputState& input, bo
     ImGui::TextDisabled("%s", input.gamepad.present ? ("Gamepad: " + input.gamepad.name).c_str() : "No gamepad");
 }
 
-void Menu::help_screen(const DemoSettings& settings) {
+// Four keys, one line.
+static bool is_look(Action action) {
+    return action >= Action::look_left && action <= Action::look_down;
+}
+
+void Menu::help_screen(const DemoSettings& settings, bool is_game) {
     place_next(0.5f, 0.5f, 0.5f, 0.5f);
     ImGui::Begin("help", nullptr, plain);
     heading("Help", 1.4f);
+    const auto line = [](const std::string& keys, const char* what) {
+        ImGui::TextColored(ImVec4(0.95f, 0.70f, 0.35f, 1.0f), "%s", keys.c_str());
+        ImGui::SameLine(std::max(7.0f * unit(), ImGui::CalcTextSize(keys.c_str()).x + unit()));
+        ImGui::TextUnformatted(what);
+    };
+    std::string look;
     for (std::size_t i = 0; i < action_count; ++i) {
-        ImGui::TextColored(ImVec4(0.95f, 0.70f, 0.35f, 1.0f), "%s", key_of(settings, Action(i)).c_str());
-        ImGui::SameLine(7.0f * unit());
-        ImGui::TextUnformatted(action_label(Action(i)));
+        if (!is_look(Action(i)))
+            line(key_of(settings, Action(i)), action_label(Action(i)));
+        else if (look += " " + key_of(settings, Action(i)); Action(i) == Action::look_down)
+            line(look.substr(1), "Look, as by the mouse");
     }
-    ImGui::TextColored(ImVec4(0.95f, 0.70f, 0.35f, 1.0f), "escape");
-    ImGui::SameLine(7.0f * unit());
-    ImGui::TextUnformatted("Pause; back");
+    line("escape", "Pause; back");
     ImGui::Dummy(ImVec2(0.0f, 0.4f * unit()));
     ImGui::TextUnformatted("Gamepad: left stick: walk; right stick: look; A: use; B: crouch;\n"
                            "X: put down; Y: indirect light; left bumper: run; Start: pause.\n\n"
-                           "In the menus, D-pad or arrows choose, A or Enter takes.\n"
-                           "Walk into balls and crates to push them. The lift in the green room\n"
-                           "leads to the attic. Switches beside the doors turn lamps on and off.");
+                           "In the menus, D-pad or arrows choose, A or Enter takes.");
+    ImGui::TextUnformatted(help_text(is_game));
     if (wide_button("Back"))
         back();
     ImGui::SetItemDefaultFocus();

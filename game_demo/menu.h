@@ -26,6 +26,7 @@ struct OverlayData {
     std::optional<float> light_share; // how far a change of light is, 0 to 1; none: there is none
     std::string device;
     bool is_game = false, can_resume = false; // the level has areas; there is a checkpoint
+    bool with_gamepad = false;                // the person plays with one
     double game_seconds = 0.0;
 };
 
@@ -55,7 +56,7 @@ private:
     void settings_and_help_buttons();
     void settings_screen(DemoSettings& settings, const app::InputState& input, bool& changed);
     void settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed);
-    void help_screen(const DemoSettings& settings);
+    void help_screen(const DemoSettings& settings, bool is_game);
     void prompts(const DemoSettings& settings, const OverlayData& data);
     void times(const OverlayData& data);
     void message();
@@ -71,6 +72,7 @@ private:
     std::string selected_;
     std::string message_;
     double message_seconds_ = 0.0;
+    bool a_is_down_ = false; // of the gamepad
 };
 
 } // namespace sunfleck::demo

@@ -1,28 +1,13 @@
 // What is drawn over the game: prompts, frame times, messages.
 #include "game_demo/gui_parts.h"
 #include "game_demo/menu.h"
+#include "game_demo/prompt_text.h"
 
 #include <algorithm>
 #include <cstdio>
 
 namespace sunfleck::demo {
 namespace {
-
-const char* verb(simulation::Interaction interaction) {
-    switch (interaction) {
-    case simulation::Interaction::open:
-        return "open";
-    case simulation::Interaction::close:
-        return "close";
-    case simulation::Interaction::switch_lamps:
-        return "switch the lamp";
-    case simulation::Interaction::take:
-        return "take the lantern";
-    case simulation::Interaction::none:
-        break;
-    }
-    return "";
-}
 
 // Bars for at most `limit` parts of a frame, the longest ones, in the order of their names.
 void time_rows(const char* title, const std::map<std::string, double>& group, double longest, std::size_t limit) {
@@ -60,11 +45,7 @@ void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
     const bool target = data.interaction != simulation::Interaction::none;
     list->AddCircleFilled(ImVec2(0.5f * size.x, 0.5f * size.y), target ? 0.22f * unit() : 0.12f * unit(),
                           target ? IM_COL32(255, 196, 110, 220) : IM_COL32(255, 255, 255, 130));
-    std::string text;
-    if (target)
-        text = key_of(settings, Action::use) + "  " + verb(data.interaction);
-    else if (data.carries_lantern)
-        text = key_of(settings, Action::put_down) + "  put down the lantern";
+    const std::string text = prompt_text(settings, data.interaction, data.carries_lantern, data.with_gamepad);
     if (text.empty())
         return;
     place_next(0.5f, 0.94f, 0.5f, 1.0f);

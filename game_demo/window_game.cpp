@@ -13,6 +13,7 @@
 #include "game_demo/loading_screen.h"
 #include "game_demo/menu.h"
 #include "game_demo/options.h"
+#include "game_demo/overlay_data.h"
 #include "game_demo/presets.h"
 #include "game_demo/screenshot.h"
 #include "game_demo/state_file.h"
@@ -264,7 +265,7 @@ private:
             sounds_.draw();
         }
         bool changed = false;
-        const Decision decision = menu_.draw(settings_, overlay_data(request, seconds), input, changed);
+        const Decision decision = menu_.draw(settings_, shown_data(request, seconds), input, changed);
         gui.end_frame();
         SUNFLECK_TRY(level_->update(request, moment));
         SUNFLECK_ASSIGN(const VkCommandBuffer commands, display_->begin_frame(renderer));
@@ -289,25 +290,14 @@ private:
                 sounds_.subtitles(),         menu_.message_text(), session_.saved()};
     }
 
-    OverlayData overlay_data(const viewer::FrameRequest& request, double seconds) {
-        const viewer::FrameStatistics& statistics = level_->renderer().statistics();
+    OverlayData shown_data(const viewer::FrameRequest& request, double seconds) {
         smooth_ms_ = smooth_ms_ <= 0.0 ? seconds * 1e3 : smooth_ms_ + 0.1 * (seconds * 1e3 - smooth_ms_);
-        OverlayData result;
-        result.interaction = level_->simulation().possible_interaction(level_->renderer().registry());
-        result.carries_lantern = level_->simulation().carries_lantern();
+        OverlayData result = overlay_data(*level_, request);
         result.indirect_light = indirect_;
         result.frame_ms = smooth_ms_;
-        result.gpu_ms = statistics.gpu_ms;
-        result.cpu_ms = statistics.cpu_ms;
-        if (level_->game().has_sensors())
-            result.cpu_ms["light sensors"] = level_->take_sensor_milliseconds();
-        result.is_game = level_->game().area() != nullptr;
         result.can_resume = result.is_game && session_.can_resume();
+        result.with_gamepad = controls_.plays_with_gamepad();
         result.game_seconds = session_.seconds();
-        result.light_samples = statistics.counters["light_samples"];
-        result.rendered_width = request.width;
-        result.rendered_height = request.height;
-        result.light_share = level_->light_share();
         result.device = display_->device().traits().name;
         return result;
     }
@@ -334,6 +324,7 @@ private:
             break;
         case Decision::reset_room:
             wants_reset_ = true;
+            sounds_.forget(); // what is put back makes no noise
             menu_.show(Screen::playing);
             break;
         case Decision::quit:
@@ -356,6 +347,7 @@ private:
     Status finish(const Status& played) {
         hitches_.log_summary();
         const Status stored = kept_.store(settings_), recorded = recording_.finish();
+        const Status kept = started_ ? session_.keep() : Status();
         end_soon();
         loading_.reset(); // may take a moment
         if (played)
@@ -363,6 +355,7 @@ private:
         if (kept_.differ_from_start(settings_)) // else nothing is lost
             SUNFLECK_TRY(stored);
         SUNFLECK_TRY(recorded);
+        SUNFLECK_TRY(kept);
         if (played && display_->device().validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};

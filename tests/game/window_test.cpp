@@ -186,6 +186,18 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
     EXPECT_EQ(game.value("area"), "The corner") << "Enter goes on at the checkpoint";
     EXPECT_LT(game.place(2), 6.24f);
+
+    // Whoever quits within a room goes on where they stood, and looked by keys alone.
+    const auto yaw = [&] { return game.state().value("yaw", 0.0); };
+    const double before = yaw();
+    ASSERT_TRUE(game.hold_until("Left", [&] { return std::abs(yaw() - before) > 0.3; })) << game.state();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // the last frame that the key was down in
+    const double turned = yaw();
+    EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
+    ASSERT_TRUE(game.start("none")) << game.log();
+    ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
+    EXPECT_EQ(game.value("area"), "The corner");
+    EXPECT_NEAR(yaw(), turned, 1e-3);
     EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
 }
 

@@ -4,6 +4,7 @@
 #include "game_demo/hitch_log.h"
 #include "game_demo/menu.h"
 #include "game_demo/presets.h"
+#include "game_demo/prompt_text.h"
 
 #include <gtest/gtest.h>
 
@@ -219,6 +220,50 @@ TEST(Controls, MissNoKeyAndKeepStillWhilePaused) {
     controls.take(input, settings, 0.016, true);
     EXPECT_EQ(controls.next_step().forward, 50);
     EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_run));
+}
+
+TEST(Controls, KeysTurnTheViewAtOneRate) {
+    const DemoSettings settings;
+    for (const int polls : {15, 60}) {
+        Controls controls;
+        app::InputState input;
+        input.keys[app::key_left] = input.keys[app::key_up] = true;
+        simulation::StepInput turned;
+        for (int i = 0; i < polls; ++i) {
+            controls.take(input, settings, 0.5 / polls, true);
+            const simulation::StepInput step = controls.next_step();
+            turned.turn += step.turn;
+            turned.look_up += step.look_up;
+        }
+        EXPECT_NEAR(turned.turn, 7500, 1) << polls << " polls in half a second";
+        EXPECT_NEAR(turned.look_up, 7500, 1);
+    }
+}
+
+TEST(Controls, WhatTookAMenusButtonUsesNothing) {
+    const DemoSettings settings;
+    Controls controls;
+    app::InputState down, up;
+    down.gamepad.present = up.gamepad.present = true;
+    down.gamepad.buttons = 1;                    // A
+    controls.take(down, settings, 0.016, false); // takes "Resume"
+    controls.take(down, settings, 0.016, true);
+    EXPECT_EQ(controls.next_step().buttons, 0u);
+    controls.take(up, settings, 0.016, true);
+    controls.take(down, settings, 0.016, true);
+    EXPECT_EQ(controls.next_step().buttons, std::uint32_t(simulation::button_use));
+}
+
+TEST(Prompts, NameWhatIsInThePlayersHands) {
+    DemoSettings settings;
+    settings.bindings[std::size_t(Action::use)] = 'R';
+    using simulation::Interaction;
+    EXPECT_EQ(prompt_text(settings, Interaction::take, false, false), "R  take the lantern");
+    EXPECT_EQ(prompt_text(settings, Interaction::take, false, true), "A  take the lantern");
+    EXPECT_EQ(prompt_text(settings, Interaction::open, true, true), "A  open");
+    EXPECT_EQ(prompt_text(settings, Interaction::none, true, true), "X  put down the lantern");
+    EXPECT_EQ(prompt_text(settings, Interaction::none, false, true), "");
+    EXPECT_STRNE(help_text(true), help_text(false));
 }
 
 TEST(Controls, LetGoOfWhatAVanishedGamepadHeld) {
