@@ -118,24 +118,32 @@ void Mirror::add_light(const Description& description, std::uint32_t number) {
     set_light(lights[number], description.lights[number]->data);
 }
 
+// In place of a light of another kind. One of the same kind changes where it is.
+template <typename Light>
+static void become(ecs::Registry& registry, ecs::Entity entity, const Light& light) {
+    const auto remove = [&]<typename Other>(std::type_identity<Other>) {
+        if constexpr (!std::is_same_v<Other, Light>)
+            remove_if_there<Other>(registry, entity);
+    };
+    remove(std::type_identity<scene::PointLight>());
+    remove(std::type_identity<scene::SpotLight>());
+    remove(std::type_identity<scene::DirectionalLight>());
+    remove(std::type_identity<scene::Environment>());
+    registry.emplace_or_replace<Light>(entity, light);
+}
+
 void Mirror::set_light(ecs::Entity entity, const LightData& data) {
-    // Another kind takes the place of the old one.
-    remove_if_there<scene::PointLight, scene::SpotLight, scene::DirectionalLight, scene::Environment>(registry, entity);
     const vec3 strength = vector_of(data.strength);
     place(entity, facing_along(vector_of(data.direction), vector_of(data.position)));
     switch (data.kind) {
     case LightKind::point:
-        registry.emplace_or_replace<scene::PointLight>(entity, {strength});
-        break;
+        return become(registry, entity, scene::PointLight{strength});
     case LightKind::spot:
-        registry.emplace_or_replace<scene::SpotLight>(entity, {strength, data.inner_angle, data.outer_angle});
-        break;
+        return become(registry, entity, scene::SpotLight{strength, data.inner_angle, data.outer_angle});
     case LightKind::directional:
-        registry.emplace_or_replace<scene::DirectionalLight>(entity, {strength});
-        break;
+        return become(registry, entity, scene::DirectionalLight{strength});
     case LightKind::sky:
-        registry.emplace_or_replace<scene::Environment>(entity, {strength});
-        break;
+        return become(registry, entity, scene::Environment{strength});
     }
 }
 
@@ -196,7 +204,7 @@ Result<std::uint32_t> Context::add_material(const MaterialData& data) {
     return self.run([&]() -> Result<std::uint32_t> {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_ASSIGN(auto material, self.make_material(data, nullptr));
-        self.description.materials.push_back(std::move(material));
+        self.description.materials.push_back(material);
         return std::uint32_t(self.description.materials.size() - 1);
     });
 }

@@ -32,6 +32,11 @@ bool same_field(const Field& field, const void* a, const void* b) {
     }
 }
 
+bool same_mesh(const scene::Mesh& a, const scene::Mesh& b) {
+    return a.name == b.name && a.positions == b.positions && a.normals == b.normals && a.indices == b.indices &&
+           a.texture_coordinates == b.texture_coordinates && a.tangents == b.tangents && a.colours == b.colours;
+}
+
 // Without control characters, at most `longest_name` bytes, not cut within a letter.
 std::string clean_name(std::string name) {
     for (char& letter : name)
@@ -120,7 +125,7 @@ void Document::begin(std::string name) {
     in_gesture_.clear();
 }
 
-void Document::set(Entity entity, ecs::PoolBase& pool, ecs::Value value) {
+void Document::set(Entity entity, ecs::PoolBase& pool, const ecs::Value& value) {
     assert(gesture_ && "edits belong to a gesture");
     for (const std::size_t index : in_gesture_[entity.bits()])
         if (ComponentChange& known = gesture_->components[index]; known.pool == &pool) {
@@ -136,7 +141,7 @@ Status Document::set_setting(std::string_view name, std::string_view value) {
     assert(gesture_ && "edits belong to a gesture");
     const std::string before = settings_.get(name);
     SUNFLECK_TRY(settings_.set(name, value));
-    if (const Status valid = settings_.validate(); !valid) {
+    if (Status valid = settings_.validate(); !valid) {
         SUNFLECK_TRY(settings_.set(name, before));
         return valid;
     }
@@ -177,6 +182,15 @@ bool Document::gesture_changed() const {
                        [](const SettingChange& change) { return change.before != change.after; });
 }
 
+std::uint32_t Document::add_shape(scene::Mesh mesh) {
+    const auto known = std::find_if(shapes_.begin(), shapes_.end(),
+                                    [&](std::uint32_t index) { return same_mesh(meshes_[index], mesh); });
+    if (known != shapes_.end())
+        return *known;
+    shapes_.push_back(add_mesh(std::move(mesh)));
+    return shapes_.back();
+}
+
 // What one sees of an area light follows its light.
 void Document::settle_lamps() {
     struct Lamp {
@@ -197,7 +211,7 @@ void Document::settle_lamps() {
         }
         if (registry_.has<scene::MeshInstance>(lamp.entity) && scene::needs_other_mesh(lamp.before, lamp.now)) {
             auto value = std::make_shared<scene::MeshInstance>();
-            value->mesh = add_mesh(scene::make_area_light_mesh(lamp.now));
+            value->mesh = add_shape(scene::make_area_light_mesh(lamp.now));
             set(lamp.entity, *find_component(*this, scene::MeshInstance::description().name), std::move(value));
         }
     }
@@ -285,7 +299,7 @@ void Document::name_changed(Entity entity, const void* before, const void* after
 }
 
 std::string Document::free_name(const std::string& wanted) const {
-    const std::string clean = clean_name(wanted);
+    std::string clean = clean_name(wanted);
     if (by_name_.count(clean) == 0)
         return clean;
     // "lamp 7" counts on from 7.

@@ -51,6 +51,8 @@ public:
     const gi::Settings& settings() const { return settings_; }
     // Adds geometry. It stays when the entity that uses it is undone, and is saved only where something uses it.
     std::uint32_t add_mesh(scene::Mesh mesh) { return meshes_.add(std::move(mesh)); }
+    // Of a shape that stays as it is: the same as one that was made before, if there is an equal one.
+    std::uint32_t add_shape(scene::Mesh mesh);
     scene::TextureStore& texture_store() { return textures_; }
     const std::filesystem::path& path() const { return path_; }
     // Another program has written the file since it was opened or saved here.
@@ -74,7 +76,7 @@ public:
     bool in_gesture() const { return gesture_.has_value(); }
     // Sets, adds, or (null) removes a component. Null for any component of an entity that is all there is removes the
     // entity. In a gesture only.
-    void set(Entity entity, ecs::PoolBase& pool, ecs::Value value);
+    void set(Entity entity, ecs::PoolBase& pool, const ecs::Value& value);
     Status set_setting(std::string_view name, std::string_view value);
     // All at once: values that are only right together.
     Status set_settings(const gi::Settings& settings);
@@ -137,6 +139,7 @@ private:
 
     ecs::Registry registry_;
     scene::MeshStore meshes_;
+    std::vector<std::uint32_t> shapes_; // meshes of add_shape
     scene::TextureStore textures_;
     gi::Settings settings_ = viewer::usual_lighting();
     ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr;

@@ -186,7 +186,7 @@ Entity add_from(Document& document, const scene::EntityTemplate& source, vec3 po
     const Entity made = scratch.create();
     source.make(scratch, made, meshes, size);
     if (scene::MeshInstance const* instance = scratch.try_get<scene::MeshInstance>(made)) {
-        const std::uint32_t mesh = document.add_mesh(meshes[instance->mesh]);
+        const std::uint32_t mesh = document.add_shape(meshes[instance->mesh]);
         scratch.patch<scene::MeshInstance>(made, [&](scene::MeshInstance& value) { value.mesh = mesh; });
     }
     scratch.patch<scene::Transform>(made, [&](scene::Transform& transform) { transform.position = position; });

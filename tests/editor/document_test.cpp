@@ -6,6 +6,7 @@
 #include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 namespace sunfleck::editor {
 namespace {
@@ -202,7 +203,7 @@ void expect_same(Document& document, ecs::Registry& copy) {
     }
 }
 
-void send(std::vector<Update> updates, ecs::Registry& copy) {
+void send(const std::vector<Update>& updates, ecs::Registry& copy) {
     for (const Update& update : updates) {
         if (!copy.alive(update.entity))
             copy.create_as(update.entity);
@@ -297,6 +298,54 @@ TEST_F(EditorDocument, UndoAndRedoRestoreEveryByte) {
             check();
         EXPECT_TRUE(saved(document) == last);
         EXPECT_LT(document.history().overhead(), document.history().entries().size() * 2048);
+    }
+}
+
+std::int64_t heap_in_use() {
+    const struct mallinfo2 heap = mallinfo2();
+    return std::int64_t(heap.uordblks + heap.hblkhd);
+}
+
+// What the values take that entries keep of components that came or went: of what was deleted, or is again once its
+// making is undone. Long names count as short ones.
+std::int64_t bytes_of_deleted(Document& document) {
+    std::map<const ecs::PoolBase*, std::int64_t> bytes; // of a value
+    for (const ecs::PoolBase* pool : document.registry().described_pools()) {
+        std::vector<ecs::Value> values(100);
+        const std::int64_t before = heap_in_use();
+        for (ecs::Value& value : values)
+            value = pool->default_value();
+        bytes[pool] = (heap_in_use() - before) / std::int64_t(values.size());
+    }
+    std::int64_t result = 0;
+    for (const HistoryEntry& entry : document.history().entries())
+        for (const ComponentChange& change : entry.components)
+            if (change.before == nullptr || change.after == nullptr)
+                result += bytes[change.pool] + std::int64_t(sizeof change);
+    return result;
+}
+
+// All that edits leave behind once they are undone: entries with their values, handles, meshes of lamps.
+TEST_F(EditorDocument, AnEditTakesTwoKilobytesAtMost) {
+    constexpr int edits_wanted = 10000;
+    for (const std::uint32_t seed : {3u, 4u}) {
+        Document document;
+        fill(document);
+        document.take_updates();
+        const std::size_t start = document.history().position();
+        const std::int64_t before = heap_in_use();
+        tests::RandomEdits edits(document, seed);
+        for (int i = 0; i < edits_wanted; ++i)
+            edits.once();
+        while (document.history().position() > start)
+            document.undo();
+        document.take_updates();
+        const auto entries = std::int64_t(document.history().entries().size() - start);
+        const std::int64_t left = heap_in_use() - before - bytes_of_deleted(document);
+        std::printf("seed %u: %lld edits, %.0f B each\n", seed, static_cast<long long>(entries),
+                    double(left) / double(entries));
+        EXPECT_GT(entries, edits_wanted / 2);
+        EXPECT_LE(left, 2048 * entries);
     }
 }
 
