@@ -247,9 +247,11 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
         apply_preset(settings);
         changed = true;
     }
-    const bool custom =
-        field(settings, "render_scale", "Render scale") | field(settings, "light_samples", "Light samples") |
-        field(settings, "map_budget", "Shadow maps") | field(settings, "transfer", "Precomputed radiance transfer");
+    bool custom = false; // each of them is drawn
+    custom |= field(settings, "render_scale", "Render scale");
+    custom |= field(settings, "light_samples", "Light samples");
+    custom |= field(settings, "map_budget", "Shadow maps");
+    custom |= field(settings, "transfer", "Precomputed radiance transfer");
     if (custom)
         settings.preset = Preset::custom;
     changed |= custom;
@@ -358,7 +360,8 @@ void Menu::help_screen(const DemoSettings& settings, bool is_game) {
     heading("Help", 1.4f);
     const auto line = [](const std::string& keys, const char* what) {
         ImGui::TextColored(ImVec4(0.95f, 0.70f, 0.35f, 1.0f), "%s", keys.c_str());
-        ImGui::SameLine(std::max(7.0f * unit(), ImGui::CalcTextSize(keys.c_str()).x + unit()));
+        ImGui::SameLine(
+            std::max(7.0f * unit(), ImGui::GetItemRectSize().x + ImGui::GetStyle().WindowPadding.x + unit()));
         ImGui::TextUnformatted(what);
     };
     std::string look;
