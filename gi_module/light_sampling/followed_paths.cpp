@@ -148,8 +148,6 @@ void FollowedPaths::sample_path(const PathSource& source, std::uint32_t index, c
     const EmittedRay emitted = source.ray(numbers_[path.number].data());
     const Walk walk =
         trace({emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f}, space, seed, sample);
-    if (!source.is_extended())
-        sample.path_vertex_count = 0; // what lights send stays valid or not by itself
     path.throughput = walk.throughput;
     path.reflections = walk.reflections;
     path.first.end = walk.first_hit;
