@@ -63,7 +63,7 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
         const bool is_new = reference_ == nullptr;
         if (is_new)
             reference_ = std::make_unique<ReferenceThread>(
-                *device_, [this] { return scene_.busy() || (second_ != nullptr && second_->busy()); }, wake_);
+                *device_, [this] { return scene_.busy(); }, wake_);
         tell(*reference_, is_new, [](SceneChange all) { return all; });
     }
     if (needs_second()) {
