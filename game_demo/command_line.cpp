@@ -19,7 +19,8 @@ struct TextOptions {
 };
 
 void add_run_options(CLI::App& program, Options& options) {
-    program.add_flag("--headless", options.headless, "Run without a window and write to the folder given by -o");
+    viewer::add_flag(program, "--headless", options.headless,
+                     "Run without a window and write to the folder given by -o");
     viewer::add_whole(program, "--frames", options.frames, 0, most_frames,
                       "Stop after this many frames (0: at the end of the input)");
     viewer::add_name(program, "-o,--output", options.output, "Folder for images and stats.json", "FOLDER");
@@ -34,10 +35,11 @@ void add_run_options(CLI::App& program, Options& options) {
                       "Number of images that a headless run writes, evenly spaced from its first frame to its last");
     viewer::add_whole(program, "--steps-per-frame", options.steps_per_frame, 1, 60,
                       "Simulation steps of 1/60 s per frame of a headless run");
-    program.add_flag("--hitches", options.hitches,
+    viewer::add_flag(program, "--hitches", options.hitches,
                      "Print which frames take more than twice the median of the 30 before, and why");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
-    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
+    viewer::add_flag(program, "--validation", options.validation,
+                     "Khronos validation layer with synchronization checks");
 }
 
 void add_options(CLI::App& program, Options& options, TextOptions& text) {
@@ -49,7 +51,7 @@ void add_options(CLI::App& program, Options& options, TextOptions& text) {
     viewer::add_size(program, "--size", text.size, "Window or image size; the preset sets the render scale");
     viewer::add_name(program, "--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
         ->capture_default_str();
-    program.add_flag("--allow-outside", options.allow_outside,
+    viewer::add_flag(program, "--allow-outside", options.allow_outside,
                      "The scene may read files outside of its folder: for scenes that you trust");
     viewer::add_choice(program, "--preset", text.preset, {"software", "low", "medium", "high", "ultra"},
                        "Quality (default: chosen for the device)");
@@ -66,12 +68,12 @@ void add_options(CLI::App& program, Options& options, TextOptions& text) {
     viewer::add_name(program, "--screenshots", options.screenshots, "Folder of the pictures that the key P saves",
                      "FOLDER")
         ->default_str("the current folder");
-    program.add_flag("--simulate", options.simulate,
+    viewer::add_flag(program, "--simulate", options.simulate,
                      "Headless: steps only, without pictures or a device; plays lantern_game's solution, or --input");
     viewer::add_choice(program, "--sensors", text.sensors, {"all", "direct"}, "The light that light sensors measure");
     viewer::add_whole(program, "--sensor-rays", options.sensors.sensor_rays, 1, most_frames,
                       "Rays that light sensors trace at a step, about");
-    program.add_flag("--direct-only", text.no_indirect, "Headless: without indirect light");
+    viewer::add_flag(program, "--direct-only", text.no_indirect, "Headless: without indirect light");
 }
 
 void translate(const TextOptions& text, Options& options) {

@@ -67,6 +67,14 @@ inline CLI::Option* add_choice(CLI::App& app, const std::string& name, std::stri
     });
 }
 
+// Given, or not; true and false may be written after it.
+inline CLI::Option* add_flag(CLI::App& app, const std::string& name, bool& target, const std::string& text) {
+    return app.add_flag(name, target, text)->check([](const std::string& given) {
+        const bool is_known = given == "true" || given == "false";
+        return is_known ? std::string() : "'" + given + "' is neither true nor false; the flag alone means true";
+    });
+}
+
 // A name that must not be empty: a file, a folder, a device.
 inline CLI::Option* add_name(CLI::App& app, const std::string& name, std::string& target, const std::string& text,
                              const std::string& kind = "TEXT") {

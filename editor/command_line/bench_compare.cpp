@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 
 namespace sunfleck::command_line {
 namespace {
@@ -63,9 +64,32 @@ Result<gate::GateRunOptions> run_options_of(const CompareRunOptions& options) {
     return run;
 }
 
+// A program that is named by a path, and plays the level of the options; false: a command line, which is taken as it
+// is.
+Result<bool> plays_level(const std::string& side) {
+    if (side.empty())
+        return true; // this program
+    SUNFLECK_ASSIGN(const std::vector<std::string> words, gate::split_words(side));
+    std::error_code code;
+    if (words.size() == 1 && words[0].find('/') != std::string::npos && !std::filesystem::exists(words[0], code))
+        return Error{"there is no program '" + words[0] + "'"};
+    return words.size() < 2;
+}
+
+// What is wrong on the command line, before a revision is built for an hour.
+Status check_options(const CompareRunOptions& options) {
+    if (options.looks.empty() || options.looks.front() == 0 ||
+        std::adjacent_find(options.looks.begin(), options.looks.end(), std::greater_equal<>()) != options.looks.end())
+        return Error{"--looks: numbers of pairs from 1 on are needed, each greater than the one before it"};
+    SUNFLECK_ASSIGN(const bool base_plays, plays_level(options.base));
+    SUNFLECK_ASSIGN(const bool head_plays, plays_level(options.head));
+    return base_plays || head_plays ? check_level(options.level) : Status();
+}
+
 Result<gate::GateRun> run_gate(const CompareRunOptions& options, const std::filesystem::path& folder) {
     if (is_level_file(options.base) && is_level_file(options.head))
         return gate::compare_files(options.base, options.head, accepted_of(options));
+    SUNFLECK_TRY(check_options(options));
     SUNFLECK_ASSIGN(gate::GateRunOptions run_options, run_options_of(options));
     SUNFLECK_ASSIGN(const gate::Programs programs, programs_of(options));
     run_options.folder = folder;

@@ -41,7 +41,7 @@ std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
                       "Frames to measure (0: to the end of the recording)");
     viewer::add_whole(*app, "--warmup", options->warmup, 0, gate::most_frames / 2, "Frames before those");
     viewer::add_name(*app, "-o,--output", options->output, "JSON file to write", "FILE");
-    app->add_flag("--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
+    viewer::add_flag(*app, "--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
     return [options] {
         watch_interrupts();
         return exit_status(bench_level(*options), int(gate::Outcome::error));
@@ -69,14 +69,14 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
     app->add_option("--looks", options->looks, "Numbers of pairs at which a verdict is sought")
         ->delimiter(',')
         ->capture_default_str();
-    app->add_flag("--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
+    viewer::add_flag(*app, "--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
     viewer::add_whole(*app, "--turns", options->pair.turns, 1, 10000, "Turns of each process in a pair");
     viewer::add_whole(*app, "--seed", options->pair.seed, 0, 4294967295, "Which frames are drawn, and in which order");
     auto self_test = std::make_shared<SelfTestCommandOptions>();
     auto is_self_test = std::make_shared<bool>(false);
-    app->add_flag("--self-test", *is_self_test,
-                  "How often does the gate err here? Builds the project many times over; takes hours, and goes on\n"
-                  "where it was stopped");
+    viewer::add_flag(*app, "--self-test", *is_self_test,
+                     "How often does the gate err here? Builds the project many times over; takes hours, and goes on\n"
+                     "where it was stopped");
     viewer::add_whole(*app, "--triples", self_test->triples, 1, 100000,
                       "Of the self-test: base, a rebuild and a slower build at once");
     viewer::add_whole(*app, "--rebuilds", self_test->rebuilds, 1, 99,
@@ -103,7 +103,7 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
                 "(docs/gate.md). Exit status: 0 fine, 2 error, 4 pictures changed.");
     app->add_option("PROGRAM", options->program, "As HEAD of `bench compare` (default: this one)");
     viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures", "FOLDER")->required();
-    app->add_flag("--accept", options->accept, "Store what is drawn now, and list what was written");
+    viewer::add_flag(*app, "--accept", options->accept, "Store what is drawn now, and list what was written");
     app->add_option("--frame", options->frames, "Frame to store or compare, NAME=NUMBER; repeatable");
     viewer::add_name(*app, "--differences", options->differences, "Folder for pictures of the differences, times eight",
                      "FOLDER");

@@ -33,6 +33,27 @@ Result<gi::Settings> make_settings(const LevelOptions& options, const std::map<s
     return settings;
 }
 
+// The walk that a level is played with: the one that is named, or the scene's own, beside it.
+Result<std::filesystem::path> walk_of(const LevelOptions& options) {
+    SUNFLECK_ASSIGN(const std::filesystem::path scene, find_scene(options.scene));
+    if (!options.input.empty())
+        return std::filesystem::path(options.input);
+    std::string name = scene.filename().string();
+    name = name.substr(0, name.find('.')) + recording_extension;
+    std::error_code code;
+    if (std::filesystem::path file = scene.parent_path() / name; std::filesystem::exists(file, code))
+        return file;
+    return Error{"scene '" + options.scene + "' has no recorded walk: --input FILE is needed"};
+}
+
+Result<std::vector<simulation::StepInput>> read_walk(const LevelOptions& options, const std::filesystem::path& file) {
+    SUNFLECK_ASSIGN(std::vector<simulation::StepInput> steps, simulation::read_recording(file));
+    if (steps.size() < options.steps_per_frame)
+        return Error{"'" + file.string() + "' has no whole frame of " + std::to_string(options.steps_per_frame) +
+                     " steps"};
+    return steps;
+}
+
 std::string hash_text(std::uint64_t hash) {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
@@ -40,6 +61,14 @@ std::string hash_text(std::uint64_t hash) {
 }
 
 } // namespace
+
+Status check_level(const LevelOptions& options) {
+    SUNFLECK_TRY(viewer::size_value(options.size));
+    SUNFLECK_TRY(make_settings(options, {}));
+    SUNFLECK_ASSIGN(const std::filesystem::path walk, walk_of(options));
+    SUNFLECK_TRY(read_walk(options, walk));
+    return {};
+}
 
 Result<std::unique_ptr<LevelRun>> LevelRun::create(const LevelOptions& options) {
     std::unique_ptr<LevelRun> run(new LevelRun());
@@ -53,19 +82,8 @@ Result<std::unique_ptr<LevelRun>> LevelRun::create(const LevelOptions& options) 
 }
 
 Status LevelRun::read_input(const LevelOptions& options) {
-    SUNFLECK_ASSIGN(const std::filesystem::path scene, find_scene(options.scene));
-    std::filesystem::path file = options.input;
-    if (file.empty()) {
-        std::string name = scene.filename().string();
-        name = name.substr(0, name.find('.')) + recording_extension;
-        file = scene.parent_path() / name;
-        std::error_code code;
-        if (!std::filesystem::exists(file, code))
-            return Error{"scene '" + options.scene + "' has no recorded walk: --input FILE is needed"};
-    }
-    SUNFLECK_ASSIGN(input_, simulation::read_recording(file));
-    if (input_.size() < stride_)
-        return Error{"'" + file.string() + "' has no whole frame of " + std::to_string(stride_) + " steps"};
+    SUNFLECK_ASSIGN(const std::filesystem::path file, walk_of(options));
+    SUNFLECK_ASSIGN(input_, read_walk(options, file));
     if (!options.serve && frames() <= options.warmup)
         return Error{"the recording has " + std::to_string(frames()) + " frames; all of them are warm-up"};
     std::uint64_t hash = hash_start;

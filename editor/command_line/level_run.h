@@ -64,6 +64,9 @@ private:
     viewer::FrameRequest request_;
 };
 
+// What is wrong with options can be told before anything is built, loaded or run: settings, the scene's name, the walk.
+Status check_level(const LevelOptions& options);
+
 Status bench_level(const LevelOptions& options);
 
 } // namespace sunfleck::command_line

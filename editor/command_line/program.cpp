@@ -106,12 +106,12 @@ void add_scene_options(CLI::App& app, SceneOptions& options) {
     viewer::add_name(app, "--variant", options.import.variant, "Material variant of a glTF file, by name");
     viewer::add_whole(app, "--animation", options.import.animation, -1, most_parts,
                       "Which animation of a glTF file plays; -1: none");
-    app.add_flag("--allow-outside", options.import.allow_outside,
-                 "The scene may read files outside of its folder: for scenes that you trust");
+    viewer::add_flag(app, "--allow-outside", options.import.allow_outside,
+                     "The scene may read files outside of its folder: for scenes that you trust");
     viewer::add_whole(app, "--memory", options.memory_mib, 0, 1 << 30,
                       "Memory that may be taken, in MiB; 0: three quarters of what is free");
     viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
-    app.add_flag("--validation", options.validation, "Khronos validation with synchronisation checks");
+    viewer::add_flag(app, "--validation", options.validation, "Khronos validation with synchronisation checks");
 }
 
 Command make_render_command(CLI::App& program) {
@@ -134,7 +134,7 @@ Command make_render_command(CLI::App& program) {
     viewer::add_name(*app, "--stats", options->statistics, "Write times, counters and memory as JSON", "FILE");
     viewer::add_name(*app, "--trace", options->trace,
                      "Write the measured frames as a Chrome trace, for chrome://tracing or ui.perfetto.dev", "FILE");
-    app->add_flag("--print-graph", options->print_graph, "Print the last frame's graph");
+    viewer::add_flag(*app, "--print-graph", options->print_graph, "Print the last frame's graph");
     return {app, [options] {
                 end_at_interrupts();
                 return exit_status(render(*options));
@@ -156,16 +156,17 @@ Command make_reference_command(CLI::App& program) {
     viewer::add_whole(*app, "--spp", options->samples, 1, 1 << 24, "Samples per pixel");
     viewer::add_choice(*app, "--view", options->view, {"final", "irradiance", "direct", "indirect"}, "What to show")
         ->capture_default_str();
-    app->add_flag("--antialiasing", options->antialiasing, "Spread samples over the pixel (default: its centre)");
-    app->add_flag("--unlimited", options->unlimited, "No limit of bounces");
+    viewer::add_flag(*app, "--antialiasing", options->antialiasing,
+                     "Spread samples over the pixel (default: its centre)");
+    viewer::add_flag(*app, "--unlimited", options->unlimited, "No limit of bounces");
     app->add_option_function<std::string>(
            "--caustics", [options](const std::string& text) { options->caustics = text == "on"; },
            "off: light that reaches a surface by way of gloss or glass is left out where a diffuse surface was before "
            "on the path from the eye: it is what makes fireflies, and no light sample carries it (default on)")
         ->type_name("on | off")
         ->check(CLI::IsMember({"on", "off"}));
-    app->add_flag("--lambertian", options->lambertian,
-                  "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
+    viewer::add_flag(*app, "--lambertian", options->lambertian,
+                     "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
     viewer::add_name(*app, "--stats", options->statistics, "Write seconds and rays per second as JSON", "FILE");
     viewer::add_real(*app, "--save-interval", options->save_interval, 0.05, 86400.0,
                      "Seconds between saves of what is there so far; more where they would take over 2 % of the time");
@@ -187,7 +188,7 @@ Command make_compare_command(CLI::App& program) {
     app->add_option("--diff", options->difference, "Write the absolute difference, amplified, as .png")
         ->type_name("FILE")
         ->check(picture_problem);
-    app->add_flag("--json", options->as_json, "Print one JSON object");
+    viewer::add_flag(*app, "--json", options->as_json, "Print one JSON object");
     return {app, [options] { return exit_status(compare(*options)); }};
 }
 
@@ -221,7 +222,7 @@ Command make_bench_command(CLI::App& program) {
         *app, "SUITE", options->suite,
         {"kernel", "brute_force", "shadow_maps", "convergence", "picture", "reference", "thesis", "splatting"},
         "Name of the experiment");
-    app->add_flag("--json", options->as_json, "Print one JSON object");
+    viewer::add_flag(*app, "--json", options->as_json, "Print one JSON object");
     viewer::add_name(*app, "--csv", options->csv, "Write the rows as CSV", "FILE");
     viewer::add_name(*app, "--plot", options->plot, "Write a plot as SVG", "FILE");
     viewer::add_whole(*app, "--repeat", options->repeat, 1, 1000, "Measurements of each row");
@@ -260,11 +261,12 @@ Command make_info_command(CLI::App& program) {
     app->footer("Example: sunfleck info --json\nExample: sunfleck info helmet.gltf");
     auto allow_outside = std::make_shared<bool>(false);
     viewer::add_name(*app, "SCENE", *scene, "Show what is in this scene or glTF file instead");
-    app->add_flag("--allow-outside", *allow_outside, "The scene may read files outside of its folder");
+    viewer::add_flag(*app, "--allow-outside", *allow_outside, "The scene may read files outside of its folder");
     viewer::add_name(*app, "--device", *device, "Vulkan device by number or part of its name");
-    app->add_flag("--json", *as_json, "Print one JSON object");
-    app->add_flag("--schema", *schema, "Print the JSON schema of scene files");
-    app->add_flag("--reference", *reference, "Print all settings, counters and views as Markdown (docs/settings.md)");
+    viewer::add_flag(*app, "--json", *as_json, "Print one JSON object");
+    viewer::add_flag(*app, "--schema", *schema, "Print the JSON schema of scene files");
+    viewer::add_flag(*app, "--reference", *reference,
+                     "Print all settings, counters and views as Markdown (docs/settings.md)");
     return {app, [device, scene, allow_outside, as_json, schema, reference] {
                 if (*schema || *reference) {
                     std::fputs((*schema ? io::scene_file_schema() : gi::settings_reference()).c_str(), stdout);

@@ -23,9 +23,10 @@ void add_options(CLI::App& program, Options& options, viewer::PictureSize& size)
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
     viewer::add_whole(program, "--memory", options.memory_mib, 0, 1 << 30,
                       "Memory that may be taken, in MiB; 0: three quarters of what is free");
-    program.add_flag("--allow-outside", options.allow_outside,
+    viewer::add_flag(program, "--allow-outside", options.allow_outside,
                      "Scenes may read files outside of their folders: for scenes that you trust");
-    program.add_flag("--validation", options.validation, "Khronos validation layer with synchronization checks");
+    viewer::add_flag(program, "--validation", options.validation,
+                     "Khronos validation layer with synchronization checks");
     viewer::add_name(program, "--shaders", options.shaders,
                      "The project's folder: shaders whose sources change are compiled and used at once", "FOLDER")
         ->check(CLI::ExistingDirectory);

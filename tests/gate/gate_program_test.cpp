@@ -133,6 +133,20 @@ TEST_F(GateProgram, ProgramsThatBreakGetOneMessage) {
     EXPECT_TRUE(fs::is_empty(folder / "temporary"));
 }
 
+// A revision takes minutes to build: what else is wrong on the command line is said first.
+TEST_F(GateProgram, WrongOptionsAreNamedBeforeARevisionIsLookedFor) {
+    const std::pair<std::string, std::string> tries[] = {
+        {"--scene nope", "'nope'"},   {"--set nope=1", "'nope'"}, {"--input ./nope", "./nope"},
+        {"--looks 12,12", "--looks"}, {"./nope", "./nope"},       {"", "git"}}; // the folder is none of git's
+    for (const auto& [options, named] : tries) {
+        const Outcome outcome = shell("cd " + folder.string() + " && TMPDIR=" + (folder / "temporary").string() +
+                                      " " SUNFLECK_TOOL " bench compare --base no_such_revision " + options);
+        expect(outcome, exit_usage, {"error: ", named});
+        EXPECT_EQ(outcome.output.find("git") == std::string::npos, !options.empty()) << outcome.output;
+    }
+    EXPECT_TRUE(fs::is_empty(folder / "temporary"));
+}
+
 TEST_F(GateProgram, NoProcessOutlivesIt) {
     for (const char* how : {"crash", "hang", "cut"}) {
         compare("child processes", std::string("child processes break 40 how ") + how, "--time-limit 0.5");

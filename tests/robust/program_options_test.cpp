@@ -30,7 +30,7 @@ Kind kind_of(const Option& option) {
 std::vector<std::string> wrong_values(Kind kind) {
     switch (kind) {
     case Kind::flag:
-        return {"nan"};
+        return {"nan", "5x", "2", "TRUE "};
     case Kind::number:
         return {"nan", "", "99999999999999999999999999", "5x"};
     case Kind::size:
