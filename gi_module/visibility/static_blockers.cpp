@@ -40,15 +40,19 @@ std::uint32_t StaticBlockers::add(const FlatMesh& mesh, bool porous) {
     return body;
 }
 
-void StaticBlockers::build() {
+bool StaticBlockers::build(const std::function<bool(float)>& progress) {
     order_.resize(polygons_.size());
     std::iota(order_.begin(), order_.end(), 0u);
     nodes_.clear();
+    Watch watch{progress};
     if (!order_.empty())
-        build(0, std::uint32_t(order_.size()), 0);
+        build(0, std::uint32_t(order_.size()), 0, watch);
+    if (watch.stopped)
+        nodes_.clear();
+    return !watch.stopped;
 }
 
-std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count, std::uint32_t depth) {
+std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count, std::uint32_t depth, Watch& watch) {
     const std::uint32_t index = std::uint32_t(nodes_.size());
     nodes_.push_back({});
     Bounds bounds, centres;
@@ -58,17 +62,28 @@ std::uint32_t StaticBlockers::build(std::uint32_t first, std::uint32_t count, st
         nodes_[index].largest = std::max(nodes_[index].largest, sizes_[order_[i]]);
     }
     nodes_[index].bounds = bounds;
-    if (count <= 4) {
-        nodes_[index].first = first;
-        nodes_[index].count = count;
+    if (count <= 4 || watch.stopped) {
+        place_leaf(nodes_[index], first, count, watch);
         return index;
     }
     const std::uint32_t half = split(first, count, centres, depth);
-    const std::uint32_t left = build(first, half, depth + 1);
-    const std::uint32_t right = build(first + half, count - half, depth + 1);
+    const std::uint32_t left = build(first, half, depth + 1, watch);
+    const std::uint32_t right = build(first + half, count - half, depth + 1, watch);
     nodes_[index].first = left;
     nodes_[index].right = right;
     return index;
+}
+
+// Asks whether to go on after each few milliseconds of work.
+void StaticBlockers::place_leaf(Node& node, std::uint32_t first, std::uint32_t count, Watch& watch) const {
+    constexpr std::size_t at_once = 8192;
+    node.first = first;
+    node.count = count;
+    watch.done += count;
+    if (!watch.progress || watch.stopped || watch.done < watch.asked + at_once)
+        return;
+    watch.asked = watch.done;
+    watch.stopped = !watch.progress(float(watch.done) / float(order_.size()));
 }
 
 // Reorders the polygons so that the first ones, whose number is returned, make one child: at the border of bins with

@@ -41,8 +41,9 @@ public:
     // Adds a mesh of static geometry; opaque on both sides, or porous: with holes, never all that blocks. Returns the
     // number of its body if it is convex and closed.
     std::uint32_t add(const FlatMesh& mesh, bool porous = false);
-    // Builds the tree. Nothing can be tested before.
-    void build();
+    // Builds the tree. Nothing can be tested before. `progress` is called with the share that is done; if it returns
+    // false, the build stops, and there is nothing to test. False: it was stopped.
+    bool build(const std::function<bool(float)>& progress = {});
 
     // `own_body`: that the receiver is a part of. It does not count: a convex body lies behind each of its faces that
     // the light can see. `likely` saves work and changes no result; of the same receiver, from call to call.
@@ -64,7 +65,13 @@ private:
         std::uint32_t first = 0, count = 0; // of polygons in a leaf; in an inner node count is 0, first the left child
         std::uint32_t right = 0;
     };
-    std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth);
+    struct Watch {
+        const std::function<bool(float)>& progress;
+        std::size_t done = 0, asked = 0; // polygons that lie in leaves; when `progress` was called last
+        bool stopped = false;
+    };
+    std::uint32_t build(std::uint32_t first, std::uint32_t count, std::uint32_t depth, Watch& watch);
+    void place_leaf(Node& node, std::uint32_t first, std::uint32_t count, Watch& watch) const;
     std::uint32_t split(std::uint32_t first, std::uint32_t count, const Bounds& centres, std::uint32_t depth);
     bool any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body, LikelyBlockers* likely) const;
     std::uint32_t a_polygon_of(const Node& node) const;

@@ -99,6 +99,10 @@ std::vector<Chart> cut(const ChartRectangle& whole, const ChartCuts& cuts, ecs::
 
 bool SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& meshes, const PatchOptions& options,
                            StaticBlockers& blockers, const std::function<bool(float)>& progress) {
+    constexpr float until_tree = 0.3f, until_surfaces = 0.5f; // of the work
+    const auto go_on = [&](float begin, float end, float share) {
+        return !progress || progress(begin + (end - begin) * share);
+    };
     *this = {};
     space_ = options.space;
     std::vector<Surface> surfaces;
@@ -112,7 +116,7 @@ bool SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
     constexpr std::size_t at_once = 512;
     std::vector<FlatMesh> flat;
     for (std::size_t first = 0; first < placed.size(); first += at_once) {
-        if (progress && !progress(0.5f * float(first) / float(placed.size())))
+        if (!go_on(0.0f, until_tree, float(first) / float(placed.size())))
             return false;
         flat.assign(std::min(at_once, placed.size() - first), {});
         parallel_for_chunks(flat.size(), 4, [&](std::size_t begin, std::size_t end) {
@@ -129,9 +133,10 @@ bool SurfacePatches::build(ecs::Registry& registry, const scene::MeshStore& mesh
             surfaces.push_back(surface_of(entity, flat[i], body));
         }
     }
-    blockers.build();
+    if (!blockers.build([&](float share) { return go_on(until_tree, until_surfaces, share); }))
+        return false;
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        if (i % at_once == 0 && progress && !progress(0.5f + 0.5f * float(i) / float(surfaces.size())))
+        if (i % at_once == 0 && !go_on(until_surfaces, 1.0f, float(i) / float(surfaces.size())))
             return false;
         add_surface(surfaces[i], blockers, options);
     }

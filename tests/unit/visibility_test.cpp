@@ -181,6 +181,41 @@ TEST(SurfacePatches, AreDividedWhereWallsStand) {
     }
 }
 
+// Of 4,000 boxes: the tree says how much of it is done, stops at a word, and is the same once it has been built.
+TEST(StaticBlockers, AreBuiltWithProgressAndCanBeStopped) {
+    const scene::Mesh box = scene::make_box(vec3(0.05f));
+    StaticBlockers whole, stopped;
+    std::mt19937 random(5);
+    const auto place = [&] { return vec3(uniform(random, 0, 9), uniform(random, 0, 9), uniform(random, 0, 9)); };
+    for (int i = 0; i < 4000; ++i) {
+        const FlatMesh mesh = find_planar_faces(box, glm::translate(mat4(1.0f), place()));
+        whole.add(mesh);
+        stopped.add(mesh);
+    }
+    std::vector<float> shares;
+    ASSERT_TRUE(whole.build([&](float share) {
+        shares.push_back(share);
+        return true;
+    }));
+    EXPECT_GE(shares.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_GT(shares.front(), 0.0f);
+    EXPECT_LE(shares.back(), 1.0f);
+    int asked = 0;
+    ASSERT_FALSE(stopped.build([&](float) { return ++asked < 2; }));
+    EXPECT_EQ(asked, 2);
+    ASSERT_TRUE(stopped.build());
+    int crossed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const dvec3 from = place(), along = dvec3(place()) - from;
+        const bool crosses = whole.crosses_segment(from, along);
+        EXPECT_EQ(stopped.crosses_segment(from, along), crosses);
+        crossed += crosses;
+    }
+    EXPECT_GT(crossed, 100);
+    EXPECT_LT(crossed, 1900);
+}
+
 TEST(SurfacePatches, EveryPointOfAWallFindsItsLeaf) {
     VisibilityWorld world(assets::make_area_room);
     VisibilityDatabase database;
