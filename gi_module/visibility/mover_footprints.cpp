@@ -209,7 +209,8 @@ void VisibilityDatabase::replace_footprints(std::span<Mover* const> movers, std:
                     if (walk.footprints[i] == known)
                         continue;
                     apply(walk.part.samples[i], known, walk.footprints[i], changes[p]);
-                    known = walk.footprints[i];
+                    // As long as it is, not as the longest that it ever was: memory is of the scene, not of its past.
+                    known = Footprint(walk.footprints[i]);
                 }
             }
         all_tests += walk.tests;
