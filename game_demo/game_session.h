@@ -20,7 +20,7 @@ struct GameProgress {
 class GameSession {
 public:
     // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
-    GameSession(std::string level, const std::filesystem::path& folder);
+    GameSession(const std::string& level, const std::filesystem::path& folder);
     ~GameSession(); // when the last checkpoint is written
     GameSession(const GameSession&) = delete;
     GameSession& operator=(const GameSession&) = delete;

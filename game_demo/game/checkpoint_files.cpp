@@ -1,22 +1,39 @@
 #include "game_demo/game/checkpoint_files.h"
 
 #include "engine/core/file.h"
+#include "engine/core/hash.h"
 
 namespace sunfleck::demo {
 namespace {
 
 constexpr std::size_t size_limit = std::size_t(64) << 20;
 
-// A scene may be given as a path.
-std::string file_name_of(const std::string& level) {
-    const std::string name = std::filesystem::path(level).filename().string();
-    return name.substr(0, name.find('.'));
+// Levels of one name in two folders have files of their own.
+std::string file_name_of(const std::string& identity) {
+    const std::string name = std::filesystem::path(identity).filename().string();
+    const std::string stem = name.substr(0, name.find('.'));
+    if (identity == name)
+        return stem;
+    char text[18];
+    std::snprintf(text, sizeof text, "_%016llx",
+                  static_cast<unsigned long long>(hash_bytes(hash_start, identity.data(), identity.size())));
+    return stem + text;
 }
 
 } // namespace
 
+std::string identity_of_level(const std::string& scene) {
+    const std::filesystem::path path = scene;
+    std::error_code code;
+    if (!path.has_extension() && !path.has_parent_path() && !std::filesystem::is_regular_file(path, code))
+        return scene; // built in
+    const std::filesystem::path whole = std::filesystem::weakly_canonical(std::filesystem::absolute(path, code), code);
+    return code ? scene : whole.string();
+}
+
 CheckpointFiles::CheckpointFiles(std::filesystem::path folder, std::string level)
-    : folder_(std::move(folder)), level_(std::move(level)), newest_(folder_ / (file_name_of(level_) + ".checkpoint")),
+    : folder_(std::move(folder)), level_(identity_of_level(level)),
+      newest_(folder_ / (file_name_of(level_) + ".checkpoint")),
       older_(folder_ / (file_name_of(level_) + ".checkpoint.old")) {}
 
 Status CheckpointFiles::write(const std::string& text) const {

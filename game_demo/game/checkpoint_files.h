@@ -8,9 +8,12 @@
 
 namespace sunfleck::demo {
 
+// What tells a level from all others: the name of a built-in scene, or the whole path of a file, however it was given.
+std::string identity_of_level(const std::string& scene);
+
 class CheckpointFiles {
 public:
-    // The folder is made when something is written.
+    // `level`: its identity, or what that is made of. The folder is made when something is written.
     CheckpointFiles(std::filesystem::path folder, std::string level);
 
     Status save(const GameWorld& world) const { return write(save_game(world, level_)); }

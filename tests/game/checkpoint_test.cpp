@@ -103,6 +103,31 @@ TEST(GameCheckpoints, WhatIsNotGoodIsSetAside) {
         "another level");
 }
 
+// Two levels of one name, in two folders: neither sees the other's. One level, however it is called, has one game.
+TEST(GameCheckpoints, LevelsOfOneNameHaveGamesOfTheirOwn) {
+    const Folder folder;
+    const std::filesystem::path a = folder.path / "a", b = folder.path / "b";
+    for (const std::filesystem::path& level : {a, b}) {
+        std::filesystem::create_directories(level);
+        ASSERT_TRUE(write_file(level / "level.scene.json", "{}"));
+    }
+    const CheckpointFiles of_a(folder.path, (a / "level.scene.json").string());
+    const CheckpointFiles of_b(folder.path, (b / "level.scene.json").string());
+    const CheckpointFiles again(folder.path, (b / ".." / "a" / "." / "level.scene.json").string());
+    Played played, other;
+    played.step({50, 0, 30, 0, 0});
+    ASSERT_TRUE(of_a.save(*played.world));
+    std::string message;
+    EXPECT_FALSE(of_b.any());
+    EXPECT_FALSE(of_b.load(*other.world, message));
+    EXPECT_EQ(message, "");
+    ASSERT_TRUE(again.load(*other.world, message)) << message;
+    EXPECT_EQ(hash_of(other), hash_of(played));
+    EXPECT_TRUE(std::filesystem::exists(of_a.newest()));
+    EXPECT_EQ(identity_of_level("lantern_game"), "lantern_game");
+    EXPECT_EQ(CheckpointFiles(folder.path, "lantern_game").newest().filename(), "lantern_game.checkpoint");
+}
+
 // A limit on the size of files fails a write as a full disk does: in the middle.
 TEST(GameCheckpoints, AFullDiskLeavesTheLastOne) {
     const Folder folder;
