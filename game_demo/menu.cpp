@@ -57,11 +57,17 @@ const char* screen_name(Screen screen) {
     return names[std::size_t(screen)];
 }
 
-bool Menu::wide_button(const char* label) {
-    const bool pressed = ImGui::Button(label, ImVec2(13.0f * unit(), 0.0f));
+bool Menu::wide_button(const char* label, const char* question) {
+    const bool asked = question != nullptr && asked_ == label;
+    const std::string shown = question == nullptr ? label : std::string(asked ? question : label) + "###" + label;
+    const bool pressed = ImGui::Button(shown.c_str(), ImVec2(13.0f * unit(), 0.0f));
     if (ImGui::IsItemFocused())
         selected_ = label;
-    return pressed;
+    else if (asked && !ImGui::IsItemHovered())
+        asked_.clear(); // the player has gone on to another
+    if (pressed)
+        asked_ = asked ? "" : label;
+    return pressed && (asked || question == nullptr);
 }
 
 void Menu::say(std::string message, double seconds) {
@@ -74,6 +80,7 @@ void Menu::show(Screen screen) {
     const bool from_main = screen_ != Screen::settings && screen_ != Screen::help;
     if (leads_back && from_main)
         came_from_ = screen_;
+    asked_.clear();
     screen_ = screen;
 }
 
@@ -172,10 +179,14 @@ Decision Menu::title_screen(const OverlayData& data, bool enter) {
             decision = Decision::resume;
         ImGui::SetItemDefaultFocus();
     }
-    if (wide_button(data.can_resume ? "New game" : "Start") || (enter && !data.can_resume))
+    // What is lost by one press is asked for twice.
+    if (data.can_resume && wide_button("New game", "Press again to begin anew"))
         decision = Decision::play;
-    if (!data.can_resume)
+    if (!data.can_resume) {
+        if (wide_button("Start") || enter)
+            decision = Decision::play;
         ImGui::SetItemDefaultFocus();
+    }
     settings_and_help_buttons();
     if (wide_button("Quit"))
         decision = Decision::quit;
@@ -198,7 +209,7 @@ Decision Menu::pause_screen(const OverlayData& data, bool enter) {
     if (data.can_resume && wide_button("Last checkpoint"))
         decision = Decision::resume;
     settings_and_help_buttons();
-    if (wide_button("Restart"))
+    if (wide_button("Restart", data.is_game ? "Press again to restart" : nullptr))
         decision = Decision::restart;
     if (wide_button("Quit"))
         decision = Decision::quit;

@@ -49,7 +49,8 @@ public:
     std::string message_text() const { return message_seconds_ > 0.0 ? message_ : std::string(); }
 
 private:
-    bool wide_button(const char* label);
+    // With a question, which then stands in place of the label, it takes two presses.
+    bool wide_button(const char* label, const char* question = nullptr);
     Decision title_screen(const OverlayData& data, bool enter);
     Decision pause_screen(const OverlayData& data, bool enter);
     Decision end_screen(const OverlayData& data, bool enter);
@@ -69,7 +70,7 @@ private:
     Screen screen_ = Screen::title, came_from_ = Screen::title;
     int rebinding_ = -1;                 // action that is waiting for a key
     std::optional<float> dragged_scale_; // of text, while its slider is held: the slider must not move meanwhile
-    std::string selected_;
+    std::string selected_, asked_;
     std::string message_;
     double message_seconds_ = 0.0;
     bool a_is_down_ = false; // of the gamepad

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using tests::DrivenDisplay;
 
-const std::vector<std::string>& odd_names() {
+const std::vector<std::string>& names_of_outputs() {
     static const std::vector<std::string> names = {"a b\nc", "\xff\xfe\x80", "$(x) '\"`;*", std::string(240, 'n')};
     return names;
 }
@@ -46,7 +46,7 @@ protected:
 };
 
 TEST_F(RobustDemoNeighbours, OddNamesWithoutAWindow) {
-    for (const std::string& name : odd_names()) {
+    for (const std::string& name : names_of_outputs()) {
         const std::string record = folder / (name + ".rec"), output = folder / (name + ".out");
         const std::vector<std::string> headless = {"--headless", "--size", "16x16", "--pictures", "1", "--frames", "3"};
         std::vector<std::string> recorded = headless, played = headless;
@@ -106,7 +106,7 @@ TEST_F(RobustDemoWindow, TwoShareTheirSettings) {
 }
 
 TEST_F(RobustDemoWindow, OddNames) {
-    for (const std::string& name : {odd_names()[0], odd_names()[1]}) {
+    for (const std::string& name : {names_of_outputs()[0], names_of_outputs()[1]}) {
         fs::create_directories(folder / name);
         const pid_t process = start(name + ".json", name + ".state",
                                     {"--screenshots", folder / name, "--record", folder / (name + ".rec")});
