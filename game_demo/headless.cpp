@@ -7,7 +7,9 @@
 #include "engine/simulation/path_movers.h"
 #include "engine/statistics/sample_series.h"
 #include "engine/statistics/summary.h"
+#include "game_demo/game/checkpoint_files.h"
 #include "game_demo/game/solution.h"
+#include "game_demo/game/world_hashes.h"
 #include "game_demo/hitch_log.h"
 #include "game_demo/level.h"
 #include "game_demo/options.h"
@@ -45,36 +47,6 @@ nlohmann::ordered_json medians(const std::map<std::string, Series>& times) {
     return result;
 }
 
-nlohmann::ordered_json statistics_of(Level& level, const Options& options, const DemoSettings& settings,
-                                     const Times& times, const std::string& device) {
-    const gi::Report& counters = level.renderer().lighting().counters();
-    char hash[32];
-    std::snprintf(hash, sizeof hash, "%016llx",
-                  static_cast<unsigned long long>(level.simulation().world_hash(level.renderer().registry())));
-    return {{"device", device},
-            {"scene", options.scene},
-            {"preset", field_to_text(*DemoSettings::description().find("preset"), &settings)},
-            {"frames", times.frames.count()},
-            {"steps", level.simulation().steps()},
-            {"world_hash", hash},
-            {"ev100", level.shown_exposure()},
-            {"frame_ms",
-             {{"median", statistics::median(times.frames.values())},
-              {"p95", statistics::percentile(times.frames.values(), 0.95)},
-              {"min", statistics::percentile(times.frames.values(), 0.0)},
-              {"max", statistics::percentile(times.frames.values(), 1.0)}}},
-            {"cpu_ms", medians(times.cpu)},
-            {"gpu_ms", medians(times.gpu)},
-            {"counters",
-             {{"light_samples", counters["light_samples"]},
-              {"light_samples_dynamic", counters["light_samples_dynamic"]},
-              {"pixels_low_resolution", counters["pixels_low_resolution"]},
-              {"pixels_repaired", counters["pixels_repaired"]},
-              {"transfer_vertices", counters["transfer_vertices"]},
-              {"bodies_rescued", level.simulation().physics().rescued()},
-              {"player_rescued", level.simulation().player().rescued()}}}};
-}
-
 Status write_numbered(const std::string& folder, std::uint32_t frame, const io::Picture& picture) {
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05u.png", frame);
@@ -89,15 +61,16 @@ Error stopped() {
 class Playback {
 public:
     // `steps`: of the input, recorded or walked.
-    Playback(const Options& options, const DemoSettings& settings, std::vector<simulation::StepInput> recorded,
+    Playback(const Options& options, const DemoSettings& settings, const simulation::Recording& recorded,
              std::size_t steps)
-        : options_(options), settings_(settings), recorded_(std::move(recorded)), recording_(options.record),
+        : options_(options), settings_(settings), recorded_(recorded), recording_(options.record),
           stride_(std::max(1u, options.steps_per_frame)) {
+        recording_.clear(recorded.start);
         frames_ = options.frames > 0 ? options.frames : std::uint32_t((steps + stride_ - 1) / stride_);
     }
 
     Status run(Level& level) {
-        if (recorded_.empty() && Solution::exists(level.game()))
+        if (recorded_.steps.empty() && Solution::exists(level.game()))
             solution_ = std::make_unique<Solution>(level.game());
         viewer::Progress progress("playing");
         for (std::uint32_t frame = 0; frame < frames_; ++frame) {
@@ -137,6 +110,7 @@ public:
         return recording_.finish();
     }
     const Times& times() const { return times_; }
+    const WorldHashes& hashes() const { return hashes_; }
     std::uint32_t pictures() const { return pictures_; }
 
 private:
@@ -160,31 +134,64 @@ private:
         simulation::StepInput input;
         if (solution_)
             input = solution_->next();
-        else if (recorded_.empty())
+        else if (recorded_.steps.empty())
             input = walk_.next(level.simulation());
-        else if (level.simulation().steps() < recorded_.size())
-            input = recorded_[level.simulation().steps()];
+        else if (played_ < recorded_.steps.size())
+            input = recorded_.steps[played_];
+        ++played_;
         level.step(input);
+        hashes_.add(level.simulation(), level.renderer().registry());
         recording_.add(input);
     }
 
     const Options& options_;
     const DemoSettings& settings_;
-    std::vector<simulation::StepInput> recorded_;
+    const simulation::Recording& recorded_;
+    std::size_t played_ = 0; // steps
     simulation::RecordingWriter recording_;
     WalkThrough walk_;
     std::unique_ptr<Solution> solution_; // in place of the walk, where there is one
+    WorldHashes hashes_;
     Times times_;
     HitchLog hitches_;
     std::uint32_t stride_, frames_ = 0, pictures_ = 0;
 };
 
-Result<std::vector<simulation::StepInput>> recorded_input(const Options& options) {
-    std::vector<simulation::StepInput> recorded;
+nlohmann::ordered_json statistics_of(Level& level, const Options& options, const DemoSettings& settings,
+                                     const Playback& playback, const std::string& device) {
+    const Times& times = playback.times();
+    const gi::Report& counters = level.renderer().lighting().counters();
+    return {{"device", device},
+            {"scene", options.scene},
+            {"preset", field_to_text(*DemoSettings::description().find("preset"), &settings)},
+            {"frames", times.frames.count()},
+            {"steps", level.simulation().steps()},
+            {"world_hash", playback.hashes().of_world()},
+            {"steps_hash", playback.hashes().of_steps()},
+            {"ev100", level.shown_exposure()},
+            {"frame_ms",
+             {{"median", statistics::median(times.frames.values())},
+              {"p95", statistics::percentile(times.frames.values(), 0.95)},
+              {"min", statistics::percentile(times.frames.values(), 0.0)},
+              {"max", statistics::percentile(times.frames.values(), 1.0)}}},
+            {"cpu_ms", medians(times.cpu)},
+            {"gpu_ms", medians(times.gpu)},
+            {"counters",
+             {{"light_samples", counters["light_samples"]},
+              {"light_samples_dynamic", counters["light_samples_dynamic"]},
+              {"pixels_low_resolution", counters["pixels_low_resolution"]},
+              {"pixels_repaired", counters["pixels_repaired"]},
+              {"transfer_vertices", counters["transfer_vertices"]},
+              {"bodies_rescued", level.simulation().physics().rescued()},
+              {"player_rescued", level.simulation().player().rescued()}}}};
+}
+
+Result<simulation::Recording> recorded_input(const Options& options) {
+    simulation::Recording recorded;
     if (options.input.empty())
         return recorded;
-    SUNFLECK_ASSIGN(recorded, simulation::read_recording(options.input));
-    if (recorded.empty())
+    SUNFLECK_ASSIGN(recorded, simulation::read_recording_and_start(options.input));
+    if (recorded.steps.empty())
         return Error{"'" + options.input + "' has no steps"};
     return recorded;
 }
@@ -217,7 +224,7 @@ void print_result(const Playback& playback, const Options& options) {
 }
 
 // On a device of its own.
-Status play(const Options& options, const std::vector<simulation::StepInput>& recorded,
+Status play(const Options& options, const simulation::Recording& recorded,
             const std::filesystem::path& statistics_file) {
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, options.validation, {}}));
     DemoSettings settings;
@@ -226,15 +233,19 @@ Status play(const Options& options, const std::vector<simulation::StepInput>& re
     settings.transfer = options.transfer.value_or(settings.transfer);
     SUNFLECK_ASSIGN(const auto level,
                     Level::load(*device, source_of(options), settings, 2, viewer::progress_until_stopped("loading")));
-    std::size_t steps = recorded.size();
-    if (options.frames == 0 && recorded.empty()) {
+    if (!recorded.start.empty()) {
+        SUNFLECK_TRY(load_game(level->game(), identity_of_level(options.scene), recorded.start));
+        level->jumped();
+    }
+    std::size_t steps = recorded.steps.size();
+    if (options.frames == 0 && recorded.steps.empty()) {
         SUNFLECK_ASSIGN(steps, walk_length(source_of(options)));
     }
     Playback playback(options, settings, recorded, steps);
     const Status played = caught([&] { return playback.run(*level); });
     SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
-    const auto statistics = statistics_of(*level, options, settings, playback.times(), device->traits().name);
+    const auto statistics = statistics_of(*level, options, settings, playback, device->traits().name);
     SUNFLECK_TRY(
         write_file(statistics_file, statistics.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
     if (device->validation_messages() > 0)

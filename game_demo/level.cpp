@@ -72,7 +72,7 @@ Status Level::move_to(gpu::Device& device, std::uint32_t frames_in_flight) {
 
 void Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
-    game_->restart();
+    note_sensors(game_->restart());
     interpolation_.forget();
 }
 
@@ -90,8 +90,12 @@ void Level::step(const simulation::StepInput& input) {
         interpolation_.forget();
     if (game_->has_sensors())
         sensor_milliseconds_ += game_->sensors().milliseconds();
-    if (!stepped && !std::exchange(sensors_failed_, true))
-        log_warning("light sensors stay as they are: " + stepped.error().message);
+    note_sensors(stepped);
+}
+
+void Level::note_sensors(const Status& followed) {
+    if (!followed && !std::exchange(sensors_failed_, true))
+        log_warning("light sensors stay as they are: " + followed.error().message);
 }
 
 scene::CameraView Level::view(const DemoSettings& settings, const simulation::DrawnMoment& moment) const {

@@ -80,6 +80,7 @@ public:
 
 private:
     Level() = default;
+    void note_sensors(const Status& followed);
     ecs::Registry start_; // the world at step 0
     std::unique_ptr<viewer::SceneRenderer> renderer_;
     std::unique_ptr<viewer::LightingChanges> changes_;

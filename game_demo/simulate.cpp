@@ -1,5 +1,6 @@
 // A run of steps alone: the solution or a recording, without pictures or a device.
 #include "engine/core/output.h"
+#include "game_demo/game/checkpoint_files.h"
 #include "game_demo/game/solution_run.h"
 #include "game_demo/options.h"
 #include "viewer/built_in_scenes.h"
@@ -18,7 +19,8 @@ Status run_simulation(const Options& options) {
                                  {"--record", options.record}};
     const NamedFile inputs[] = {{"--input", options.input}, {"--scene", scene}};
     SUNFLECK_TRY(try_outputs(outputs, inputs));
-    return run_solution({scene, options.input, options.record, options.output, options.allow_outside, options.sensors});
+    return run_solution({scene, identity_of_level(options.scene), options.input, options.record, options.output,
+                         options.allow_outside, options.sensors});
 }
 
 } // namespace sunfleck::demo

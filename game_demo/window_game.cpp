@@ -341,7 +341,7 @@ private:
             return restart(false);
         level_->jumped();
         clock_.reset();
-        recording_.clear();
+        recording_.clear(resume ? on_one_line(session_.saved()) : std::string());
     }
 
     Status finish(const Status& played) {

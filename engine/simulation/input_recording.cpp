@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t max_steps = 10'000'000; // two days
 constexpr const char* first_line = "sunfleck_input 1";
+constexpr const char* first_line_with_start = "sunfleck_input 2";
+constexpr const char* start_word = "start ";
 
 bool valid(const StepInput& step) {
     const auto within = [](std::int32_t value, std::int32_t most) { return value >= -most && value <= most; };
@@ -20,14 +22,23 @@ bool valid(const StepInput& step) {
 
 } // namespace
 
-Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path) {
+Result<Recording> read_recording_and_start(const std::filesystem::path& path) {
     SUNFLECK_ASSIGN(const std::string text, read_file(path, std::size_t(256) << 20));
     std::istringstream lines(text);
     std::string line;
-    if (!std::getline(lines, line) || line != first_line)
+    const bool has_line = bool(std::getline(lines, line)), has_start = line == first_line_with_start;
+    if (!has_line || (line != first_line && !has_start))
         return Error{"'" + path.string() + "' is not an input recording: its first line must be '" + first_line + "'"};
-    std::vector<StepInput> steps;
-    for (int number = 2; std::getline(lines, line); ++number) {
+    Recording recording;
+    int number = 2;
+    if (has_start) {
+        if (!std::getline(lines, line) || line.rfind(start_word, 0) != 0)
+            return Error{"'" + path.string() + "', line 2: '" + start_word + "' and a saved game is needed"};
+        recording.start = line.substr(std::string(start_word).size());
+        ++number;
+    }
+    std::vector<StepInput>& steps = recording.steps;
+    for (; std::getline(lines, line); ++number) {
         if (line.empty() || line[0] == '#')
             continue;
         std::istringstream fields(line);
@@ -40,14 +51,27 @@ Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path)
                          ": 'count forward right turn look_up buttons' within their ranges is needed"};
         steps.insert(steps.end(), std::size_t(count), step);
     }
-    return steps;
+    return recording;
+}
+
+Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path) {
+    SUNFLECK_ASSIGN(Recording recording, read_recording_and_start(path));
+    if (!recording.start.empty())
+        return Error{"'" + path.string() +
+                     "' begins at a checkpoint of the game; a recording from its start is needed"};
+    return std::move(recording.steps);
 }
 
 namespace {
 
-std::string recording_text(const std::vector<StepInput>& steps) {
+std::string recording_text(const Recording& recording) {
+    const std::vector<StepInput>& steps = recording.steps;
     std::ostringstream text;
-    text << first_line << "\n# count forward right turn look_up buttons\n";
+    if (recording.start.empty())
+        text << first_line << "\n";
+    else
+        text << first_line_with_start << "\n" << start_word << recording.start << "\n";
+    text << "# count forward right turn look_up buttons\n";
     for (std::size_t i = 0; i < steps.size();) {
         std::size_t end = i + 1;
         while (end < steps.size() && steps[end] == steps[i])
@@ -62,8 +86,12 @@ std::string recording_text(const std::vector<StepInput>& steps) {
 
 } // namespace
 
+Status write_recording(const std::filesystem::path& path, const Recording& recording) {
+    return write_file(path, recording_text(recording));
+}
+
 Status write_recording(const std::filesystem::path& path, const std::vector<StepInput>& steps) {
-    return write_file(path, recording_text(steps));
+    return write_recording(path, Recording{{}, steps});
 }
 
 RecordingWriter::~RecordingWriter() {
@@ -74,19 +102,19 @@ RecordingWriter::~RecordingWriter() {
 void RecordingWriter::add(const StepInput& step) {
     if (path_.empty())
         return;
-    steps_.push_back(step);
+    recording_.steps.push_back(step);
     changed_ = true;
 }
 
-void RecordingWriter::clear() {
-    steps_.clear();
+void RecordingWriter::clear(std::string start) {
+    recording_ = {std::move(start), {}};
     changed_ = false;
 }
 
 void RecordingWriter::start_writing() {
-    writing_ = std::async(std::launch::async, [path = path_, steps = steps_] {
+    writing_ = std::async(std::launch::async, [path = path_, recording = recording_] {
         const Clock::time_point begin = Clock::now();
-        Status status = write_recording(path, steps);
+        Status status = write_recording(path, recording);
         return std::pair(std::move(status), Clock::now() - begin);
     });
     changed_ = false;
@@ -111,7 +139,7 @@ Status RecordingWriter::finish() {
     if (path_.empty())
         return {};
     changed_ = false;
-    return write_recording(path_, steps_);
+    return write_recording(path_, recording_);
 }
 
 } // namespace sunfleck::simulation

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <string>
 #include <vector>
 
 namespace sunfleck::simulation {
@@ -28,9 +29,18 @@ struct StepInput {
 };
 inline constexpr float look_unit = 1e-4f; // rad
 
+struct Recording {
+    std::string start; // what the program saved of the world where it begins; empty: the level as it is loaded
+    std::vector<StepInput> steps;
+};
+
 // A text file: a line "sunfleck_input 1", then lines "count forward right turn look_up buttons", each for `count` steps
-// of the same input. Lines that begin with # are ignored.
+// of the same input. Lines that begin with # are ignored. What does not begin with the level begins with
+// "sunfleck_input 2", and its second line is "start ", followed by the start, in which there are no line breaks.
+Result<Recording> read_recording_and_start(const std::filesystem::path& path);
+// The same for who can begin with the level alone; an error otherwise.
 Result<std::vector<StepInput>> read_recording(const std::filesystem::path& path);
+Status write_recording(const std::filesystem::path& path, const Recording& recording);
 Status write_recording(const std::filesystem::path& path, const std::vector<StepInput>& steps);
 
 // A recording that is kept on disk while it grows: what a kill loses is the last second or, of recordings that take
@@ -45,8 +55,8 @@ public:
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
     void add(const StepInput& step);
-    // Starts over: another world.
-    void clear();
+    // Starts over: another world, which begins with the level or with `start`.
+    void clear(std::string start = {});
     // Once a frame: writes if it is due.
     void save_if_due();
     // Writes everything and waits for it. The error is of this write; one before may have failed for a passing reason.
@@ -57,7 +67,7 @@ private:
     void start_writing();
 
     const std::filesystem::path path_;
-    std::vector<StepInput> steps_;
+    Recording recording_;
     bool changed_ = false;
     Clock::time_point due_ = Clock::now();
     std::future<std::pair<Status, Clock::duration>> writing_; // the result, and how long it took

@@ -39,31 +39,42 @@ Result<std::unique_ptr<GameWorld>> GameWorld::create(ecs::Registry& registry, co
     world->simulation_ = std::make_unique<simulation::Simulation>(registry, meshes);
     SUNFLECK_ASSIGN(world->sensors_, gi::LightSensors::create());
     SUNFLECK_TRY(world->sensors_->set_settings(settings));
-    if (world->has_sensors_)
-        SUNFLECK_TRY(world->sensors_->step(registry, meshes, textures));
-    world->find_area();
+    SUNFLECK_TRY(world->begin());
     return world;
 }
 
 Status GameWorld::continue_with(ecs::Registry& registry, const scene::MeshStore& meshes,
                                 const scene::TextureStore* textures) {
-    SUNFLECK_ASSIGN(auto sensors, gi::LightSensors::create());
-    SUNFLECK_TRY(sensors->set_settings(sensors_->settings()));
-    sensors_ = std::move(sensors);
+    SUNFLECK_TRY(renew_sensors());
     registry_ = &registry;
     meshes_ = &meshes;
     textures_ = textures;
     return {};
 }
 
-void GameWorld::restart() {
+// Sensors know the level before its first step.
+Status GameWorld::begin() {
+    find_area();
+    return has_sensors_ ? sensors_->step(*registry_, *meshes_, textures_) : Status();
+}
+
+// They know nothing of the world so far.
+Status GameWorld::renew_sensors() {
+    SUNFLECK_ASSIGN(auto sensors, gi::LightSensors::create());
+    SUNFLECK_TRY(sensors->set_settings(sensors_->settings()));
+    sensors_ = std::move(sensors);
+    return {};
+}
+
+Status GameWorld::restart() {
+    const Status renewed = renew_sensors();
     simulation_ = std::make_unique<simulation::Simulation>(*registry_, *meshes_);
-    sensors_->forget();
     opened_.clear();
     area_ = ecs::null_entity;
     held_ = 0;
     finished_ = false;
-    find_area();
+    const Status begun = begin();
+    return renewed ? begun : renewed;
 }
 
 Status GameWorld::step(const simulation::StepInput& input) {

@@ -17,8 +17,9 @@ public:
     // From now on the level is that of another registry, which holds the same: entities, components, and what they are
     // made of. Light sensors follow all of their paths once more. An error: why they can't, and nothing has changed.
     Status continue_with(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
-    // The registry holds the freshly loaded level once more, with the same entities.
-    void restart();
+    // The registry holds the freshly loaded level once more, with the same entities: from now on the game is as one
+    // that was just created, to the bit. An error: readings of sensors stay as they were.
+    Status restart();
     // One step of simulation::step_seconds. An error: readings of sensors stay as they were.
     Status step(const simulation::StepInput& input);
 
@@ -55,6 +56,8 @@ private:
     };
 
     GameWorld(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
+    Status begin();
+    Status renew_sensors();
     void find_area();
     void note_open_sensors();
     void reset_bodies(const Bounds& box);

@@ -2,6 +2,7 @@
 
 #include "engine/core/hash.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -164,6 +165,11 @@ std::string save_game(const GameWorld& world, const std::string& level) {
     const Json file = {
         {"sunfleck_game", version}, {"level", level}, {"checksum", checksum(json.dump())}, {"world", json}};
     return text_of(file, 1) + "\n";
+}
+
+std::string on_one_line(std::string saved) {
+    std::replace(saved.begin(), saved.end(), '\n', ' ');
+    return saved;
 }
 
 Status load_game(GameWorld& world, const std::string& level, const std::string& text) {

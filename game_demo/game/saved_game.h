@@ -7,6 +7,8 @@ namespace sunfleck::demo {
 
 // `level`: the name of the scene.
 std::string save_game(const GameWorld& world, const std::string& level);
+// The text without its line breaks, as recordings begin with it.
+std::string on_one_line(std::string saved);
 // Into a world of the same level; its world hash is then what it was when the text was made. An error says what is
 // wrong with the text (damage, another level, a later version); the world may be half of each then and must be
 // restarted.

@@ -6,7 +6,9 @@
 #include "engine/io/scene_file.h"
 #include "engine/simulation/input_recording.h"
 #include "engine/statistics/summary.h"
+#include "game_demo/game/saved_game.h"
 #include "game_demo/game/solution.h"
+#include "game_demo/game/world_hashes.h"
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -24,6 +26,7 @@ struct Run {
     scene::TextureStore textures;
     std::unique_ptr<GameWorld> world;
     std::size_t played = 0; // steps
+    WorldHashes hashes;
     simulation::RecordingWriter recording;
     std::vector<double> milliseconds; // of the sensors, by step
     std::set<std::string> open;
@@ -43,6 +46,7 @@ void note_open(Run& run) {
 Status take_step(Run& run, const simulation::StepInput& input) {
     SUNFLECK_TRY(run.world->step(input));
     ++run.played;
+    run.hashes.add(run.world->simulation(), run.registry);
     run.recording.add(input);
     run.recording.save_if_due();
     run.milliseconds.push_back(run.world->sensors().milliseconds());
@@ -50,12 +54,15 @@ Status take_step(Run& run, const simulation::StepInput& input) {
     return stop_requested() ? Status(Error{std::string("stopped by ") + signal_name(stop_signal())}) : Status();
 }
 
-Status play_all(Run& run, const std::string& input, std::string& problem) {
-    if (!input.empty()) {
-        SUNFLECK_ASSIGN(const auto recorded, simulation::read_recording(input));
-        if (recorded.empty())
-            return Error{"'" + input + "' has no steps"};
-        for (const simulation::StepInput& one : recorded)
+Status play_all(Run& run, const SolutionRun& options, std::string& problem) {
+    if (!options.input.empty()) {
+        SUNFLECK_ASSIGN(const auto recorded, simulation::read_recording_and_start(options.input));
+        if (recorded.steps.empty())
+            return Error{"'" + options.input + "' has no steps"};
+        if (!recorded.start.empty())
+            SUNFLECK_TRY(load_game(*run.world, options.level, recorded.start));
+        run.recording.clear(recorded.start);
+        for (const simulation::StepInput& one : recorded.steps)
             SUNFLECK_TRY(take_step(run, one));
         return {};
     }
@@ -69,13 +76,11 @@ Status play_all(Run& run, const std::string& input, std::string& problem) {
 }
 
 std::string statistics_of(Run& run, const std::string& problem) {
-    char hash[32];
-    std::snprintf(hash, sizeof hash, "%016llx",
-                  static_cast<unsigned long long>(run.world->simulation().world_hash(run.registry)));
     const nlohmann::ordered_json json = {{"finished", run.world->finished()},
                                          {"problem", problem},
                                          {"steps", run.played},
-                                         {"world_hash", hash},
+                                         {"world_hash", run.hashes.of_world()},
+                                         {"steps_hash", run.hashes.of_steps()},
                                          {"opened", run.opened},
                                          {"sensors_ms",
                                           {{"median", statistics::median(run.milliseconds)},
@@ -96,7 +101,7 @@ Status run_solution(const SolutionRun& options) {
     if (!options.record.empty())
         watch_stop_signals(); // from now on there is something to save
     std::string problem;
-    const Status played = play_all(run, options.input, problem);
+    const Status played = play_all(run, options, problem);
     const Status recorded = run.recording.finish(); // whatever ended the game
     SUNFLECK_TRY(played);
     SUNFLECK_TRY(recorded);

@@ -10,6 +10,7 @@ namespace sunfleck::demo {
 
 struct SolutionRun {
     std::filesystem::path scene; // file
+    std::string level;           // as saved games name it (identity_of_level)
     std::string input;           // recording; empty: the solution
     std::string record;          // file to write the inputs to, every second while it runs; or empty
     std::string output;          // folder for stats.json

@@ -35,6 +35,18 @@ TEST(Game, DirectLightOpensNothing) {
     EXPECT_LE(played.world->sensors_opened(), 1u);
 }
 
+// As the window does it: the game runs behind the title, and is then put back to its start.
+TEST(Game, ARestartedWorldIsAsAFreshOne) {
+    Played fresh, restarted;
+    restarted.solve(400);
+    ecs::copy_world(restarted.start, restarted.registry);
+    ASSERT_TRUE(restarted.world->restart());
+    restarted.hashes.clear();
+    fresh.solve(900);
+    restarted.solve(900);
+    EXPECT_EQ(restarted.hashes, fresh.hashes);
+}
+
 TEST(Game, TheWorldIsTheSameOnOneThreadAndOnTwo) {
     const std::uint64_t steps = tests::by_size<std::uint64_t>(900, 15 * steps_a_minute);
     std::vector<std::uint64_t> hashes[2];

@@ -3,6 +3,7 @@
 
 #include "assets/test_rooms.h"
 #include "engine/core/random.h"
+#include "engine/ecs/world_copy.h"
 #include "game_demo/game/solution.h"
 
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@ struct Played {
                 registry.patch<scene::Material>(scene::find_by_name(registry, name),
                                                 [](scene::Material& m) { m.base_colour = vec3(0.7f); });
         scene::update_world_transforms(registry);
+        ecs::copy_world(registry, start);
         world = demo::GameWorld::create(registry, meshes, nullptr, settings).value();
     }
 
@@ -56,7 +58,7 @@ struct Played {
         problem = solution.problem();
     }
 
-    ecs::Registry registry;
+    ecs::Registry registry, start; // now, and as it was loaded
     scene::MeshStore meshes;
     std::unique_ptr<demo::GameWorld> world;
     std::vector<std::uint64_t> hashes;

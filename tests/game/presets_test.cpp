@@ -84,14 +84,16 @@ TEST_F(CommandLine, TheGameIsTheSameWithEveryPreset) {
     ASSERT_EQ(expected["steps"], walk_steps);
     ASSERT_EQ(expected["opened"].size(), 1u) << "the corner's sensor opens its door";
     // In the short size, two presets and a few frames.
-    const std::vector<Drawn> all = {{"software", 2}, {"low", 8},  {"software", 1}, {"software", 8}, {"low", 2},
-                                    {"medium", 8},   {"high", 8}, {"ultra", 8},    {"medium", 1},   {"high", 2}};
+    const std::vector<Drawn> all = {{"software", 2}, {"low", 8},    {"software", 1}, {"software", 8}, {"low", 2},
+                                    {"medium", 8},   {"high", 8},   {"ultra", 8},    {"medium", 1},   {"high", 2},
+                                    {"low", 1},      {"medium", 2}, {"high", 1},     {"ultra", 1},    {"ultra", 2}};
     for (std::size_t i = 0; i < tests::by_size<std::size_t>(2, all.size()); ++i) {
         const Outcome outcome = shell(common + "-o drawn --size 64x36 --pictures 0 --preset " + all[i].preset +
                                       " --steps-per-frame " + std::to_string(all[i].steps_per_frame));
         ASSERT_EQ(outcome.status, 0) << outcome.output;
         const auto drawn = nlohmann::json::parse(read_file(folder / "drawn/stats.json").value());
         EXPECT_EQ(drawn["steps"], walk_steps);
+        EXPECT_EQ(drawn["steps_hash"], expected["steps_hash"]) << "a step differs";
         EXPECT_EQ(drawn["world_hash"], expected["world_hash"]) << all[i].preset << " " << all[i].steps_per_frame;
         EXPECT_TRUE(drawn["cpu_ms"].contains("light sensors"));
     }

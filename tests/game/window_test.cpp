@@ -1,10 +1,14 @@
 // The game in a real window with real keys, from outside: each step waits for what it should bring about, never for a
 // time.
 #include "engine/core/file.h"
+#include "engine/io/scene_file.h"
+#include "game_demo/game/saved_game.h"
+#include "game_demo/game/world_hashes.h"
 #include "tests/support/command_line.h"
 #include "tests/support/driven_display.h"
 #include "tests/support/key_solver.h"
 #include "tests/support/test_size.h"
+#include "viewer/built_in_scenes.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -27,11 +31,11 @@ public:
     // `sound`: OpenAL's drivers.
     bool start(const std::string& sound) {
         fs::remove(state_file());
-        process_ =
-            display_.launch({"env", "XDG_CONFIG_HOME=" + folder_.string(), "XDG_DATA_HOME=" + folder_.string(),
-                             "ALSOFT_DRIVERS=" + sound, SUNFLECK_DEMO, "--scene", "lantern_game", "--size", "192x108",
-                             "--settings", (folder_ / "settings.json").string(), "--state", state_file().string()},
-                            folder_ / "log");
+        process_ = display_.launch({"env", "XDG_CONFIG_HOME=" + folder_.string(), "XDG_DATA_HOME=" + folder_.string(),
+                                    "ALSOFT_DRIVERS=" + sound, SUNFLECK_DEMO, "--scene", "lantern_game", "--size",
+                                    "192x108", "--settings", (folder_ / "settings.json").string(), "--state",
+                                    state_file().string(), "--record", (folder_ / "walk.txt").string()},
+                                   folder_ / "log");
         if (!shows("title", 120.0))
             return false;
         window_ = display_.window("Lantern House$");
@@ -134,6 +138,25 @@ protected:
             GTEST_SKIP() << "Xvfb, xdotool and openbox are not installed";
     }
     fs::path checkpoint() const { return folder / "sunfleck/lantern_game.checkpoint"; }
+    // What the window kept when it was left is where its recording leads, played without a window.
+    void expect_that_the_recording_leads_there() const {
+        const tests::Outcome played = tests::shell("cd " + folder.string() +
+                                                   " && " SUNFLECK_DEMO " --headless --simulate --scene lantern_game "
+                                                   "--input walk.txt -o played 2>&1");
+        ASSERT_EQ(played.status, 0) << played.output;
+        const auto statistics = nlohmann::json::parse(read_file(folder / "played/stats.json").value());
+        ecs::Registry registry;
+        scene::MeshStore meshes;
+        scene::TextureStore textures;
+        scene::register_components(registry);
+        ASSERT_TRUE(io::load_scene(viewer::find_scene("lantern_game").value(), registry, meshes, textures, {}));
+        const auto kept = demo::GameWorld::create(registry, meshes, &textures, {}).value();
+        ASSERT_TRUE(demo::load_game(*kept, "lantern_game", read_file(checkpoint()).value()));
+        demo::WorldHashes hashes;
+        hashes.add(kept->simulation(), registry);
+        EXPECT_EQ(statistics["world_hash"], hashes.of_world());
+        EXPECT_GT(statistics["steps"], 0);
+    }
 };
 
 // From the title through the first door, whose room is a checkpoint.
@@ -179,6 +202,7 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
     ASSERT_TRUE(game.take("Quit")) << game.state();
     EXPECT_EQ(game.end(0), 0) << game.log();
+    expect_that_the_recording_leads_there();
 
     ASSERT_TRUE(game.start("null")) << game.log();
     EXPECT_NE(game.value("sound_device"), "");
@@ -194,6 +218,7 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     std::this_thread::sleep_for(std::chrono::milliseconds(500)); // the last frame that the key was down in
     const double turned = yaw();
     EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
+    expect_that_the_recording_leads_there(); // from the checkpoint on
     ASSERT_TRUE(game.start("none")) << game.log();
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
     EXPECT_EQ(game.value("area"), "The corner");

@@ -158,6 +158,26 @@ TEST(RecordingWriter, KeepsTheFileUpToDate) {
     fs::remove(path);
 }
 
+// What begins at a checkpoint is a file of its own kind, which programs that know levels alone refuse.
+TEST(RecordingWriter, MayBeginWithASavedGame) {
+    const fs::path path = fs::path(testing::TempDir()) / ("sunfleck_start_" + std::to_string(getpid()));
+    simulation::RecordingWriter writer(path);
+    writer.add({1, 2, 3, 4, 0});
+    writer.clear("{ \"a saved\": \"game\" }");
+    writer.add({100, 0, 5, 0, 0});
+    ASSERT_TRUE(writer.finish());
+    const auto read = simulation::read_recording_and_start(path);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->start, "{ \"a saved\": \"game\" }");
+    EXPECT_EQ(read->steps, (std::vector<simulation::StepInput>{{100, 0, 5, 0, 0}}));
+    const auto alone = simulation::read_recording(path);
+    ASSERT_FALSE(alone);
+    EXPECT_NE(alone.error().message.find("checkpoint"), std::string::npos) << alone.error().message;
+    ASSERT_TRUE(write_file(path, "sunfleck_input 2\n1 0 0 0 0 0\n"));
+    EXPECT_FALSE(simulation::read_recording_and_start(path)) << "without its start";
+    fs::remove(path);
+}
+
 TEST(HitchLog, NamesWhatTookLong) {
     HitchLog log;
     viewer::FrameStatistics usual, long_one;
