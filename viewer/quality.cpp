@@ -48,7 +48,6 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     gi::Settings result = usual_lighting();
     result.lights = preset.light_samples;
     result.map_budget = preset.map_budget;
-    result.bounces = quality <= Quality::low ? 3 : 5;
     result.shadow_map_resolution = quality <= Quality::low ? 128 : 256;
     // A picture is as near to the path tracer with a quarter as with half of its pixels in each direction, at any size;
     // it is the repair that draws what is fine.

@@ -5,6 +5,7 @@
 #include "game_demo/menu.h"
 #include "game_demo/presets.h"
 #include "game_demo/prompt_text.h"
+#include "gi_module/reference/path_tracer.h"
 
 #include <gtest/gtest.h>
 
@@ -89,6 +90,15 @@ TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
         EXPECT_EQ(lighting.get("movers") == "prt", settings.transfer && has_transfer());
         EXPECT_TRUE(settings.transfer || !before.transfer);
         before = settings;
+    }
+}
+
+TEST_F(DemoSettingsTest, PresetsReflectAsOftenAsThePathTracer) {
+    DemoSettings settings;
+    for (std::uint32_t preset = 0; preset <= std::uint32_t(Preset::ultra); ++preset) {
+        settings.preset = Preset(preset);
+        apply_preset(settings);
+        EXPECT_GE(lighting_of(settings).bounces, gi::reference::ReferenceSettings{}.bounces) << preset;
     }
 }
 
