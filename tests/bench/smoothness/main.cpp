@@ -1,6 +1,7 @@
 // The parts of ./run bench smoothness; see tests/bench/smoothness.sh.
 #include "engine/core/exit_status.h"
 #include "tests/bench/smoothness/measure.h"
+#include "tests/bench/smoothness/report.h"
 
 #include <cstdio>
 #include <cstdlib>

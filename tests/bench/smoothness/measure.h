@@ -1,4 +1,4 @@
-// What is measured of the game in its window. Each function writes a JSON file that report() reads.
+// What is measured of the game in its window. Each function writes a JSON file that report.h reads.
 #pragma once
 
 #include "tests/bench/smoothness/driven_game.h"
@@ -9,7 +9,5 @@ namespace sunfleck::bench {
 Status measure_pacing(const GameStart& start, double seconds, const std::filesystem::path& output);
 // At rest at the room's entry: from an event to the first changed pixel, so many times for looking and for walking.
 Status measure_latency(const GameStart& start, unsigned samples, const std::filesystem::path& output);
-// Tables of all results in a folder (by KIND, before or after: KIND-ROOM-RUN.json); false: a target is missed.
-Result<bool> report(const std::filesystem::path& folder);
 
 } // namespace sunfleck::bench

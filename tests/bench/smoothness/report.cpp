@@ -1,5 +1,4 @@
-// Tables of what was measured, beside the targets.
-#include "tests/bench/smoothness/measure.h"
+#include "tests/bench/smoothness/report.h"
 
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
@@ -9,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace sunfleck::bench {
 namespace {
@@ -91,9 +91,18 @@ void print_frames(const std::string& name, const Side& side) {
         std::printf("    %-10s %5zu frames  median %6.1f  95 %% %6.1f  99 %% %6.1f  longest %6.1f\n", room.c_str(),
                     frames.size(), median(frames), percentile(frames, 0.95), percentile(frames, 0.99),
                     percentile(frames, 1.0));
+}
+
+// Runs that ended before their time, such as by a game that was lost or a solution that went nowhere, show less than
+// they should.
+bool all_ran_to_their_end(const Side& side) {
+    bool all = true;
     for (const std::string& end : side.ends)
-        if (end.find("time is over") == std::string::npos)
-            std::printf("    %s\n", end.c_str());
+        if (end.find("time is over") == std::string::npos && end.find("the game is over") == std::string::npos) {
+            std::printf("    %s  MISSED\n", end.c_str());
+            all = false;
+        }
+    return all;
 }
 
 bool report_pacing(const Side& side) {
@@ -124,25 +133,48 @@ bool report_latency(const Side& side) {
     bool held = judge("looking, median", median(side.looking) / frame, 1.7);
     held = judge("looking, 95th percentile", percentile(side.looking, 0.95) / frame, 2.5) && held;
     held = judge("walking, median", median(side.walking) / frame, 1.7 + step) && held;
+    const double events = double(side.looking.size() + side.walking.size()) + side.lost;
+    held = judge("events that never showed, share", side.lost / events, 0.05) && held;
     return judge("walking, 95th percentile", percentile(side.walking, 0.95) / frame, 2.5 + step) && held;
+}
+
+// What was not measured has met no bound.
+bool all_measured(const std::map<std::string, Side>& sides) {
+    bool all = true;
+    const auto need = [&](bool there, const char* what) {
+        if (!there)
+            std::printf("%s: not measured  MISSED\n", what);
+        all = all && there;
+    };
+    const auto has = [&](const char* name, std::vector<double> Side::*part) {
+        const auto side = sides.find(name);
+        return side != sides.end() && !(side->second.*part).empty();
+    };
+    need(has("before", &Side::frames), "frames of the commit before");
+    need(has("after", &Side::frames), "frames");
+    need(has("after", &Side::looking) && has("after", &Side::walking), "latency");
+    for (const char* target : {"target100", "target66", "target50"})
+        need(has(target, &Side::frames), target);
+    return all;
 }
 
 } // namespace
 
 Result<bool> report(const fs::path& folder) {
     SUNFLECK_ASSIGN(const auto sides, read_all(folder));
-    bool held = true;
+    bool held = all_measured(sides);
     for (const auto& [name, side] : sides) {
         if (!side.frames.empty())
             print_frames(name, side);
+        const bool ended = all_ran_to_their_end(side);
         const bool has_target = name.rfind("target", 0) == 0;
         const bool paced = side.frames.empty() || (has_target ? report_target(name, side) : report_pacing(side));
         const bool quick = side.looking.empty() || report_latency(side);
-        held = held && (name == "before" || (paced && quick)); // targets are for what is measured now
+        held = held && (name == "before" || (ended && paced && quick)); // targets are for what is measured now
     }
     const auto before = sides.find("before"), after = sides.find("after");
     if (before == sides.end() || after == sides.end() || before->second.frames.empty() || after->second.frames.empty())
-        return held;
+        return false;
     const Side &b = before->second, &a = after->second;
     std::printf("after / before\n");
     held = judge("median", median(a.frames) / median(b.frames), 0.41) && held;
