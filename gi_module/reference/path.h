@@ -6,13 +6,19 @@
 #include "gi_module/reference/path_tracer.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace sunfleck::gi::reference {
 
 // Of multiple importance sampling: weight of the technique with density `a` against that with density `b`.
 inline float power_heuristic(float a, float b) {
-    const float a2 = a * a, b2 = b * b;
-    return a2 + b2 > 0.0f ? a2 / (a2 + b2) : 0.0f;
+    const float a2 = a * a, sum = a2 + b * b;
+    if (sum > 0.0f && sum < std::numeric_limits<float>::infinity())
+        return a2 / sum;
+    if (!(a > 0.0f))
+        return 0.0f;
+    const float ratio = b / a; // the squares are beyond what floats hold: a far lamp, or one that is seen edge-on
+    return 1.0f / (1.0f + ratio * ratio);
 }
 
 struct Frame {

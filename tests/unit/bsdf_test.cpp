@@ -2,7 +2,7 @@
 #include "assets/scene_builder.h"
 #include "engine/core/random.h"
 #include "gi_module/reference/bsdf.h"
-#include "gi_module/reference/path_tracer.h"
+#include "gi_module/reference/path.h"
 
 #include <gtest/gtest.h>
 
@@ -52,6 +52,20 @@ double sampled_share(const Bsdf& bsdf, double cosine, std::uint32_t count) {
 
 // A white surface in a white surrounding is as bright as that, whatever it is made of. Half a per cent is what linear
 // interpolation in the tables may cost.
+// Against doubles, which hold the squares of all floats.
+TEST(MultipleImportanceSampling, WeightsOfAllDensitiesAddUpToOne) {
+    const float densities[] = {0.0f, 1e-38f, 1e-25f, 1e-10f, 0.3f, 7.0f, 1e10f, 3e18f, 1e25f, 1e38f};
+    for (const float a : densities)
+        for (const float b : densities) {
+            const float weight = power_heuristic(a, b);
+            const double sum = double(a) * double(a) + double(b) * double(b);
+            EXPECT_NEAR(weight, sum > 0.0 ? double(a) * double(a) / sum : 0.0, 1e-6) << a << " " << b;
+            if (sum > 0.0) {
+                EXPECT_NEAR(weight + power_heuristic(b, a), 1.0f, 1e-6f) << a << " " << b;
+            }
+        }
+}
+
 TEST(Bsdf, WhiteSurfacesReflectAllLight) {
     for (const float metallic : {0.0f, 0.4f, 1.0f})
         for (const float index : {1.0f, 1.5f, 2.5f})
