@@ -54,12 +54,6 @@ Result<std::vector<simulation::StepInput>> read_walk(const LevelOptions& options
     return steps;
 }
 
-std::string hash_text(std::uint64_t hash) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
-}
-
 } // namespace
 
 Status check_level(const LevelOptions& options) {

@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <string>
 
 namespace sunfleck {
 
@@ -14,6 +16,13 @@ inline std::uint64_t hash_bytes(std::uint64_t hash, const void* data, std::size_
     for (std::size_t i = 0; i < size; ++i)
         hash = (hash ^ bytes[i]) * 0x100000001b3ull;
     return hash;
+}
+
+// 16 hexadecimal digits.
+inline std::string hash_text(std::uint64_t hash) {
+    char text[17];
+    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+    return text;
 }
 
 } // namespace sunfleck

@@ -3,7 +3,6 @@
 #include "engine/core/hash.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 
@@ -28,10 +27,7 @@ std::string text_of(const Json& json, int indent = -1) {
 }
 
 std::string checksum(const std::string& text) {
-    char digits[24];
-    std::snprintf(digits, sizeof digits, "%016llx",
-                  static_cast<unsigned long long>(hash_bytes(hash_start, text.data(), text.size())));
-    return digits;
+    return hash_text(hash_bytes(hash_start, text.data(), text.size()));
 }
 
 std::string name_of(const ecs::Registry& registry, ecs::Entity entity) {

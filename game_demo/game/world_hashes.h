@@ -4,9 +4,6 @@
 #include "engine/core/hash.h"
 #include "engine/simulation/simulation.h"
 
-#include <cstdio>
-#include <string>
-
 namespace sunfleck::demo {
 
 class WorldHashes {
@@ -17,15 +14,10 @@ public:
         steps_ = hash_bytes(steps_, &world_, sizeof world_);
     }
     // 16 hexadecimal digits each.
-    std::string of_world() const { return text_of(world_); }
-    std::string of_steps() const { return text_of(steps_); }
+    std::string of_world() const { return hash_text(world_); }
+    std::string of_steps() const { return hash_text(steps_); }
 
 private:
-    static std::string text_of(std::uint64_t hash) {
-        char text[17];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-        return text;
-    }
     std::uint64_t world_ = 0, steps_ = hash_start;
 };
 

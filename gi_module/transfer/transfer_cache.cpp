@@ -18,9 +18,7 @@ struct Header {
 };
 
 std::filesystem::path file_of(const std::filesystem::path& folder, std::uint64_t hash) {
-    char name[40];
-    std::snprintf(name, sizeof name, "%016llx.transfer", static_cast<unsigned long long>(hash));
-    return folder / name;
+    return folder / (hash_text(hash) + ".transfer");
 }
 
 Header header_of(std::uint64_t hash, const TransferData& data) {
