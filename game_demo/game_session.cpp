@@ -55,8 +55,8 @@ void text_window(const char* name, const std::string& text, float y, float alpha
 
 } // namespace
 
-GameSession::GameSession(const std::string& level, const std::filesystem::path& folder)
-    : level_(identity_of_level(level)), files_(folder, level_), has_folder_(!folder.empty()) {}
+GameSession::GameSession(const std::string& scene, const std::filesystem::path& folder)
+    : files_(folder, scene), has_folder_(!folder.empty()) {}
 
 GameSession::~GameSession() {
     end_saving();

@@ -19,8 +19,8 @@ struct GameProgress {
 
 class GameSession {
 public:
-    // `level`: the name of the scene. Checkpoints are kept nowhere if `folder` is empty.
-    GameSession(const std::string& level, const std::filesystem::path& folder);
+    // `scene`: the level, as the user named it. Checkpoints are kept nowhere if `folder` is empty.
+    GameSession(const std::string& scene, const std::filesystem::path& folder);
     ~GameSession(); // when the last checkpoint is written
     GameSession(const GameSession&) = delete;
     GameSession& operator=(const GameSession&) = delete;
@@ -36,7 +36,7 @@ public:
     Status keep();
     GameProgress progress() const;
     // The game as a checkpoint would keep it; empty before it began.
-    std::string saved() const { return world_ != nullptr ? save_game(*world_, level_) : std::string(); }
+    std::string saved() const { return world_ != nullptr ? save_game(*world_, files_.level()) : std::string(); }
     bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
     bool finished() const { return world_ != nullptr && world_->finished(); }
     double seconds() const { return seconds_; }
@@ -52,7 +52,6 @@ private:
     void draw_title() const;
     void draw_sensor() const;
 
-    std::string level_;
     CheckpointFiles files_;
     bool has_folder_ = false;
     GameWorld* world_ = nullptr;

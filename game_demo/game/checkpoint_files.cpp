@@ -14,10 +14,7 @@ std::string file_name_of(const std::string& identity) {
     const std::string stem = name.substr(0, name.find('.'));
     if (identity == name)
         return stem;
-    char text[18];
-    std::snprintf(text, sizeof text, "_%016llx",
-                  static_cast<unsigned long long>(hash_bytes(hash_start, identity.data(), identity.size())));
-    return stem + text;
+    return stem + "_" + hash_text(hash_bytes(hash_start, identity.data(), identity.size()));
 }
 
 } // namespace
@@ -31,8 +28,8 @@ std::string identity_of_level(const std::string& scene) {
     return code ? scene : whole.string();
 }
 
-CheckpointFiles::CheckpointFiles(std::filesystem::path folder, std::string level)
-    : folder_(std::move(folder)), level_(identity_of_level(level)),
+CheckpointFiles::CheckpointFiles(std::filesystem::path folder, const std::string& scene)
+    : folder_(std::move(folder)), level_(identity_of_level(scene)),
       newest_(folder_ / (file_name_of(level_) + ".checkpoint")),
       older_(folder_ / (file_name_of(level_) + ".checkpoint.old")) {}
 

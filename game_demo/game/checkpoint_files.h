@@ -13,8 +13,8 @@ std::string identity_of_level(const std::string& scene);
 
 class CheckpointFiles {
 public:
-    // `level`: its identity, or what that is made of. The folder is made when something is written.
-    CheckpointFiles(std::filesystem::path folder, std::string level);
+    // `scene`: the level, as the user named it. The folder is made when something is written.
+    CheckpointFiles(std::filesystem::path folder, const std::string& scene);
 
     Status save(const GameWorld& world) const { return write(save_game(world, level_)); }
     // The same for a game that was made into text before (save_game); for any thread, one at a time.
@@ -23,6 +23,8 @@ public:
     // `message` says so, in one line.
     bool load(GameWorld& world, std::string& message) const;
     bool any() const;
+    // Its identity, by which saved games name it.
+    const std::string& level() const { return level_; }
 
     std::filesystem::path newest() const { return newest_; }
     std::filesystem::path older() const { return older_; }

@@ -5,7 +5,7 @@
 
 namespace sunfleck::demo {
 
-// `level`: the name of the scene.
+// `level`: its identity (checkpoint_files.h).
 std::string save_game(const GameWorld& world, const std::string& level);
 // The text without its line breaks, as recordings begin with it.
 std::string on_one_line(std::string saved);
