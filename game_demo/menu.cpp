@@ -180,7 +180,7 @@ Decision Menu::title_screen(const OverlayData& data, bool enter) {
         ImGui::SetItemDefaultFocus();
     }
     // What is lost by one press is asked for twice.
-    if (data.can_resume && wide_button("New game", "Press again to begin anew"))
+    if (data.can_resume && wide_button("New game", "Press again to start over"))
         decision = Decision::play;
     if (!data.can_resume) {
         if (wide_button("Start") || enter)
