@@ -50,8 +50,6 @@ double sampled_share(const Bsdf& bsdf, double cosine, std::uint32_t count) {
     return sum / count;
 }
 
-// A white surface in a white surrounding is as bright as that, whatever it is made of. Half a per cent is what linear
-// interpolation in the tables may cost.
 // Against doubles, which hold the squares of all floats.
 TEST(MultipleImportanceSampling, WeightsOfAllDensitiesAddUpToOne) {
     const float densities[] = {0.0f, 1e-38f, 1e-25f, 1e-10f, 0.3f, 7.0f, 1e10f, 3e18f, 1e25f, 1e38f};
@@ -66,6 +64,8 @@ TEST(MultipleImportanceSampling, WeightsOfAllDensitiesAddUpToOne) {
         }
 }
 
+// A white surface in a white surrounding is as bright as that, whatever it is made of. Half a per cent is what linear
+// interpolation in the tables may cost.
 TEST(Bsdf, WhiteSurfacesReflectAllLight) {
     for (const float metallic : {0.0f, 0.4f, 1.0f})
         for (const float index : {1.0f, 1.5f, 2.5f})
