@@ -14,9 +14,11 @@ constexpr double portion = 20.0;
 
 } // namespace
 
-LightingChange::LightingChange(gpu::Device& device, SceneRenderer& renderer, const gi::Settings& settings)
-    : device_(device), settings_(settings), varying_lights_(renderer.lighting().sample_set().varying_lights()),
-      copy_(renderer.copy_scene(SceneRenderer::CopyOf::all)) {
+LightingChange::LightingChange(gpu::Device& device, SceneRenderer& renderer, const gi::Settings& settings,
+                               Varying varying)
+    : device_(device), settings_(settings), copy_(renderer.copy_scene(SceneRenderer::CopyOf::all)) {
+    if (varying == Varying::known)
+        varying_lights_ = renderer.lighting().sample_set().varying_lights();
     thread_ = std::thread([this] { run_alone([this] { run(); }); });
 }
 
@@ -114,7 +116,15 @@ Result<bool> LightingChange::advance(SceneRenderer& renderer) {
 void LightingChanges::request(const gi::Settings& settings) {
     cancel();
     wanted_ = settings;
-    wanted_since_ = Clock::now();
+    begins_ = Clock::now() + quiet_time;
+    varying_ = LightingChange::Varying::known;
+}
+
+void LightingChanges::renew(const gi::Settings& settings) {
+    cancel();
+    wanted_ = settings;
+    begins_ = Clock::now() + long_quiet_time;
+    varying_ = LightingChange::Varying::none;
 }
 
 void LightingChanges::cancel() {
@@ -139,11 +149,12 @@ Result<bool> LightingChanges::advance(SceneRenderer& renderer) {
     }
     if (!wanted_ && renderer.lighting().outdated()) {
         wanted_ = renderer.lighting().settings();
-        wanted_since_ = Clock::now() - quiet_time;
+        begins_ = Clock::now();
+        varying_ = LightingChange::Varying::known;
     }
-    if (!wanted_ || Clock::now() - wanted_since_ < quiet_time)
+    if (!wanted_ || Clock::now() < begins_)
         return false;
-    change_ = std::make_unique<LightingChange>(device_, renderer, *wanted_);
+    change_ = std::make_unique<LightingChange>(device_, renderer, *wanted_, varying_);
     wanted_.reset();
     return false;
 }

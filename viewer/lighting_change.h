@@ -4,6 +4,7 @@
 //     changes.request(settings);                   // whenever the person changes something
 //     each frame, with FrameRequest::keep_samples, before SceneRenderer::update:
 //         auto changed = changes.advance(renderer); // true: from this frame on, the new lighting is in use
+//     changes.renew(settings);                     // when the scene is left alone: as a start with it would make it
 //
 // The thread lights a copy of the scene with a renderer of its own, on the same device and queue. When its samples,
 // visibility and shadow maps are there, it takes over what moved in the meantime, and the two renderers exchange their
@@ -29,9 +30,11 @@ namespace sunfleck::viewer {
 // One change of lighting. All functions are for the thread that draws.
 class LightingChange {
 public:
+    // Which lights vary: those that the renderer's lighting has seen change, or, as at a start, none.
+    enum class Varying { known, none };
     // Copies the scene of `renderer`, which must be up to date, and begins. Device and renderer must outlive the
     // change.
-    LightingChange(gpu::Device& device, SceneRenderer& renderer, const gi::Settings& settings);
+    LightingChange(gpu::Device& device, SceneRenderer& renderer, const gi::Settings& settings, Varying varying);
     // Cancels and waits, which takes a fraction of a second, also for frames that use what it took over.
     ~LightingChange();
     LightingChange(const LightingChange&) = delete;
@@ -79,6 +82,11 @@ public:
     // Begins when the one before has gone, and when no other request came for `quiet_time`: who drags a slider gets the
     // light of where it comes to rest.
     void request(const gi::Settings& settings);
+    // The same after `long_quiet_time`, and the new lighting forgets which lights vary (SampleSet::follows_changes):
+    // who tunes a lamp sees its light follow each touch, and gets that of a start once the lamp is left alone.
+    void renew(const gi::Settings& settings);
+    // What is pending is a renewal.
+    bool renews() const { return pending() && varying_ == LightingChange::Varying::none; }
     // Also without effect on what has been handed over.
     void cancel();
     // Between frames, once each. True: from now on `renderer` has the lighting that was requested last. Where the scene
@@ -90,13 +98,14 @@ public:
     bool pending() const { return wanted_.has_value() || (change_ && !handed_over_ && !cancelled_); }
     float share() const { return change_ && !cancelled_ ? change_->share() : 0.0f; }
 
-    static constexpr std::chrono::milliseconds quiet_time{150};
+    static constexpr std::chrono::milliseconds quiet_time{150}, long_quiet_time{1000};
 
 private:
     using Clock = std::chrono::steady_clock;
     gpu::Device& device_;
     std::optional<gi::Settings> wanted_;
-    Clock::time_point wanted_since_{};
+    Clock::time_point begins_{};                                       // it does, not before
+    LightingChange::Varying varying_ = LightingChange::Varying::known; // of the newest
     std::unique_ptr<LightingChange> change_;
     bool handed_over_ = false, cancelled_ = false; // of change_
 };

@@ -218,7 +218,7 @@ void SceneThread::use_shaders(const std::vector<CompiledShader>& shaders) {
 // New light that is ready is in use from the next frame on.
 void SceneThread::follow_light() {
     if (light_->pending() && hand_moves())
-        light_->request(copy_->renderer().lighting().settings());
+        put_light_off();
     const Result<bool> changed = light_->advance(copy_->renderer());
     if (!changed)
         return fail(Error{"the lighting could not be made: " + changed.error().message});
@@ -229,12 +229,24 @@ void SceneThread::follow_light() {
     note_light();
 }
 
+// What is being prepared is of the scene before.
+void SceneThread::put_light_off() {
+    const gi::Settings& settings = copy_->renderer().lighting().settings();
+    if (light_->renews())
+        light_->renew(settings);
+    else
+        light_->request(settings);
+}
+
 void SceneThread::note_light() {
+    const gi::System& lighting = copy_->renderer().lighting();
+    const bool outdated = lighting.outdated();
     // Begun by the scene's own accord, it would be at once, while a hand still drags.
-    if (copy_->renderer().lighting().outdated() && !light_->pending())
-        light_->request(copy_->renderer().lighting().settings());
-    const bool pending =
-        light_->pending() || copy_->renderer().lighting().outdated() || copy_->renderer().geometry_outdated();
+    if (outdated && (!light_->pending() || light_->renews()))
+        light_->request(lighting.settings());
+    else if (!light_->pending() && play_ == nullptr && lighting.sample_set().follows_changes())
+        light_->renew(lighting.settings());
+    const bool pending = light_->pending() || outdated || copy_->renderer().geometry_outdated();
     bool tell = false;
     {
         const std::scoped_lock lock(mutex_);
@@ -275,8 +287,8 @@ Status SceneThread::apply_change() {
         use_shaders(std::vector(shaders_));
     revision_ = change.revision;
     dragged_ = change.dragged;
-    if (light_pending_ && !change.is_empty()) // what is being prepared is of the scene before
-        light_->request(copy_->renderer().lighting().settings());
+    if (light_pending_ && !change.is_empty())
+        put_light_off();
     return {};
 }
 

@@ -4,7 +4,8 @@
 //
 // Where light takes long to make, edits that need new light (a wall moves, another number of samples) show at once in
 // the old one, while the new one is prepared behind the frames (lighting_change.h); a further edit cancels that. While
-// a hand drags, shadows of what stands still wait, too: they follow when it rests.
+// a hand drags, shadows of what stands still wait, too: they follow when it rests. Samples that have followed lamps are
+// renewed once the scene is left alone, so that what was edited looks as it will when it is opened.
 //
 // All functions may be called from the GUI thread; none of them waits for a frame.
 #pragma once
@@ -170,6 +171,7 @@ private:
     bool hand_moves() const { return dragged_ && frames_left_ > 1; }
     void use_shaders(const std::vector<CompiledShader>& shaders);
     void note_light();
+    void put_light_off();
 
     gpu::Device* device_;
     const std::function<void()> wake_;

@@ -41,6 +41,7 @@ void DynamicLights::reset(const std::vector<Emitter>& emitters, std::uint32_t co
     samples_.clear();
     moved_.clear();
     resampled_ = paths_made_ = 0;
+    changed_ = false;
     if (emitters.empty() || (!settings.direct && !(settings.indirect && settings.bounces > 0)))
         return;
     std::vector<double> weights;
@@ -81,7 +82,9 @@ void DynamicLights::update(const std::vector<Emitter>& emitters, const raytrace:
         Light& light = lights_[e];
         const bool still = light.emitter.matrix == emitters[e].matrix;
         const bool complete = light.paths.complete();
-        if (still && complete && light.emitter.flux == emitters[e].flux)
+        const bool same = still && light.emitter.flux == emitters[e].flux;
+        changed_ = changed_ || !same;
+        if (same && complete)
             continue;
         light.emitter = emitters[e];
         place_direct(light, rays);

@@ -20,6 +20,8 @@ public:
     const std::vector<std::uint8_t>& moved() const { return moved_; }
     // Paths that were sampled again in the last update.
     std::uint32_t resampled() const { return resampled_; }
+    // Whether any of them has moved or changed its flux since the reset.
+    bool changed() const { return changed_; }
 
     static bool can_follow(EmitterKind kind) { return kind <= EmitterKind::spot; }
 
@@ -41,6 +43,7 @@ private:
     std::vector<LightSample> samples_;
     std::vector<std::uint8_t> moved_;
     std::uint32_t resampled_ = 0, paths_made_ = 0;
+    bool changed_ = false;
 };
 
 } // namespace sunfleck::gi

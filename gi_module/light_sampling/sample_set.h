@@ -76,6 +76,9 @@ public:
     const std::set<ecs::Entity>& varying_lights() const { return varying_; }
     // These count among them from now on: another set has seen them change.
     void expect_varying(const std::set<ecs::Entity>& lights);
+    // Lights have moved or changed since they were first seen, and samples follow them. A start with the scene as it is
+    // would share samples otherwise between lights, and those of light that stands still are medoids: fewer errors.
+    bool follows_changes() const { return !varying_.empty() || followed_.lights.changed(); }
 
     static std::span<const Counter> counters();
     void report(Report& report) const;

@@ -152,10 +152,11 @@ double error_of(const io::Picture& picture, const io::Picture& reference) {
 }
 
 // Where light follows edits behind the frames, it ends as good as that of a start with the edited scene. Both have the
-// noise of the same reference, which can only hide a difference that is smaller.
+// noise of the same reference, which can only hide a difference that is smaller. In the short size the first three, and
+// the fifth, which leaves a lamp that shines otherwise than at first.
 TEST_F(EditorComparison, LiveEditsAreAsRightAsAStart) {
-    for (std::uint32_t seed = 1; seed <= by_size(3u, 20u); ++seed) {
-        if (!tests::in_part(seed))
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+        if (!tests::in_part(seed) || (by_size(true, false) && seed > 3 && seed != 5))
             continue;
         SCOPED_TRACE("seed " + std::to_string(seed));
         document_ = open_scene();

@@ -115,6 +115,37 @@ TEST_F(EditorScene, LightFollowsBehindTheFrames) {
     EXPECT_GT(differing(*after->pixels, *before->pixels), width * height / 100u);
 }
 
+// Light follows edits of a lamp in its samples as they are; once it is left alone, it has those of a start.
+TEST_F(EditorScene, LampsThatWereEditedAreAsAStartShowsThem) {
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    SceneThread scene(tests::device(), [] {});
+    ChangeCollector collector;
+    scene.change(*collector.collect(document));
+    scene.show(view(*document));
+    ASSERT_NE(settled(scene, *document), nullptr);
+    const Entity lamp = document->find("lamp");
+    ASSERT_TRUE(document->exists(lamp));
+    ecs::PoolBase& lamps = pool_of<scene::AreaLight>(*document);
+    const Field* radiance = lamps.description()->find("radiance");
+    ASSERT_NE(radiance, nullptr);
+    const auto is_as_a_start = [&] {
+        if (auto change = collector.collect(document))
+            scene.change(std::move(*change));
+        const Picture edited = settled(scene, *document), fresh = from_nothing(document);
+        ASSERT_TRUE(edited && fresh);
+        EXPECT_EQ(differing(*edited->pixels, *fresh->pixels), 0u);
+    };
+    for (const char* value : {"8,8,8", "4,6,2"}) {
+        SCOPED_TRACE(value);
+        ASSERT_TRUE(edit_field(*document, {lamp}, lamps, *radiance, value));
+        ASSERT_NO_FATAL_FAILURE(is_as_a_start());
+    }
+    SCOPED_TRACE("its mesh shines, and no lamp"); // another kind of light from the same entity
+    remove_component(*document, {lamp}, lamps);
+    ASSERT_NO_FATAL_FAILURE(is_as_a_start());
+}
+
 // Shadows of what is dragged wait for the hand to rest. However the gesture ends, the picture is then that of a start
 // with the document.
 TEST_F(EditorScene, DraggingLeavesNoTrace) {

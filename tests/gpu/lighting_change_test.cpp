@@ -154,6 +154,35 @@ TEST_F(LightingChangeTest, TheSceneChangesBesideTheFrames) {
     EXPECT_FALSE(dim(0.25f)) << "the second change is none to remember";
 }
 
+// Samples that have followed a lamp are those of a start once it is left alone.
+TEST_F(LightingChangeTest, ARenewalForgetsWhichLampsVary) {
+    const auto dim = [](MovingBox& of, float share) {
+        ecs::Registry& registry = of.renderer->registry();
+        registry.patch<scene::AreaLight>(scene::find_by_name(registry, "lamp"),
+                                         [&](scene::AreaLight& light) { light.radiance = vec3(9.0f * share); });
+    };
+    MovingBox world(lights(60));
+    world.settled(0);
+    const auto follows = [&] { return world.renderer->lighting().sample_set().follows_changes(); };
+    EXPECT_FALSE(follows());
+    for (const float share : {0.5f, 0.25f}) {
+        dim(world, share);
+        world.render();
+        EXPECT_TRUE(follows());
+    }
+    world.request.keep_samples = true;
+    viewer::LightingChanges changes(device());
+    changes.request(lights(60));
+    EXPECT_FALSE(changes.renews());
+    changes.renew(lights(60));
+    EXPECT_TRUE(changes.renews());
+    ASSERT_GT(world.frames_until_changed(changes, counter_of(world, "light_samples")), 0);
+    EXPECT_FALSE(follows());
+    MovingBox fresh(lights(60));
+    dim(fresh, 0.25f);
+    expect_same_picture(world.settled(37), fresh.settled(37));
+}
+
 // While a hand drags a wall, nothing is made anew of it; the first frame of the resting hand follows, and then light.
 TEST_F(LightingChangeTest, GeometryIsKeptUntilTheHandRests) {
     MovingBox world(lights(60));
