@@ -30,7 +30,8 @@ public:
     void draw(Session& session) override;
 
 private:
-    void find_rows(Session& session);
+    void follow(Session& session);
+    void find_rows(Document& document);
     void add_rows(Document& document, Entity entity, int depth);
     bool is_open(Entity entity) const { return open_by_default_ != (toggled_.count(entity) > 0); }
     void row(Session& session, std::size_t index);
@@ -50,6 +51,7 @@ private:
     std::uint64_t structure_revision_ = 0;
     std::unordered_set<Entity> toggled_;
     bool open_by_default_ = true, rows_are_old_ = true;
+    bool is_tree_ = false; // some rows have others below them
     Entity renaming_, anchor_, shown_;
     int rename_frames_ = 0;
     std::string new_name_;
@@ -71,7 +73,7 @@ void Hierarchy::add_rows(Document& document, Entity entity, int depth) {
     }
 }
 
-void Hierarchy::find_rows(Session& session) {
+void Hierarchy::follow(Session& session) {
     Document& document = *session.document;
     if (document_ != &document) {
         document_ = &document;
@@ -84,6 +86,11 @@ void Hierarchy::find_rows(Session& session) {
     rows_are_old_ = false;
     structure_revision_ = document.structure_revision();
     filter_of_rows_ = filter_;
+    find_rows(document);
+    is_tree_ = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.has_children; });
+}
+
+void Hierarchy::find_rows(Document& document) {
     rows_.clear();
     if (filter_.empty()) {
         for (const Entity root : document.roots())
@@ -239,7 +246,7 @@ void Hierarchy::row(Session& session, std::size_t index) {
         }
         ui::note("open " + document.name(row.entity), open ? "open" : "");
         ImGui::SameLine(0.0f, 0.2f * ui::unit());
-    } else {
+    } else if (is_tree_) {
         ImGui::Dummy(ImVec2(ImGui::GetFrameHeight(), 0.0f));
         ImGui::SameLine(0.0f, 0.2f * ui::unit());
     }
@@ -254,10 +261,11 @@ void Hierarchy::row(Session& session, std::size_t index) {
         ImDrawList* list = ImGui::GetWindowDrawList();
         const std::string& name = document.name(row.entity);
         const bool dim = session.hidden.count(row.entity) > 0;
+        const std::string shown = ui::fitted(name, high.x - low.x - 2.0f);
         list->AddText(ImVec2(low.x + 2.0f, low.y), ImGui::GetColorU32(dim ? ImGuiCol_TextDisabled : ImGuiCol_Text),
-                      name.c_str());
-        if (ImGui::CalcTextSize(name.c_str()).x > high.x - low.x)
-            ui::tooltip(name); // the list's edge cuts it
+                      shown.c_str());
+        if (shown != name)
+            ui::tooltip(name);
         const std::string kind = kind_of(document, row.entity);
         const float wide = ImGui::CalcTextSize(kind.c_str()).x;
         if (ImGui::CalcTextSize(name.c_str()).x + wide + ui::unit() < high.x - low.x)
@@ -285,8 +293,9 @@ void Hierarchy::show_selection(Session& session) {
 
 void Hierarchy::draw(Session& session) {
     const ui::Scope scope("hierarchy");
-    ui::text_box("search", filter_, "Search names and components", -1.0f);
-    find_rows(session);
+    const float room = ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().FramePadding.x;
+    ui::text_box("search", filter_, ui::fitted("Search names and components", room).c_str(), -1.0f);
+    follow(session);
     ImGui::TextDisabled(filter_.empty() ? "%zu entities" : "%zu found",
                         filter_.empty() ? session.document->entity_count() : rows_.size());
     drop(session, ecs::null_entity);

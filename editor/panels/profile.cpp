@@ -246,6 +246,7 @@ void Profile::draw(Session& session) {
     ImGui::AlignTextToFramePadding();
     ImGui::Text("Frame %llu: %s", static_cast<unsigned long long>(frame->number),
                 milliseconds(frame->statistics.frame_ms).c_str());
+    ui::note("frame", std::to_string(frame->number));
     ImGui::SameLine();
     if (ui::button(kept_ ? "Compare no longer" : "Compare with others",
                    "Keeps this frame: the stages and passes of others are shown beside its own"))

@@ -117,15 +117,17 @@ bool text_box(const std::string& name, std::string& text, const char* hint, floa
     return changed;
 }
 
+std::string fitted(const std::string& text, float room) {
+    if (text.size() <= 4 || ImGui::CalcTextSize(text.c_str()).x <= room)
+        return text;
+    const float before_dots = std::max(room - ImGui::CalcTextSize("...").x, 0.0f);
+    const char *const begin = text.c_str(), *rest = begin;
+    ImGui::GetFont()->CalcTextSizeA(unit(), before_dots, 0.0f, begin, begin + text.size(), &rest);
+    return text.substr(0, std::size_t(rest - begin)) + "...";
+}
+
 void label(const std::string& text, std::string_view tip, bool dim) {
-    const float room = ImGui::GetContentRegionAvail().x;
-    std::string shown = text;
-    while (shown.size() > 4 && ImGui::CalcTextSize(shown.c_str()).x > room) {
-        std::size_t end = shown.size() - (shown.ends_with("...") ? 4 : 1);
-        while (end > 1 && (std::uint8_t(shown[end]) & 0xc0u) == 0x80u)
-            --end;
-        shown = shown.substr(0, end) + "...";
-    }
+    const std::string shown = fitted(text, ImGui::GetContentRegionAvail().x);
     if (dim)
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::AlignTextToFramePadding();

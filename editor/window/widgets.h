@@ -52,7 +52,9 @@ void close_by_escape();
 bool choice(const std::string& name, bool chosen, std::string_view tip = {});
 // True while the text changes; with `enter`, when Enter was pressed.
 bool text_box(const std::string& name, std::string& text, const char* hint, float width, bool enter = false);
-// Text that does not fit is cut with dots; the whole is in the tooltip.
+// What is seen of a text in so much room, pixels: what does not fit is cut, with dots.
+std::string fitted(const std::string& text, float room);
+// Cut so; the whole is in the tooltip.
 void label(const std::string& text, std::string_view tip = {}, bool dim = false);
 void heading(const std::string& text);
 void hint(const char* text);                                  // dim, in as many lines as it needs

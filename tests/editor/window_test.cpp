@@ -194,6 +194,51 @@ TEST_F(EditorWindow, RestsWhileNothingHappens) {
     EXPECT_GT(frames("scene_frames_at", 0.0, rest), 0);
 }
 
+// `<` and `>` go through all frames that are kept, which the table tells; at both ends there is no further.
+TEST_F(EditorWindow, TheProfileStepsThroughFrames) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("tab Profile"));
+    ASSERT_TRUE(editor->reach("viewport/picture"));
+    const std::size_t least = tests::by_size(12u, 300u);
+    std::vector<std::string> kept;
+    for (int tries = 0; tries < 30 && kept.size() < least; ++tries) {
+        ASSERT_TRUE(editor->reach("viewport/picture"));
+        editor->run("xdotool mousedown 3"); // the camera turns
+        for (int step = 0; step < 20; ++step)
+            editor->run("xdotool mousemove_relative -- " + std::string(step % 2 == 0 ? "3" : "-3") + " 0 sleep 0.05");
+        editor->run("xdotool mouseup 3");
+        ASSERT_TRUE(editor->settles());
+        fs::remove(folder / "sunfleck_frames.csv");
+        ASSERT_TRUE(editor->click("profile/Save CSV"));
+        ASSERT_TRUE(editor->wait_until([&] { return fs::exists(folder / "sunfleck_frames.csv"); }));
+        kept.clear();
+        std::istringstream table(read_file(folder / "sunfleck_frames.csv").value());
+        std::string line;
+        std::getline(table, line); // the columns' names
+        while (std::getline(table, line))
+            if (const std::string frame = line.substr(0, line.find(',')); kept.empty() || kept.back() != frame)
+                kept.push_back(frame);
+    }
+    ASSERT_GE(kept.size(), least);
+    EXPECT_LE(kept.size(), 300u);
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept.back()));
+    EXPECT_EQ(editor->value("profile/>"), "disabled") << "the newest is shown";
+    ASSERT_TRUE(editor->click("profile/<"));
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept[kept.size() - 2]));
+    ASSERT_TRUE(editor->click("profile/<", "1", int(kept.size()) - 3));
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept[1]));
+    EXPECT_EQ(editor->value("profile/<"), "");
+    ASSERT_TRUE(editor->click("profile/<"));
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept[0]));
+    EXPECT_EQ(editor->value("profile/<"), "disabled");
+    ASSERT_TRUE(editor->click("profile/>", "1", 2));
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept[2]));
+    ASSERT_TRUE(editor->click("profile/Newest"));
+    EXPECT_TRUE(editor->wait_for("profile/frame", kept.back()));
+    editor->end();
+}
+
 // While the GUI rests, time passes all the same: two clicks with a pause between them are no double click, and a key
 // that is held repeats.
 TEST_F(EditorWindow, TimePassesWhileItRests) {
