@@ -45,16 +45,26 @@ public:
 
     Status add_passes(gpu::FrameGraph& graph, gi::Services& services, gi::LightTarget& target) override {
         const gi::GBufferInput& g_buffer = target.g_buffer;
-        const shared::ConstantLightConstants constants{
-            g_buffer.width, g_buffer.height,
-            target.view != nullptr ? target.view->code : shared::constant_light_shows_nothing,
-            services.settings.of<ConstantLightSettings>().constant_irradiance};
+        const auto& settings = services.settings.of<ConstantLightSettings>();
+        shared::ConstantLightConstants constants{g_buffer.width,
+                                                 g_buffer.height,
+                                                 target.view != nullptr ? target.view->code
+                                                                        : shared::constant_light_shows_nothing,
+                                                 settings.constant_irradiance,
+                                                 settings.constant_work,
+                                                 -1.0f};
         pixels_ = std::uint64_t(constants.width) * constants.height;
-        gpu::ComputePass(graph, "constant light", *kernel_)
-            .sampled(g_buffer.depth, sampler_)
-            .storage_write(target.irradiance)
-            .push(constants)
-            .dispatch((constants.width + 7) / 8, (constants.height + 7) / 8);
+        const auto add = [&](const char* name) {
+            gpu::ComputePass(graph, name, *kernel_)
+                .sampled(g_buffer.depth, sampler_)
+                .storage_write(target.irradiance)
+                .push(constants)
+                .dispatch((constants.width + 7) / 8, (constants.height + 7) / 8);
+        };
+        if (constants.work > 0)
+            add("constant work");
+        constants.work = 0;
+        add("constant light");
         return {};
     }
 
@@ -85,7 +95,9 @@ const TypeDescription& ConstantLightSettings::description() {
                                       1,
                                       "The same light everywhere.",
                                       {SUNFLECK_FIELD(ConstantLightSettings, constant_irradiance, "W/m2", 0, 1000,
-                                                      "What every surface gets of the constant light")}};
+                                                      "What every surface gets of the constant light"),
+                                       SUNFLECK_FIELD(ConstantLightSettings, constant_work, "turns", 0, 1000000,
+                                                      "Work for nothing at each pixel, in a pass of its own")}};
     return type;
 }
 

@@ -9,6 +9,7 @@ namespace sunfleck::tests {
 
 struct ConstantLightSettings {
     float constant_irradiance = 0.25f; // W/m2
+    std::uint32_t constant_work = 0;   // turns at each pixel; 0: without the pass
 
     static const TypeDescription& description();
 };

@@ -12,6 +12,8 @@ struct ConstantLightConstants {
     uint height;
     uint show;
     float irradiance; // W/m2
+    uint work;        // ConstantLightSettings::constant_work
+    float never;      // what that never makes
 };
 
 SHARED_END
