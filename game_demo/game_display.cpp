@@ -1,5 +1,7 @@
 #include "game_demo/game_display.h"
 
+#include "game_demo/level_loader.h"
+
 namespace sunfleck::demo {
 
 Result<std::unique_ptr<GameDisplay>> GameDisplay::create(const std::string& title, const Options& options) {
@@ -14,7 +16,7 @@ Result<std::unique_ptr<GameDisplay>> GameDisplay::create(const std::string& titl
 
 Status GameDisplay::make_device(const Options& options) {
     SUNFLECK_ASSIGN(device_, gpu::Device::create({options.device, options.validation, window_->instance_extensions()}));
-    SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, 2));
+    SUNFLECK_ASSIGN(swapchain_, app::Swapchain::create(*device_, *window_, LevelLoader::frames_in_flight));
     SUNFLECK_ASSIGN(screen_, app::GuiScreen::create(*device_, *swapchain_));
     return {};
 }
@@ -33,6 +35,12 @@ Result<bool> GameDisplay::begin_renderer() {
     const bool is_another = !lost_.empty();
     lost_.clear();
     return is_another;
+}
+
+Status GameDisplay::wait_for_slot(viewer::SceneRenderer& renderer) {
+    const std::uint64_t serial = renderer.submission().serial();
+    constexpr std::uint64_t slots = LevelLoader::frames_in_flight;
+    return serial > slots ? renderer.submission().wait(serial - slots) : Status();
 }
 
 Result<VkCommandBuffer> GameDisplay::begin_frame(viewer::SceneRenderer& renderer) {

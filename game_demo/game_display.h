@@ -24,7 +24,10 @@ public:
     // Before the first frame of a renderer, whose serials start at 1. Waits for the device. True: the device is
     // another.
     Result<bool> begin_renderer();
-    // Starts the renderer's next frame: its command buffer. Waits until a slot is free.
+    // Waits until the renderer's next frame has a slot, before anybody asks for the input that it shows: what is waited
+    // for afterwards makes it late.
+    static Status wait_for_slot(viewer::SceneRenderer& renderer);
+    // Starts the renderer's next frame: its command buffer.
     Result<VkCommandBuffer> begin_frame(viewer::SceneRenderer& renderer);
     // Draws the user interface over the picture.
     viewer::SceneRenderer::Overlay overlay();

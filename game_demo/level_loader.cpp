@@ -9,7 +9,6 @@ namespace {
 
 // Fraction of the progress bar for reading; the rest is preparation.
 constexpr float read_until = 0.3f;
-constexpr std::uint32_t frames_in_flight = 2;
 
 } // namespace
 

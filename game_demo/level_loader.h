@@ -10,6 +10,8 @@ namespace sunfleck::demo {
 
 class LevelLoader {
 public:
+    static constexpr std::uint32_t frames_in_flight = 2; // of the level's renderer
+
     // Starts loading.
     LevelLoader(gpu::Device& device, LevelSource source, const DemoSettings& settings);
     // The same for a level that moves to the device from one that is lost.

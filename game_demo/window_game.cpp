@@ -143,6 +143,7 @@ private:
 
     // False: the window cannot be presented to at the moment.
     Result<bool> frame_once() {
+        SUNFLECK_TRY(GameDisplay::wait_for_slot(level_->renderer()));
         const app::InputState& input = window_->poll();
         const double seconds = std::min(seconds_since(last_), 1.0);
         last_ = Clock::now();
