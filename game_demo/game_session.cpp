@@ -76,7 +76,7 @@ bool GameSession::begin(GameWorld& world, bool resume) {
 
 void GameSession::save_checkpoint() {
     end_saving();
-    saving_ = std::async(std::launch::async, [files = files_, text = saved()] { return files.write(text); });
+    saving_ = std::async(std::launch::async, [files = files_, game = kept()] { return files.write(game()); });
 }
 
 void GameSession::end_saving() {

@@ -4,6 +4,7 @@
 #include "game_demo/demo_settings.h"
 #include "game_demo/game/checkpoint_files.h"
 
+#include <functional>
 #include <future>
 #include <utility>
 
@@ -37,6 +38,10 @@ public:
     GameProgress progress() const;
     // The game as a checkpoint would keep it; empty before it began.
     std::string saved() const { return world_ != nullptr ? save_game(*world_, files_.level()) : std::string(); }
+    // The same, to be made into text by any thread (keep_game); null before it began.
+    std::function<std::string()> kept() const {
+        return world_ != nullptr ? keep_game(*world_, files_.level()) : std::function<std::string()>();
+    }
     bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
     bool finished() const { return world_ != nullptr && world_->finished(); }
     double seconds() const { return seconds_; }

@@ -158,7 +158,7 @@ private:
         SUNFLECK_ASSIGN(const bool visible, display_->swapchain().acquire(level_->renderer().submission().serial()));
         if (!visible) {
             window_->wait(0.05);
-            SUNFLECK_TRY(state_.write(state()));
+            SUNFLECK_TRY(state_.write([&] { return state(); }));
             return false;
         }
         SUNFLECK_TRY(show(input, seconds));
@@ -281,14 +281,12 @@ private:
                 menu_.say(status.error().message, 6.0);
         }
         decide(decision);
-        return state_.write(state());
+        return state_.write([&] { return state(); });
     }
 
     GameState state() const {
-        if (options_.state.empty())
-            return {};
         return {screen_name(menu_.screen()), menu_.selected(),     session_.progress(), sounds_.device(),
-                sounds_.subtitles(),         menu_.message_text(), session_.saved()};
+                sounds_.subtitles(),         menu_.message_text(), session_.kept()};
     }
 
     OverlayData shown_data(const viewer::FrameRequest& request, double seconds) {
@@ -357,6 +355,7 @@ private:
             SUNFLECK_TRY(stored);
         SUNFLECK_TRY(recorded);
         SUNFLECK_TRY(kept);
+        SUNFLECK_TRY(state_.finish());
         if (played && display_->device().validation_messages() > 0)
             return Error{"validation printed messages (see above)"};
         return {};

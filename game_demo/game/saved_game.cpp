@@ -141,7 +141,7 @@ void apply_world(GameWorld& world, const Names& names, const Json& json) {
 
 } // namespace
 
-std::string save_game(const GameWorld& world, const std::string& level) {
+std::function<std::string()> keep_game(const GameWorld& world, const std::string& level) {
     const ecs::Registry& registry = world.registry();
     const simulation::SimulationState state = world.simulation().state();
     const GameWorld::Progress progress = world.progress();
@@ -158,9 +158,15 @@ std::string save_game(const GameWorld& world, const std::string& level) {
     for (const auto& [name, entity] : names_of(registry))
         if (Json content = of(registry, entity); !content.is_null())
             json["entities"][name] = std::move(content);
-    const Json file = {
-        {"sunfleck_game", version}, {"level", level}, {"checksum", checksum(json.dump())}, {"world", json}};
-    return text_of(file, 1) + "\n";
+    return [json = std::move(json), level] {
+        const Json file = {
+            {"sunfleck_game", version}, {"level", level}, {"checksum", checksum(json.dump())}, {"world", json}};
+        return text_of(file, 1) + "\n";
+    };
+}
+
+std::string save_game(const GameWorld& world, const std::string& level) {
+    return keep_game(world, level)();
 }
 
 std::string on_one_line(std::string saved) {

@@ -60,8 +60,14 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
     return lines;
 }
 
+// What the game said last.
+struct Told {
+    std::uint64_t steps = 0;
+    double state_ms = 0.0; // that saying so takes of a frame; 0: not known
+};
+
 // Plays until the time is over, the game says that it ends, or the solution fails; says which.
-std::string play(DrivenGame& game, Clock::time_point until, std::uint64_t& steps) {
+std::string play(DrivenGame& game, Clock::time_point until, Told& told) {
     tests::KeySolver solver;
     Hands hands(game.display());
     while (Clock::now() < until) {
@@ -75,7 +81,7 @@ std::string play(DrivenGame& game, Clock::time_point until, std::uint64_t& steps
             return "the game is over";
         if (const auto motion = solver.next(*state))
             hands.move(*motion);
-        steps = state->value("steps", std::uint64_t(0));
+        told = {state->value("steps", std::uint64_t(0)), state->value("state_ms", 0.0)};
         if (!solver.problem().empty())
             return solver.problem();
     }
@@ -89,9 +95,9 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
     const std::size_t logged = game->log().size();
     const Clock::time_point began = Clock::now();
     const double idle = own_seconds();
-    std::uint64_t steps = 0;
+    Told told;
     const auto whole = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-    const std::string ended = play(*game, began + settling + whole, steps);
+    const std::string ended = play(*game, began + settling + whole, told);
     const std::vector<double> frames = game->frame_times(began + settling, Clock::now());
     if (frames.size() < 10)
         return Error{"the game did not go on: " + ended};
@@ -99,7 +105,8 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
         {"measured", "pacing"},
         {"room", start.room},
         {"ended", ended},
-        {"steps", steps},
+        {"steps", told.steps},
+        {"state_ms", told.state_ms},
         {"own_share", (own_seconds() - idle) / seconds_since(began)},
         {"frames_ms", frames},
         {"long_frames", lines_with(game->log().substr(logged), " times the median")}};

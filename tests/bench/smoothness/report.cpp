@@ -22,6 +22,7 @@ struct Side { // of one commit
     std::map<std::string, std::vector<double>> by_room;
     std::vector<std::string> ends, long_frames;
     unsigned lost = 0;
+    double state_ms = 0.0; // the most that telling its state took of a run's frames
 };
 
 void append(std::vector<double>& to, const nlohmann::json& from, const char* name) {
@@ -53,6 +54,7 @@ void add_file(Side& side, const nlohmann::json& file) {
     }
     append(side.frames, file, "frames_ms");
     append(side.by_room[room], file, "frames_ms");
+    side.state_ms = std::max(side.state_ms, file.value("state_ms", 0.0));
     const std::vector<double> late = after_reaching(file);
     side.late.insert(side.late.end(), late.begin(), late.end());
     side.ends.push_back(room + ": " + file.value("ended", std::string()));
@@ -91,6 +93,10 @@ void print_frames(const std::string& name, const Side& side) {
         std::printf("    %-10s %5zu frames  median %6.1f  95 %% %6.1f  99 %% %6.1f  longest %6.1f\n", room.c_str(),
                     frames.size(), median(frames), percentile(frames, 0.95), percentile(frames, 0.99),
                     percentile(frames, 1.0));
+    if (side.state_ms > 0.0)
+        std::printf("    of which the bench takes %.2f ms at most: the game tells its state\n", side.state_ms);
+    else
+        std::printf("    and what of them the bench takes, the game does not say: it writes its state within frames\n");
 }
 
 // Runs that ended before their time, such as by a game that was lost or a solution that went nowhere, show less than
