@@ -1,6 +1,7 @@
 #include "game_demo/game_session.h"
 
 #include "engine/simulation/path_movers.h"
+#include "game_demo/game/sensor_bars.h"
 #include "game_demo/gui_parts.h"
 
 #include <algorithm>
@@ -39,6 +40,31 @@ ecs::Entity sensor_in(const GameWorld& world, const scene::GameArea& area, vec3 
             }
         });
     return found;
+}
+
+// Of a colour, by which it is told without the colour, too. `radius`: in units of the text.
+void draw_shape(vec3 threshold, ImVec2 centre, float radius) {
+    ImGui::GetWindowDrawList()->AddNgonFilled(centre, radius * unit(), colour_of(threshold), corners_of(threshold));
+}
+
+constexpr float bar_pitch = 0.95f; // from one bar's top to the next one's, in units of the text
+
+// What is counted against the sensor is shown faint, behind what counts. `named`: it begins with its colour's shape.
+void draw_bar(const SensorBar& bar, bool named, ImVec2 at) {
+    vec3 channel(0.0f);
+    channel[bar.channel] = 1.0f;
+    const float high = 0.65f * unit(), wide = 9.0f * unit(), left = at.x + 1.0f * unit();
+    const float top = at.y + 0.5f * (bar_pitch * unit() - high);
+    const auto x_of = [&](float share) { return left + wide * std::min(share / scene::sensor_gauge_end, 1.0f); };
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (named)
+        draw_shape(channel, {at.x + 0.35f * unit(), top + 0.5f * high}, 0.38f);
+    const ImU32 colour = colour_of(channel), faint = (colour & ~IM_COL32_A_MASK) | (ImU32(80) << IM_COL32_A_SHIFT);
+    list->AddRectFilled({left, top}, {left + wide, top + high}, IM_COL32(40, 40, 40, 200));
+    list->AddRectFilled({left, top}, {x_of(bar.gets), top + high}, faint);
+    list->AddRectFilled({left, top}, {x_of(bar.counts()), top + high}, colour);
+    const float enough = x_of(1.0f), over = 0.12f * unit();
+    list->AddLine({enough, top - over}, {enough, top + high + over}, IM_COL32(255, 255, 255, 255), 0.12f * unit());
 }
 
 void text_window(const char* name, const std::string& text, float y, float alpha) {
@@ -146,7 +172,7 @@ void GameSession::draw_title() const {
         text_window("area hint", area.hint, 0.80f, 0.65f);
 }
 
-// Shape, name and share of the room's sensor: a bar with a line where it is enough.
+// The room's sensor: its shape, and a bar for each colour that it needs, with a line where it is enough.
 void GameSession::draw_sensor() const {
     const scene::GameArea& area = *world_->area();
     const ecs::Registry& registry = world_->registry();
@@ -156,26 +182,19 @@ void GameSession::draw_sensor() const {
         return;
     const auto& sensor = registry.get<scene::LightSensor>(entity);
     const auto& reading = registry.get<scene::SensorReading>(entity);
+    const std::vector<SensorBar> bars = sensor_bars(sensor, reading);
     place_next(0.02f, 0.97f, 0.0f, 1.0f);
     ImGui::SetNextWindowBgAlpha(0.5f);
     ImGui::Begin("sensor", nullptr, behind);
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImU32 colour = colour_of(sensor.threshold);
-    list->AddNgonFilled(ImVec2(at.x + 0.8f * unit(), at.y + 0.8f * unit()), 0.7f * unit(), colour,
-                        corners_of(sensor.threshold));
-    const float left = at.x + 2.0f * unit(), wide = 9.0f * unit(), top = at.y + 0.35f * unit(), high = 0.9f * unit();
-    const float full = scene::sensor_gauge_end;
-    const auto x_of = [&](float share) { return left + wide * std::min(share / full, 1.0f); };
-    list->AddRectFilled(ImVec2(left, top), ImVec2(left + wide, top + high), IM_COL32(40, 40, 40, 200));
-    list->AddRectFilled(ImVec2(left, top), ImVec2(x_of(reading.share), top + high), colour);
-    list->AddLine(ImVec2(x_of(1.0f), top - 0.2f * unit()), ImVec2(x_of(1.0f), top + high + 0.2f * unit()),
-                  IM_COL32(255, 255, 255, 255), 0.12f * unit());
-    ImGui::Dummy(ImVec2(11.5f * unit(), 1.6f * unit()));
-    if (reading.open)
-        ImGui::TextUnformatted("open");
-    else
-        ImGui::Text("gets %.0f %% of the light that it needs", double(100.0f * reading.share));
+    const float height = std::max(1.6f, bar_pitch * float(bars.size())) * unit();
+    draw_shape(sensor.threshold, {at.x + 0.8f * unit(), at.y + 0.5f * height}, 0.7f);
+    for (std::size_t i = 0; i < bars.size(); ++i)
+        draw_bar(
+            bars[i], bars.size() > 1,
+            {at.x + 2.0f * unit(), at.y + 0.5f * height + (float(i) - 0.5f * float(bars.size())) * bar_pitch * unit()});
+    ImGui::Dummy(ImVec2(12.0f * unit(), height));
+    ImGui::TextUnformatted(sensor_words(sensor, reading).c_str());
     ImGui::End();
 }
 

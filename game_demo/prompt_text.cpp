@@ -33,7 +33,7 @@ std::string prompt_text(const DemoSettings& settings, simulation::Interaction in
 
 const char* help_text(bool is_game) {
     return is_game ? "In each room an eye looks at a wall. The door opens once enough light of the eye's\n"
-                     "colours comes back from there; the bar below shows how much does. Carry the lantern,\n"
+                     "colours comes back from there; the bars below show how much does. Carry the lantern,\n"
                      "slide panels, open shutters, push the block. The pause menu has a hint, and puts\n"
                      "a room back as it was."
                    : "Walk into balls and crates to push them. The lift in the green room\n"

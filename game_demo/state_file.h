@@ -30,8 +30,8 @@ public:
     StateFile(const StateFile&) = delete;
     StateFile& operator=(const StateFile&) = delete;
 
-    // Hands over what `take` returns, which is not called without a file. States that the thread did not get to are left
-    // out, but for the newest. An error is that of an earlier write.
+    // Hands over what `take` returns, which is not called without a file. States that the thread did not get to are
+    // left out, but for the newest. An error is that of an earlier write.
     Status write(const std::function<GameState()>& take);
     // Waits until the newest state is written.
     Status finish();
@@ -41,10 +41,10 @@ private:
     Status write_now(const GameState& state, double frame_ms);
 
     const std::string path_;
-    std::string written_;    // the thread's
-    double spent_ms_ = 0.0;  // in write()
+    std::string written_;     // the thread's
+    double spent_ms_ = 0.0;   // in write()
     std::uint64_t taken_ = 0; // states
-    std::mutex mutex_; // of what follows
+    std::mutex mutex_;        // of what follows
     std::condition_variable changed_;
     std::optional<GameState> waiting_;
     double frame_ms_ = 0.0; // that a frame spent in write(), in the mean
