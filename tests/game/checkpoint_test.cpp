@@ -10,6 +10,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 namespace sunfleck::demo {
 namespace {
@@ -43,6 +44,45 @@ TEST(GameCheckpoints, AWorldIsTheSameAfterLoading) {
     EXPECT_EQ(hash_of(other), hash_of(played));
     EXPECT_EQ(other.world->area_entity(), played.world->area_entity());
     EXPECT_EQ(other.world->simulation().carries_lantern(), played.world->simulation().carries_lantern());
+}
+
+// Saves and loads into a fresh level.
+void expect_the_same_after_loading(Played& played, const std::string& when) {
+    Played other;
+    const Status loaded = load_game(*other.world, "lantern_game", save_game(*played.world, "lantern_game"));
+    ASSERT_TRUE(loaded) << when << ": " << loaded.error().message;
+    EXPECT_EQ(hash_of(other), hash_of(played)) << when;
+    EXPECT_EQ(other.world->area_entity(), played.world->area_entity()) << when;
+    EXPECT_EQ(other.world->sensors_opened(), played.world->sensors_opened()) << when;
+}
+
+// All along the solution: in each room that it enters, and while the block is under way.
+TEST(GameCheckpoints, EveryRoomAndAHalfPushedBlockAreTheSameAfterLoading) {
+    Played played;
+    const ecs::Entity block = scene::find_by_name(played.registry, "green block");
+    const auto place = [&] { return played.registry.get<scene::Transform>(block).position; };
+    const float half_side =
+        0.5f * played.meshes.bounds(played.registry.get<scene::MeshInstance>(block).mesh).extent().x;
+    const vec3 start = place();
+    vec3 before = start;
+    ecs::Entity area = played.world->area_entity();
+    std::size_t rooms = 0;
+    bool pushed = false;
+    played.watch = [&] {
+        if (std::exchange(area, played.world->area_entity()) != area) {
+            ++rooms;
+            expect_the_same_after_loading(played, played.world->area()->title);
+        }
+        const bool moves = std::exchange(before, place()) != place();
+        if (!pushed && moves && glm::length(place() - start) > half_side) {
+            pushed = true;
+            expect_the_same_after_loading(played, "the block under way");
+        }
+    };
+    played.solve();
+    EXPECT_EQ(played.problem, "");
+    EXPECT_EQ(rooms, 7u);
+    EXPECT_TRUE(pushed);
 }
 
 // Files are from the future then; which of the two is newer, their names say.

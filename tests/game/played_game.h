@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 
 namespace sunfleck::tests {
@@ -37,6 +38,8 @@ struct Played {
             });
         milliseconds = std::max(milliseconds, world->sensors().milliseconds());
         sum_of_milliseconds += world->sensors().milliseconds();
+        if (watch)
+            watch();
     }
 
     // The person stands at the entry of the area of this name, with the lantern in hand.
@@ -65,6 +68,7 @@ struct Played {
     std::map<std::string, float> most; // share that each sensor read at most
     std::string problem;
     double milliseconds = 0.0, sum_of_milliseconds = 0.0;
+    std::function<void()> watch; // called after each step
 };
 
 // Goes about without aim.
