@@ -16,7 +16,8 @@ FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, doubl
     double gpu_ms = 0.0; // where the GPU works beside the CPU, whichever takes longer counts
     for (const auto& [pass, milliseconds] : level.renderer().statistics().gpu_ms)
         gpu_ms += milliseconds;
-    const FrameQuality quality = control_.next(std::max(work_ms_, gpu_ms), now, turns || level.moves());
+    const FrameQuality quality =
+        control_.next(std::max(work_ms_, gpu_ms), now, control_.on() && (turns || level.moves()));
     level.set_map_budget(quality.maps);
     if (control_.out_of_reach() && std::exchange(told_of_, target) != target)
         message_ = "Frames of " + std::to_string(std::lround(target)) +

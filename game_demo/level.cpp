@@ -3,6 +3,7 @@
 #include "engine/core/log.h"
 #include "engine/core/user_folders.h"
 #include "engine/ecs/world_copy.h"
+#include "game_demo/in_sight.h"
 #include "game_demo/presets.h"
 #include "viewer/built_in_scenes.h"
 #include "viewer/exposure.h"
@@ -74,6 +75,18 @@ void Level::restart() {
     ecs::copy_world(start_, renderer_->registry());
     note_sensors(game_->restart());
     interpolation_.forget();
+}
+
+bool Level::moves() const {
+    if (interpolation_.eye_moves())
+        return true;
+    const vec3 eye = renderer_->space().point(interpolation_.eye(game_->simulation(), {}).position);
+    const std::vector<ecs::Entity> moved = interpolation_.moved();
+    return std::any_of(moved.begin(), moved.end(), [&](ecs::Entity entity) {
+        const scene::DrawItem* item = renderer_->gpu_scene().find(entity);
+        return gives_light(renderer_->registry(), entity) ||
+               (item != nullptr && in_sight(renderer_->rays(), eye, entity, item->bounds));
+    });
 }
 
 Status Level::update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment) {

@@ -56,8 +56,9 @@ public:
     void restart();
     // The world was put elsewhere, by a checkpoint: there is no way from where it was.
     void jumped() { interpolation_.forget(); }
-    // Whether the last step moved anything, or the person's view.
-    bool moves() const { return interpolation_.moves(); }
+    // Whether the last step moved the person's view, a lamp, or anything in sight: where not, lifts far off go on, but
+    // the picture is at rest. What is in sight is known since the first frame.
+    bool moves() const;
     // viewer::SceneRenderer::update with what moves between the last two steps at that moment; the simulation is what
     // it was afterwards.
     Status update(const viewer::FrameRequest& request, const simulation::DrawnMoment& moment);

@@ -125,8 +125,12 @@ void StepInterpolation::find_carried(ecs::Registry& registry, const Simulation& 
     std::erase_if(moved_, [&](const Motion& motion) { return hangs_on(registry, motion.entity, root); });
 }
 
-bool StepInterpolation::moves() const {
-    return !moved_.empty() || before_ != now_;
+std::vector<ecs::Entity> StepInterpolation::moved() const {
+    std::vector<ecs::Entity> entities;
+    entities.reserve(moved_.size());
+    for (const Motion& motion : moved_)
+        entities.push_back(motion.entity);
+    return entities;
 }
 
 DrawnEye StepInterpolation::eye(const Simulation& simulation, const DrawnMoment& moment) const {

@@ -48,8 +48,9 @@ public:
     // The world was exchanged (restart, checkpoint, reset of a room): the next step has none before it.
     void forget();
 
-    // Whether anything, or the eye, moved in the last step.
-    bool moves() const;
+    // Whether the eye moved in the last step; and what else did, but for what is carried, which moves with the eye.
+    bool eye_moves() const { return before_ != now_; }
+    std::vector<ecs::Entity> moved() const;
     DrawnEye eye(const Simulation& simulation, const DrawnMoment& moment) const;
     // Sets the world transforms of what moved to their place at that moment; what is carried keeps its place before the
     // eye. To be undone before the next step, and before anything but drawing looks at them.

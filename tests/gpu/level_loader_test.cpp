@@ -68,6 +68,38 @@ TEST_F(LevelLoaderTest, ARestartedWorldIsAFreshOne) {
     EXPECT_EQ(play(150), std::vector<std::uint64_t>(fresh.begin(), fresh.begin() + 2));
 }
 
+// Lifts far off never rest; what a player who stands still sees does, until its door opens.
+TEST_F(LevelLoaderTest, WhatIsOutOfSightMovesNoPicture) {
+    auto loaded = demo::Level::load(device(), {"lantern_game"}, small_settings(), 2);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    demo::Level& level = **loaded;
+    ASSERT_TRUE(level.renderer().render_and_wait(level.request(small_settings(), 64, 36)));
+    const auto stand = [&](const char* area) {
+        const ecs::Entity entity = scene::find_by_name(level.game().registry(), area);
+        const auto& described = level.game().registry().get<scene::GameArea>(entity);
+        const vec3 centre(scene::world_matrix(level.game().registry(), entity)[3]);
+        level.simulation().place_player(centre + described.entry, described.entry_facing);
+        for (int k = 0; k < 90; ++k) // doors behind and before come to rest
+            level.step({});
+    };
+    stand("area porch");
+    for (int k = 0; k < 60; ++k) {
+        level.step({});
+        ASSERT_FALSE(level.moves()) << "step " << k;
+    }
+    simulation::StepInput turn;
+    turn.turn = 20;
+    level.step(turn);
+    EXPECT_TRUE(level.moves());
+    stand("area tower");
+    int moving = 0; // the lift rests at its ends
+    for (int k = 0; k < 14 * 60; ++k) {
+        level.step({});
+        moving += level.moves() ? 1 : 0;
+    }
+    EXPECT_GT(moving, 2 * 60);
+}
+
 // A level whose device is lost goes on, on another one, with the world that it had.
 TEST_F(LevelLoaderTest, AMovedLevelHasTheSameWorld) {
     auto level = demo::Level::load(device(), {"lantern_house"}, small_settings(), 2);
