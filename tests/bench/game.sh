@@ -47,7 +47,7 @@ part() {
         failed=1
         echo "$1: FAILED after $((SECONDS - began)) s, see $log"
     fi
-    grep -E '^(worst|[a-z ]+: [0-9.]+ of its|[0-9]+ steps)' "$log" | sed 's/^/    /'
+    grep -E '^(worst|[a-z ]+: [0-9.]+ of its|[0-9]+ (steps|rays))' "$log" | sed 's/^/    /'
 }
 
 for name in "${parts[@]}"; do
