@@ -143,7 +143,7 @@ std::vector<Watched> sensors_that_close_again(Played& played) {
 }
 
 TEST(Game, SensorsAgreeWithThePathTracer) {
-    const std::uint32_t states = tests::by_size(4u, 200u);
+    const std::uint32_t states = tests::by_game_size(4u, 20u, 200u);
     Played played;
     std::vector<ecs::Entity> areas;
     played.registry.view<scene::GameArea>().each([&](ecs::Entity entity, const scene::GameArea& area) {
@@ -187,7 +187,8 @@ TEST(Game, SensorsAgreeWithThePathTracer) {
 }
 
 TEST(Game, AimlessPlayersCannotBreakIt) {
-    const std::uint32_t players = tests::by_size(1u, 50u), steps = tests::by_size(1800u, 36000u);
+    const std::uint32_t players = tests::by_game_size(1u, 3u, 50u);
+    const std::uint32_t steps = tests::by_game_size(1800u, 36000u, 36000u);
     for (std::uint32_t player = 1; player <= players; ++player) {
         if (!tests::in_part(player))
             continue;
@@ -204,9 +205,10 @@ TEST(Game, AimlessPlayersCannotBreakIt) {
         played.step(reset);
         played.hashes.clear();
         // In the short size, half a minute of what is left to do.
-        played.solve(tests::by_size<std::uint64_t>(steps_a_minute / 2, 15 * steps_a_minute));
+        const std::uint64_t rest = 15 * steps_a_minute;
+        played.solve(tests::by_game_size(steps_a_minute / 2, rest, rest));
         EXPECT_EQ(played.problem, "") << "player " << player;
-        EXPECT_TRUE(played.world->finished() || !tests::long_size()) << "player " << player;
+        EXPECT_TRUE(played.world->finished() || tests::by_game_size(true, false, false)) << "player " << player;
     }
 }
 

@@ -5,15 +5,28 @@
 #include "engine/core/random.h"
 #include "engine/ecs/world_copy.h"
 #include "game_demo/game/solution.h"
+#include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <map>
+#include <string_view>
 
 namespace sunfleck::tests {
 
 inline constexpr std::uint64_t steps_a_minute = 3600;
+
+// Between the two sizes there is a third one, of minutes, for whoever changes the game: ./run test -R game.
+inline bool share_size() {
+    const char* size = std::getenv("SUNFLECK_TEST_SIZE");
+    return size != nullptr && std::string_view(size) == "share";
+}
+template <typename T>
+T by_game_size(T in_short, T in_share, T in_long) {
+    return share_size() ? in_share : by_size(in_short, in_long);
+}
 
 struct Played {
     explicit Played(const gi::SensorSettings& settings = {}, bool white_panels = false) {
