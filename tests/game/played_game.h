@@ -95,6 +95,9 @@ inline simulation::StepInput aimless(std::uint32_t seed, std::uint32_t step) {
     const float act = to_unit_float(hash_combine(seed, 7919u + step));
     if (act < 0.022f)
         input.buttons = act < 0.02f ? simulation::button_use : simulation::button_put_down;
+    const float haste = to_unit_float(hash_combine(stride, 5));
+    if (haste < 0.3f)
+        input.buttons |= haste < 0.15f ? simulation::button_run : simulation::button_crouch;
     return input;
 }
 
