@@ -28,7 +28,7 @@ struct Trace {
 };
 
 // Nothing if it does not stand there, or is too low for a wall.
-std::optional<Trace> trace_of(const ChartRectangle& chart, const Polygon& polygon, double least_height,
+std::optional<Trace> trace_of(const ChartRectangle& chart, std::span<const dvec3> polygon, double least_height,
                               double standing) {
     Trace trace;
     double highest = -1e300;
@@ -97,7 +97,7 @@ ChartCuts find_chart_cuts(const ChartRectangle& chart, const StaticBlockers& blo
     bounds.minimum -= vec3(float(standing));
     bounds.maximum += vec3(float(standing));
     std::vector<Foot> on_u, on_v;
-    blockers.visit_polygons(bounds, [&](const Polygon& polygon) {
+    blockers.visit_polygons(bounds, [&](std::span<const dvec3> polygon) {
         const std::optional<Trace> trace = trace_of(chart, polygon, 2.0 * smallest, standing);
         if (!trace)
             return;

@@ -96,7 +96,7 @@ std::vector<Plane> planes_of_convex_body(const FlatMesh& mesh) {
     std::vector<Plane> planes;
     for (const PlanarFace& face : mesh.faces) {
         const dvec3 inward = -face.normal;
-        planes.push_back({inward, -glm::dot(inward, mesh.corner(face.triangles[0], 0))});
+        planes.push_back({inward, -glm::dot(inward, mesh.corner(mesh.triangles(face)[0], 0))});
     }
     const double tolerance = 1e-6 * std::sqrt(mesh.area);
     for (const Plane& plane : planes)

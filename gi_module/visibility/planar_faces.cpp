@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace sunfleck::gi {
 namespace {
@@ -85,6 +86,23 @@ Polygon hull_of(std::vector<Flat> points) {
     return polygon;
 }
 
+constexpr std::uint32_t nowhere = 0xffffffffu;
+
+// `face_of`: each triangle's face, or nowhere. The faces know how many triangles they have.
+void sort_by_face(FlatMesh& flat, std::span<const std::uint32_t> face_of) {
+    std::uint32_t sum = 0;
+    for (PlanarFace& face : flat.faces) {
+        face.first = sum;
+        sum += std::exchange(face.count, 0);
+    }
+    flat.by_face.resize(sum);
+    for (std::uint32_t t = 0; t < face_of.size(); ++t)
+        if (face_of[t] != nowhere) {
+            PlanarFace& face = flat.faces[face_of[t]];
+            flat.by_face[face.first + face.count++] = t;
+        }
+}
+
 } // namespace
 
 FlatMesh find_planar_faces(const scene::Mesh& mesh, const mat4& matrix) {
@@ -122,19 +140,21 @@ FlatMesh find_planar_faces(const scene::Mesh& mesh, const mat4& matrix) {
                 sets.join(edges[first].triangle, edges[end].triangle);
         flat.closed = flat.closed && end == first + 2 && edges[first].forward != edges[first + 1].forward;
     }
-    std::vector<std::uint32_t> face_of(count, 0xffffffffu);
+    std::vector<std::uint32_t> face_of(count, nowhere), face_of_set(count, nowhere);
     for (std::uint32_t t = 0; t < count; ++t) {
         if (!(areas[t] > 1e-16))
             continue;
-        std::uint32_t& face = face_of[sets.find(t)];
-        if (face == 0xffffffffu) {
+        std::uint32_t& face = face_of_set[sets.find(t)];
+        if (face == nowhere) {
             face = std::uint32_t(flat.faces.size());
-            flat.faces.push_back({normals[t], {}, 0.0});
+            flat.faces.push_back({normals[t]});
         }
-        flat.faces[face].triangles.push_back(t);
+        face_of[t] = face;
+        ++flat.faces[face].count;
         flat.faces[face].area += areas[t];
         flat.area += areas[t];
     }
+    sort_by_face(flat, face_of);
     return flat;
 }
 
@@ -143,7 +163,7 @@ std::vector<Polygon> convex_pieces(const FlatMesh& mesh, const PlanarFace& face)
     orthonormal_basis(vec3(face.normal), tangent, bitangent);
     std::vector<Flat> points;
     std::vector<Polygon> triangles;
-    for (const std::uint32_t t : face.triangles) {
+    for (const std::uint32_t t : mesh.triangles(face)) {
         Polygon triangle;
         for (int k = 0; k < 3; ++k) {
             const dvec3 p = mesh.corner(t, k);

@@ -26,13 +26,14 @@ std::uint32_t StaticBlockers::add(const FlatMesh& mesh, bool porous) {
     for (const dvec3& position : mesh.positions)
         whole.add(vec3(position));
     for (const PlanarFace& face : mesh.faces)
-        for (Polygon& polygon : convex_pieces(mesh, face)) {
+        for (const Polygon& polygon : convex_pieces(mesh, face)) {
             Bounds bounds;
             for (const dvec3& point : polygon)
                 bounds.add(vec3(point));
             bounds_.push_back(bounds);
             normals_.push_back(area_vector(polygon));
-            polygons_.push_back(std::move(polygon));
+            corners_.insert(corners_.end(), polygon.begin(), polygon.end());
+            ends_.push_back(corners_.size());
             body_of_.push_back(body);
             porous_.push_back(porous ? 1 : 0);
             sizes_.push_back(porous ? 0.0f : glm::length((body != no_body ? whole : bounds).extent()));
@@ -41,7 +42,7 @@ std::uint32_t StaticBlockers::add(const FlatMesh& mesh, bool porous) {
 }
 
 bool StaticBlockers::build(const std::function<bool(float)>& progress) {
-    order_.resize(polygons_.size());
+    order_.resize(polygons());
     std::iota(order_.begin(), order_.end(), 0u);
     nodes_.clear();
     Watch watch{progress};
@@ -205,8 +206,8 @@ bool is_inside(const OcclusionPyramid& pyramid, const Bounds& bounds) {
 } // namespace
 
 bool StaticBlockers::any_enters(const OcclusionPyramid& pyramid, std::uint32_t own_body, LikelyBlockers* likely) const {
-    const auto enters_it = [&](std::uint32_t polygon) {
-        return (own_body == no_body || body_of_[polygon] != own_body) && enters(pyramid, polygons_[polygon]);
+    const auto enters_it = [&](std::uint32_t index) {
+        return (own_body == no_body || body_of_[index] != own_body) && enters(pyramid, polygon(index));
     };
     if (likely != nullptr && likely->any(enters_it))
         return true;
@@ -263,7 +264,7 @@ bool StaticBlockers::visit_crossing(dvec3 from, dvec3 along, const Matters& matt
         return enter <= leave && matters(node);
     };
     return visit_leaves(meets, [&](std::uint32_t index) {
-        const Polygon& polygon = polygons_[index];
+        const std::span<const dvec3> polygon = this->polygon(index);
         const dvec3 normal = normals_[index];
         const double slope = glm::dot(normal, along);
         if (std::abs(slope) < 1e-14)
@@ -284,15 +285,16 @@ bool StaticBlockers::crosses_segment(dvec3 from, dvec3 along) const {
         from, along, [](const Node&) { return true; }, [](std::uint32_t) { return true; });
 }
 
-void StaticBlockers::visit_polygons(const Bounds& bounds, const std::function<void(const Polygon&)>& visit) const {
+void StaticBlockers::visit_polygons(const Bounds& bounds,
+                                    const std::function<void(std::span<const dvec3>)>& visit) const {
     const auto is_near = [&](const Bounds& other) {
         return glm::all(glm::lessThanEqual(other.minimum, bounds.maximum)) &&
                glm::all(glm::lessThanEqual(bounds.minimum, other.maximum));
     };
     visit_leaves([&](const Node& node) { return is_near(node.bounds); },
-                 [&](std::uint32_t polygon) {
-                     if (!porous_[polygon] && is_near(bounds_[polygon]))
-                         visit(polygons_[polygon]);
+                 [&](std::uint32_t index) {
+                     if (!porous_[index] && is_near(bounds_[index]))
+                         visit(polygon(index));
                      return false;
                  });
 }
@@ -316,10 +318,10 @@ bool StaticBlockers::covers(const OcclusionPyramid& pyramid) const {
         const double distance = double(glm::length(glm::clamp(apex, bounds.minimum, bounds.maximum) - apex));
         return double(node.largest) >= least * distance * 0.999;
     };
-    return visit_crossing(middle, along, large_enough, [&](std::uint32_t polygon) {
-        const std::uint32_t body = body_of_[polygon];
-        return !porous_[polygon] &&
-               (covers_gate(pyramid, polygons_[polygon]) || (body != no_body && covers_gate(pyramid, bodies_[body])));
+    return visit_crossing(middle, along, large_enough, [&](std::uint32_t index) {
+        const std::uint32_t body = body_of_[index];
+        return !porous_[index] &&
+               (covers_gate(pyramid, polygon(index)) || (body != no_body && covers_gate(pyramid, bodies_[body])));
     });
 }
 

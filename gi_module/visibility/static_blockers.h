@@ -55,8 +55,8 @@ public:
     // Whether anything crosses the segment from `from` to `from + along`.
     bool crosses_segment(dvec3 from, dvec3 along) const;
     // Calls `visit` with all polygons near a box that are not porous.
-    void visit_polygons(const Bounds& bounds, const std::function<void(const Polygon&)>& visit) const;
-    std::size_t polygons() const { return polygons_.size(); }
+    void visit_polygons(const Bounds& bounds, const std::function<void(std::span<const dvec3>)>& visit) const;
+    std::size_t polygons() const { return bounds_.size(); }
 
 private:
     struct Node {
@@ -83,7 +83,13 @@ private:
     template <typename Matters, typename Visit>
     bool visit_crossing(dvec3 from, dvec3 along, const Matters& matters, const Visit& visit) const;
 
-    std::vector<Polygon> polygons_;
+    // Its corners.
+    std::span<const dvec3> polygon(std::uint32_t index) const {
+        return {corners_.data() + ends_[index], corners_.data() + ends_[index + 1]};
+    }
+
+    std::vector<dvec3> corners_; // of all polygons, one after another: millions of vectors would be as many pieces
+    std::vector<std::size_t> ends_ = {0};    // where each polygon begins in there, and the last one ends
     std::vector<std::vector<Plane>> bodies_; // convex closed bodies, by their planes (inside is positive)
     std::vector<std::uint32_t> body_of_;     // of a polygon; no_body: none
     std::vector<std::uint8_t> porous_;       // of polygons

@@ -16,7 +16,7 @@ constexpr double octants_from = 0.5; // m: boxes larger than this are divided in
 ChartRectangle enclose(const FlatMesh& mesh, const PlanarFace& face, dvec3 normal) {
     ChartRectangle chart;
     std::vector<dvec3> points;
-    for (const std::uint32_t t : face.triangles)
+    for (const std::uint32_t t : mesh.triangles(face))
         for (int k = 0; k < 3; ++k)
             points.push_back(mesh.corner(t, k));
     const std::vector<Polygon> pieces = convex_pieces(mesh, face);
