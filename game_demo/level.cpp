@@ -64,7 +64,7 @@ Status Level::move_to(gpu::Device& device, std::uint32_t frames_in_flight) {
     renderer->lighting().set_cache_folder(user_cache_folder());
     SUNFLECK_TRY(renderer->lighting().set_settings(wanted_));
     SUNFLECK_TRY(renderer->take_scene(renderer_->copy_scene(viewer::SceneRenderer::CopyOf::all)));
-    SUNFLECK_TRY(game_->continue_with(renderer->registry(), renderer->meshes(), &renderer->textures()));
+    game_->continue_with(renderer->registry(), renderer->meshes(), &renderer->textures());
     changes_ = std::make_unique<viewer::LightingChanges>(device); // the one before draws with the renderer before
     interpolation_.forget();
     renderer_ = std::move(renderer);

@@ -43,13 +43,12 @@ Result<std::unique_ptr<GameWorld>> GameWorld::create(ecs::Registry& registry, co
     return world;
 }
 
-Status GameWorld::continue_with(ecs::Registry& registry, const scene::MeshStore& meshes,
-                                const scene::TextureStore* textures) {
-    SUNFLECK_TRY(renew_sensors());
+void GameWorld::continue_with(ecs::Registry& registry, const scene::MeshStore& meshes,
+                              const scene::TextureStore* textures) {
+    sensors_->continue_with(registry, meshes, textures);
     registry_ = &registry;
     meshes_ = &meshes;
     textures_ = textures;
-    return {};
 }
 
 // Sensors know the level before its first step.

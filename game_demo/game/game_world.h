@@ -15,8 +15,8 @@ public:
                                                      const gi::SensorSettings& settings = {});
 
     // From now on the level is that of another registry, which holds the same: entities, components, and what they are
-    // made of. Light sensors follow all of their paths once more. An error: why they can't, and nothing has changed.
-    Status continue_with(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
+    // made of. The game goes on as if nothing had happened, to the bit.
+    void continue_with(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
     // The registry holds the freshly loaded level once more, with the same entities: from now on the game is as one
     // that was just created, to the bit. An error: readings of sensors stay as they were.
     Status restart();

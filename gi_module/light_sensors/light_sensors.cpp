@@ -71,6 +71,7 @@ Result<std::unique_ptr<LightSensors>> LightSensors::create() {
     std::unique_ptr<LightSensors> sensors(new LightSensors());
     SUNFLECK_ASSIGN(sensors->rays_scene_, raytrace::RayScene::create());
     sensors->scene_.rays = sensors->rays_scene_.get();
+    sensors->tracker_ = std::make_unique<scene::ChangeTracker>();
     return sensors;
 }
 
@@ -85,7 +86,7 @@ Status LightSensors::set_settings(const SensorSettings& settings) {
 Status LightSensors::step(ecs::Registry& registry, const scene::MeshStore& meshes,
                           const scene::TextureStore* textures) {
     const auto start = std::chrono::steady_clock::now();
-    const scene::SceneChanges& changes = tracker_.collect(registry, meshes);
+    const scene::SceneChanges& changes = tracker_->collect(registry, meshes);
     SUNFLECK_TRY(rays_scene_->update(changes, meshes, textures));
     find_sensors(registry);
     mark_changes(registry, meshes, changes);
@@ -94,6 +95,14 @@ Status LightSensors::step(ecs::Registry& registry, const scene::MeshStore& meshe
     write_readings(registry);
     milliseconds_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return {};
+}
+
+// What the new tracker would list is known: all that there is.
+void LightSensors::continue_with(ecs::Registry& registry, const scene::MeshStore& meshes,
+                                 const scene::TextureStore* textures) {
+    tracker_ = std::make_unique<scene::ChangeTracker>();
+    tracker_->collect(registry, meshes);
+    rays_scene_->continue_with(meshes, textures);
 }
 
 std::size_t LightSensors::pending() const {

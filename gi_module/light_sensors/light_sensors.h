@@ -39,6 +39,9 @@ public:
 
     // Follows the registry and writes the readings. Sensors that are new, or were moved, are evaluated at once.
     Status step(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures = nullptr);
+    // From now on the world is another registry with other stores, which hold the same entities, meshes and textures:
+    // readings go on as if nothing had happened. World transforms must be up to date.
+    void continue_with(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
     // All paths are followed once more in the next step, whatever it costs: after a world was loaded.
     void forget() { forget_ = true; }
 
@@ -83,7 +86,7 @@ private:
     void write_readings(ecs::Registry& registry) const;
 
     std::unique_ptr<raytrace::RayScene> rays_scene_;
-    scene::ChangeTracker tracker_;
+    std::unique_ptr<scene::ChangeTracker> tracker_;
     SensorSettings settings_;
     SensorScene scene_;
     std::vector<Emitter> emitters_; // of the last step

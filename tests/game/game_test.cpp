@@ -103,6 +103,28 @@ TEST(Game, ARestartedWorldIsAsAFreshOne) {
     EXPECT_EQ(restarted.hashes, fresh.hashes);
 }
 
+// As after a lost device: the level lives on as a copy, with another store of meshes, while paths of its sensors wait
+// to be followed once more.
+TEST(Game, AWorldThatMovedIsAsOneThatStayed) {
+    constexpr std::size_t least = 400, most = 700, steps = 900;
+    const Played other; // its meshes are the same
+    ecs::Registry copy;
+    Played stayed, moved;
+    stayed.solve(steps);
+    Solution solution(*moved.world);
+    while (moved.hashes.size() < least || moved.world->sensors().pending() == 0) {
+        ASSERT_LT(moved.hashes.size(), most) << "nothing waits";
+        moved.step(solution.next());
+    }
+    ecs::copy_world(moved.registry, copy);
+    moved.world->continue_with(copy, other.meshes, nullptr);
+    while (moved.hashes.size() < steps) {
+        ASSERT_TRUE(moved.world->step(solution.next()));
+        moved.hashes.push_back(moved.world->simulation().world_hash(copy));
+    }
+    EXPECT_EQ(moved.hashes, stayed.hashes);
+}
+
 TEST(Game, TheWorldIsTheSameOnOneThreadAndOnTwo) {
     const std::uint64_t steps = tests::by_size<std::uint64_t>(900, 15 * steps_a_minute);
     std::vector<std::uint64_t> hashes[2];
