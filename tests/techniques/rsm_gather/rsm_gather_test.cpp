@@ -1,7 +1,7 @@
 // Light gathered from reflective shadow maps: with each texel it is the sum of all pixel lights, with some of them it
 // is that in the mean over seeds.
 #include "gi_module/rsm_gather/rsm_gather_technique.h"
-#include "tests/support/gpu_world.h"
+#include "tests/support/summed_pixel_lights.h"
 #include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
 
@@ -27,47 +27,6 @@ protected:
     }
 };
 
-// By a program of its own, from rays through the pixels' centres. Pixels whose centre lies on an edge may show another
-// surface.
-std::vector<vec3> summed_light(GpuWorld& world, const std::vector<gi::PixelLight>& lights, float clamp_scale) {
-    const viewer::FrameRequest& request = world.request;
-    const shared::CameraRow camera =
-        scene::make_camera_row(world.renderer->space().view(request.camera), request.width, request.height);
-    std::vector<vec3> sums(std::size_t(request.width) * request.height, vec3(0.0f));
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const std::size_t row = i / request.width;
-        const vec2 centre(float(i % request.width) + 0.5f, float(row) + 0.5f);
-        const raytrace::Ray ray{vec3(camera.position), shared::camera_ray(camera, centre), 0.0f, 1e30f};
-        const auto hit = world.renderer->rays().closest_hit(ray);
-        if (!hit)
-            continue;
-        const raytrace::SurfacePoint point = world.renderer->rays().surface(ray, *hit);
-        const float side = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? 1.0f : -1.0f;
-        for (const gi::PixelLight& light : lights) {
-            const vec3 way = light.position - point.position;
-            const float squared = glm::dot(way, way), arriving = side * glm::dot(point.shading_normal, way);
-            // Softened by 0.6 of the width of a square of its area.
-            const float soft = 0.36f * light.area * 2.0f / clamp_scale, along = -glm::dot(light.normal, way);
-            if (arriving > 0.0f && along > 0.0f && side * glm::dot(point.geometric_normal, way) > 0.0f)
-                sums[i] += light.flux / pi * std::sqrt(along * along + soft) * arriving /
-                           ((squared + soft) * (squared + soft));
-        }
-    }
-    return sums;
-}
-
-double share_of_equal_pixels(const io::Picture& picture, const std::vector<vec3>& expected) {
-    std::size_t equal = 0, all = 0;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        if (picture.pixels[i].w <= 0.0f)
-            continue;
-        ++all;
-        equal += glm::length(vec3(picture.pixels[i]) - expected[i]) <= 0.003f * glm::length(expected[i]) + 1e-5f;
-    }
-    return double(equal) / double(all);
-}
-
-// Pictures, and fluxes in maps, have 16 bits a channel, 0.1 %.
 TEST_F(RsmGather, WithEveryTexelIsTheSumOfAllPixelLights) {
     for (const auto make : {assets::make_cornell, assets::make_arena}) {
         GpuWorld world(make, "view");
