@@ -1,7 +1,11 @@
 // Two hosts' contexts on one device, each used by a thread of its own at the same time, with the locks that host.h asks
 // for and no more: a host's own for its queue, none for the contexts. Also in the builds with the thread sanitizer.
 #include "tests/support/host_program.h"
+#ifdef __SANITIZE_THREAD__
+#include "tests/support/run_tool.h"
+#endif
 
+#include <filesystem>
 #include <thread>
 
 namespace sunfleck::tests {
@@ -41,6 +45,33 @@ TEST_F(RobustHostThreads, ContextsOnOneDeviceShareNothing) {
     EXPECT_EQ(together[0], alone[0]);
     EXPECT_EQ(together[1], alone[1]);
 }
+
+#ifdef __SANITIZE_THREAD__
+// What host.h forbids: one context, two threads, no lock. Run by the next test alone.
+TEST_F(RobustHostThreads, DISABLED_OneContextWithoutALock) {
+    HostProgram program(device());
+    const OwnedContext context = make_context(program);
+    describe_room(*context);
+    const auto move = [&](float x) {
+        for (int step = 0; step < 100; ++step)
+            (void)context->set_transform(1, box_matrix(vec3(x, 0.6f, 0.01f * float(step)), vec3(0.6f)));
+    };
+    std::thread other(move, -0.5f);
+    move(0.5f);
+    other.join();
+}
+
+// ContextsOnOneDeviceShareNothing can fail: a race in the library is found, at the options that `run` sets.
+TEST_F(RobustHostThreads, ARaceIsFound) {
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe");
+    const Outcome raced = shell("'" + program +
+                                "' --gtest_also_run_disabled_tests "
+                                "--gtest_filter=RobustHostThreads.DISABLED_OneContextWithoutALock");
+    EXPECT_NE(raced.status, 0);
+    EXPECT_NE(raced.output.find("ThreadSanitizer: data race"), std::string::npos) << raced.output;
+    EXPECT_NE(raced.output.find("set_transform"), std::string::npos) << raced.output;
+}
+#endif
 
 } // namespace
 } // namespace sunfleck::tests

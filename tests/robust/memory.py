@@ -5,9 +5,9 @@ Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixel
 32x32 of a host
 Resident memory may grow by less than 1 MiB in the last half, and allocated bytes, as counted by count_allocations.c, by
 none. Both are compared as the least of a tenth of the run with the least of another: what frames in flight hold comes and
-goes. Of allocated bytes that is the least at any moment, not of samples, and one tenth's differs from another's by some
-hundred bytes. Runs of less than 10,000 frames may grow by 64 kB: logs of 4,096 removals and of the times of 4,096 frames
-fill until their last half.
+goes. (The tool's camera goes round in 200 frames, so that each tenth has all of its views.) Of allocated bytes that is
+the least at any moment, not of samples, and one tenth's differs from another's by some hundred bytes. Runs of less than
+10,000 frames may grow by 64 kB: logs of 4,096 removals and of the times of 4,096 frames fill until their last half.
 """
 import mmap
 import os
@@ -65,14 +65,16 @@ def main():
     build, frames = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else "20000"
     runs = {"demo": ["sunfleck_demo", "--headless", "--size", "64x36", "--pictures", "0", "--frames", frames, "-o", "out"],
             "tool": ["sunfleck", "render", "four_pillars", "--size", "64x36", "--lights", "64", "--frames", frames, "--orbit",
-                     "0.25", "-o", "out.png"],
+                     "1.8", "-o", "out.png"],
             "host": ["robust_tests", "--gtest_filter=RobustHostMemory.*"]}
-    wrong = 0
+    wrong, library = 0, build / "lib/libsunfleck_count_allocations.so"
+    if not library.exists():
+        sys.exit(f"{library} is missing: build the target sunfleck_count_allocations")
     print("| program | frames | s | resident, MB | grows, kB | allocated, MB | grows, kB |\n|---|---|---|---|---|---|---|")
     for name, (program, *rest) in runs.items():
         with tempfile.TemporaryDirectory() as folder:
             counter = pathlib.Path(folder) / "allocated"
-            environment = dict(os.environ, LD_PRELOAD=str(build / "lib/libsunfleck_count_allocations.so"),
+            environment = dict(os.environ, LD_PRELOAD=str(library),
                                SUNFLECK_ALLOCATED=str(counter), SUNFLECK_FRAMES=frames)
             begin = time.time()
             os.chdir(folder)

@@ -4,9 +4,8 @@
 Usage: scale.py BUILD_FOLDER [FIRST LAST]     numbers of the rows below; default: all
 The first picture has 64x36 pixels and all of its light. Interrupts come at eight moments of that time. A level of more
 objects may take no more than n^1.2, 10,000 objects no more than 12 s (a tenth of what they took before they were counted
-on), and nobody waits longer than 0.3 s for an interrupt (a second for 100,000 objects: the system takes that long to have
-gigabytes back). Memory: what a level takes beyond a level of 10 objects grows by no more than n^1.2, either, and no level
-takes more than --memory promises by default: three quarters of what is free.
+on), and nobody waits longer than 0.3 s for an interrupt. Memory: what a level takes beyond a level of 10 objects grows by
+no more than n^1.2, either, and no level takes more than --memory promises by default: three quarters of what is free.
 """
 import math
 import os
@@ -27,7 +26,7 @@ LEVELS = [("1,000 objects", {"objects": 1000}, []), ("10,000 objects", {"objects
           ("65,536 samples", {"objects": 100}, ["--lights", "65536"])]
 GROWS_FROM = {1: (0, 10), 2: (1, 10), 4: (3, 10), 5: (4, 10)}  # row: (smaller row, times as many)
 POWER = 1.2
-LATEST, LATEST_OF = 0.3, {2: 1.0}  # s; others by row
+LATEST = 0.3  # s
 LONGEST_OF = {1: 12.0}  # s, by row
 UNCOUNTED = 64  # MB: pieces under 64 MiB are let through until they add up to as much (engine/core/memory_limit.h)
 
@@ -98,7 +97,7 @@ def main():
             problems = [part for part, is_so in (("time", (powers[0] or 0) > POWER or times[row] > LONGEST_OF.get(row, 1e9)),
                                                  ("memory", (powers[1] or 0) > POWER or memory[row] > most)) if is_so]
             waits = [w for i in range(8) if (w := interrupt(tool, level, more, times[row] * (i + .5) / 8)) is not None]
-            if max(waits, default=0) > LATEST_OF.get(row, LATEST):
+            if max(waits, default=0) > LATEST:
                 problems.append("interrupt")
             wrong += len(problems)
             shown = ["" if power is None else f"n^{power:.2f}" for power in powers]
