@@ -3,9 +3,11 @@
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
-#include <malloc.h>
 #include <stdatomic.h>
+#include <stddef.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -33,44 +35,93 @@ __attribute__((constructor)) static void share(void) {
     live = shared;
 }
 
-static void* counted(void* memory) {
-    if (memory)
-        atomic_fetch_add(live, (long)malloc_usable_size(memory));
-    return memory;
+// Before each piece: the bytes that were asked for, and how far before it the memory begins. malloc_usable_size would
+// count what a free piece has too much for who gets it next, which comes and goes by some kilobytes in all.
+struct head {
+    size_t bytes, offset;
+};
+
+static struct head* head_of(void* piece) { return (struct head*)piece - 1; }
+
+static void* counted(char* memory, size_t offset, size_t bytes) {
+    if (!memory)
+        return memory;
+    void* piece = memory + offset;
+    *head_of(piece) = (struct head){bytes, offset};
+    atomic_fetch_add(live, (long)bytes);
+    return piece;
 }
 
-static void given_back(long bytes) {
-    const long left = atomic_fetch_sub(live, bytes) - bytes;
+static void given_back(size_t bytes) {
+    const long left = atomic_fetch_sub(live, (long)bytes) - (long)bytes;
     long least = atomic_load(live + 1);
     while (left < least && !atomic_compare_exchange_weak(live + 1, &least, left))
         ;
 }
 
-static void forget(void* memory) {
-    if (memory)
-        given_back((long)malloc_usable_size(memory));
+static int fits(size_t bytes, size_t more) {
+    if (bytes <= PTRDIFF_MAX - more)
+        return 1;
+    errno = ENOMEM;
+    return 0;
 }
 
-void* malloc(size_t bytes) { return counted(__libc_malloc(bytes)); }
-void* calloc(size_t count, size_t bytes) { return counted(__libc_calloc(count, bytes)); }
-void* memalign(size_t alignment, size_t bytes) { return counted(__libc_memalign(alignment, bytes)); }
-void* aligned_alloc(size_t alignment, size_t bytes) { return counted(__libc_memalign(alignment, bytes)); }
+void* malloc(size_t bytes) {
+    const size_t offset = sizeof(struct head);
+    return fits(bytes, offset) ? counted(__libc_malloc(bytes + offset), offset, bytes) : NULL;
+}
+
+void* calloc(size_t count, size_t each) {
+    const size_t offset = sizeof(struct head);
+    size_t bytes;
+    if (__builtin_mul_overflow(count, each, &bytes))
+        bytes = SIZE_MAX;
+    return fits(bytes, offset) ? counted(__libc_calloc(1, bytes + offset), offset, bytes) : NULL;
+}
+
+void* memalign(size_t alignment, size_t bytes) {
+    const size_t offset = alignment > sizeof(struct head) ? alignment : sizeof(struct head);
+    return fits(bytes, offset) ? counted(__libc_memalign(alignment, bytes + offset), offset, bytes) : NULL;
+}
+
+void* aligned_alloc(size_t alignment, size_t bytes) { return memalign(alignment, bytes); }
 
 int posix_memalign(void** memory, size_t alignment, size_t bytes) {
-    *memory = counted(__libc_memalign(alignment, bytes));
+    *memory = memalign(alignment, bytes);
     return *memory ? 0 : ENOMEM;
 }
 
-void* realloc(void* memory, size_t bytes) {
-    const long before = memory ? (long)malloc_usable_size(memory) : 0;
-    void* moved = __libc_realloc(memory, bytes);
-    counted(moved); // first, or there would seem to be less for a moment
-    if (moved || bytes == 0)
-        given_back(before);
+void free(void* piece) {
+    if (!piece)
+        return;
+    given_back(head_of(piece)->bytes);
+    __libc_free((char*)piece - head_of(piece)->offset);
+}
+
+void* realloc(void* piece, size_t bytes) {
+    if (!piece)
+        return malloc(bytes);
+    if (bytes == 0) {
+        free(piece);
+        return NULL;
+    }
+    const struct head before = *head_of(piece);
+    if (before.offset != sizeof(struct head)) { // it was aligned
+        void* moved = malloc(bytes);
+        if (moved) {
+            memcpy(moved, piece, bytes < before.bytes ? bytes : before.bytes);
+            free(piece);
+        }
+        return moved;
+    }
+    if (!fits(bytes, before.offset))
+        return NULL;
+    void* moved = __libc_realloc(head_of(piece), bytes + before.offset);
+    if (!moved)
+        return NULL;
+    moved = counted(moved, before.offset, bytes); // first, or there would seem to be less for a moment
+    given_back(before.bytes);
     return moved;
 }
 
-void free(void* memory) {
-    forget(memory);
-    __libc_free(memory);
-}
+size_t malloc_usable_size(void* piece) { return piece ? head_of(piece)->bytes : 0; }
