@@ -3,16 +3,21 @@
 
 Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool, and of
 32x32 of a host
-Resident memory may grow by less than 1 MiB in the last half, and allocated bytes, as counted by count_allocations.c, by
-none. Both are compared as the least of a tenth of the run with the least of another: what frames in flight hold comes
-and goes. (The tool's camera goes round in 200 frames, so that each tenth has all of its views.) Of allocated bytes that
-is the least at any moment, not of samples. One tenth's differs from another's by some hundred bytes, in the demo, whose
-balls never lie as before, by some kilobytes, so that this bound misses there without growth. Runs of less than 10,000
-frames may grow by 64 kB: logs of 4,096 removals and of the times of 4,096 frames fill until their last half.
+Resident memory may grow by less than 1 MiB in the last half: the least of the run's last tenth is compared with the
+least of the first tenth of that half, since what frames in flight hold comes and goes.
+Allocated bytes, as counted by count_allocations.c, may grow by none. The demo's balls never lie as before, so that the
+least of one twentieth of the last half differs from the next one's by some kilobytes without any growth, and slowly
+goes up and down; through these twenty leasts (of any moment, not of samples) goes a line, whose rise over the half is
+shown with its 95 % interval. Wrong is a rise of more than a byte in a hundred frames that the interval bears out and
+that leaves all behind that there was in the first ten; and an interval of more than two bytes a frame to either side,
+which could not tell. The tool's camera goes round in 200 frames, so that each twentieth has all of its views. In runs
+of less than 10,000 frames 64 kB more are let through: logs of 4,096 removals and of the times of 4,096 frames fill
+until their last half. Before anything is run, the measure itself is tried on made-up series.
 """
 import mmap
 import os
 import pathlib
+import random
 import struct
 import subprocess
 import sys
@@ -52,14 +57,52 @@ def before_end(values):
 
 
 def grown(values):
-    """From the middle of the run to its end."""
+    """From the middle of the run to its end, by the leasts of a tenth of the run."""
     tenth = max(1, len(values) // 10)
     return min(values[-tenth:]) - min(values[len(values) // 2:len(values) // 2 + tenth])
 
 
-def allowed(frames):
-    """Growth of allocated bytes, in bytes."""
-    return 1024 if frames >= 10000 else 65536
+TWENTIETHS = 20
+STUDENT = 2.101  # 95 % of Student's distribution with 18 degrees of freedom
+
+
+def leasts(values):
+    """Of each twentieth of the last half."""
+    half = values[len(values) // 2:]
+    return [min(half[i * len(half) // TWENTIETHS:(i + 1) * len(half) // TWENTIETHS], default=half[-1])
+            for i in range(TWENTIETHS)]
+
+
+def rise(least):
+    """Over the half, by a line through the leasts; and half the width of its 95 % interval."""
+    places = [i / (TWENTIETHS - 1) - 0.5 for i in range(TWENTIETHS)]
+    mean, spread = sum(least) / TWENTIETHS, sum(x * x for x in places)
+    slope = sum(x * y for x, y in zip(places, least)) / spread
+    rest = sum((y - mean - slope * x) ** 2 for x, y in zip(places, least))
+    return slope, STUDENT * (rest / (TWENTIETHS - 2) / spread) ** 0.5
+
+
+def problem_of_allocated(least, frames):
+    """What is wrong with the rise, or nothing."""
+    slope, half_width = rise(least)
+    let_through = frames / 2 / 100 + (0 if frames >= 10000 else 65536)
+    if slope - half_width > let_through and min(least[-2:]) > max(least[:TWENTIETHS // 2]):
+        return "grows"
+    return "can't tell" if half_width > 2 * frames / 2 + let_through else ""
+
+
+def check_the_measure():
+    """Three bytes a frame are found where the leasts differ as the demo's do, and none where nothing grows."""
+    numbers, frames = random.Random(7), 20000
+
+    def found(bytes_a_frame, spread):
+        return problem_of_allocated([5e8 + bytes_a_frame * frames / 2 * i / TWENTIETHS + numbers.uniform(0, spread)
+                                     for i in range(TWENTIETHS)], frames)
+
+    for bytes_a_frame, spread, wanted in ((0, 20e3, ""), (3, 20e3, "grows"), (-3, 20e3, ""), (0.1, 0, "grows"),
+                                          (0, 100e3, "can't tell")):
+        results = [found(bytes_a_frame, spread) for _ in range(40)]
+        assert results.count(wanted) >= 35, (bytes_a_frame, spread, results)
 
 
 def main():
@@ -71,7 +114,8 @@ def main():
     wrong, library = 0, build / "lib/libsunfleck_count_allocations.so"
     if not library.exists():
         sys.exit(f"{library} is missing: build the target sunfleck_count_allocations")
-    print("| program | frames | s | resident, MB | grows, kB | allocated, MB | grows, kB |\n|---|---|---|---|---|---|---|")
+    check_the_measure()
+    print("| program | frames | s | resident, MB | grows, kB | allocated, MB | rises, kB |\n|---|---|---|---|---|---|---|")
     for name, (program, *rest) in runs.items():
         with tempfile.TemporaryDirectory() as folder:
             counter = pathlib.Path(folder) / "allocated"
@@ -81,10 +125,16 @@ def main():
             os.chdir(folder)
             samples, status, output = watch([str(build / "bin" / program), *rest], counter, environment)
             pages, allocated = ([s[i] for s in before_end(samples)] for i in range(2))
-            right = status == 0 and grown(pages) < 1 << 20 and grown(allocated) < allowed(int(frames))
-            wrong += not right
+            least = leasts(allocated)
+            slope, half_width = rise(least)
+            problems = [text for text, is_so in (
+                (f"exit status {status}", status != 0), ("resident grows", grown(pages) >= 1 << 20),
+                (f"allocated {problem_of_allocated(least, int(frames))}",
+                 problem_of_allocated(least, int(frames)))) if is_so]
+            wrong += len(problems)
             print(f"| {name} | {frames} | {time.time() - begin:.0f} | {pages[-1] / 1e6:.1f} | {grown(pages) / 1e3:.0f} | "
-                  f"{allocated[-1] / 1e6:.1f} | {grown(allocated) / 1e3:.0f} |", flush=True)
+                  f"{allocated[-1] / 1e6:.1f} | {slope / 1e3:.1f} +- {half_width / 1e3:.1f} |"
+                  + "".join(f" {problem}" for problem in problems), flush=True)
             if status != 0:
                 print(output[-500:])
     print(f"{len(runs)} tried, {wrong} wrong")
