@@ -1,14 +1,8 @@
 // What the Lighting panel says a setting costs: the interval that it shows contains what a four times longer
 // measurement finds, and the pass that takes more is named.
-#include "editor/window/cost_thread.h"
-
-#include "test_places.h"
-#include "tests/support/gpu_world.h"
-#include "tests/support/test_size.h"
-#include "viewer/scene_renderer.h"
+#include "tests/editor/cost_fixture.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -17,41 +11,17 @@
 namespace sunfleck::editor {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct Change {
     const char *setting, *value; // over the default
 };
 
-class EditorCost : public tests::GpuTest {
+class EditorCost : public CostFixture {
 protected:
-    EditorCost() {
-        auto opened = Document::open(fs::path(SUNFLECK_TOOL).parent_path() / "../scenes/four_pillars.scene.json");
-        EXPECT_TRUE(opened);
-        if (opened)
-            document = std::move(*opened);
-        view.width = tests::by_size(160u, 640u);
-        view.height = tests::by_size(90u, 360u);
-        view.camera = viewer::find_camera(document->registry(), Bounds{vec3(-1.0f), vec3(1.0f)}, "bench_1").value();
-    }
     // Over the default, with all else as the document has it.
     Cost measure(const Change& change, CostEffort effort) const {
-        CostThread thread(
-            tests::device(), [] { return false; }, [] {}, effort);
-        SceneChange scene = ChangeCollector::everything(document);
-        const gi::Settings usual = *scene.settings;
-        EXPECT_TRUE(scene.settings->set(change.setting, change.value));
-        thread.measure(std::move(scene), change.setting, usual, view);
-        for (Cost cost = thread.cost();; cost = thread.cost()) {
-            EXPECT_EQ(cost.error, "");
-            if (cost.finished || !cost.error.empty())
-                return cost;
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
+        return CostFixture::measure(scene_with({{change.setting, change.value}}), change.setting, document_->settings(),
+                                    effort);
     }
-    static double width(const Cost& cost) { return cost.frame.high - cost.frame.low; }
-    std::shared_ptr<Document> document;
-    ViewRequest view;
 };
 
 // Ten settings, three of which need other samples (lights, bounces, direct_share), and some without effect here.

@@ -1,14 +1,9 @@
 // A dispatch that a technique adds is found by what the editor measures of settings: what it takes, and in which pass.
-#include "editor/window/cost_thread.h"
 #include "engine/statistics/summary.h"
-#include "test_places.h"
-#include "tests/support/gpu_world.h"
-#include "tests/support/test_size.h"
+#include "tests/editor/cost_fixture.h"
 #include "tests/techniques/constant_light.h"
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 
 namespace sunfleck::editor {
 namespace {
@@ -16,23 +11,10 @@ namespace {
 constexpr const char* setting = "constant_work"; // of the technique that only the tests know
 constexpr const char* pass = "constant work";
 
-class EditorExtraDispatch : public tests::GpuTest {
+class EditorExtraDispatch : public CostFixture {
 protected:
-    EditorExtraDispatch() {
-        auto opened =
-            Document::open(std::filesystem::path(SUNFLECK_TOOL).parent_path() / "../scenes/four_pillars.scene.json");
-        EXPECT_TRUE(opened);
-        if (opened)
-            document_ = std::move(*opened);
-        view_.width = tests::by_size(160u, 640u);
-        view_.height = tests::by_size(90u, 360u);
-        view_.camera = viewer::find_camera(document_->registry(), Bounds{vec3(-1.0f), vec3(1.0f)}, "bench_1").value();
-    }
     SceneChange scene(std::uint32_t turns) const {
-        SceneChange all = ChangeCollector::everything(document_);
-        EXPECT_TRUE(all.settings->set("indirect", "constant_light"));
-        EXPECT_TRUE(all.settings->set(setting, std::to_string(turns)));
-        return all;
+        return scene_with({{"indirect", "constant_light"}, {setting, std::to_string(turns)}});
     }
     // Of a renderer of the test's own, ms: the dispatch, and the frame without it.
     struct Times {
@@ -63,24 +45,13 @@ protected:
     }
     // Over no turns.
     Cost measure(std::uint32_t turns) const {
-        CostThread thread(
-            tests::device(), [] { return false; }, [] {}, {0.0, tests::by_size(8.0, 60.0)});
-        thread.measure(scene(turns), setting, *scene(0).settings, view_);
-        for (Cost cost = thread.cost();; cost = thread.cost()) {
-            EXPECT_EQ(cost.error, "");
-            if (cost.finished || !cost.error.empty())
-                return cost;
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
-        }
+        return CostFixture::measure(scene(turns), setting, *scene(0).settings, {0.0, tests::by_size(8.0, 60.0)});
     }
     // The interval is one of 95 %: made twice as wide, it misses the truth once in ten thousand runs.
     static bool contains(const CostInterval& interval, double truth) {
         const double more = 0.5 * (interval.high - interval.low);
         return truth >= interval.low - more && truth <= interval.high + more;
     }
-
-    std::shared_ptr<Document> document_;
-    ViewRequest view_;
 };
 
 TEST_F(EditorExtraDispatch, ATenthOfTheFrameIsFoundInItsPass) {
