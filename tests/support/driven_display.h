@@ -5,6 +5,7 @@
 
 #include "tests/support/run_tool.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fcntl.h>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <string>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace sunfleck::tests {
@@ -79,11 +81,15 @@ public:
         found.erase(found.find_last_not_of('\n') + 1);
         return found.substr(found.find_last_of('\n') + 1);
     }
-    // False: it did not come true in time.
+    // False: it did not come true in time. While the test itself is stopped, as a job of a shell may be, no time passes
+    // for the program either.
     static bool wait_until(const std::function<bool()>& condition, double seconds = 25.0) {
-        const auto start = std::chrono::steady_clock::now();
-        while (!condition()) {
-            if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds)
+        constexpr double longest_turn = 5.0; // what took longer was no wait
+        auto last = std::chrono::steady_clock::now();
+        for (double waited = 0.0; !condition();) {
+            const auto now = std::chrono::steady_clock::now();
+            waited += std::min(std::chrono::duration<double>(now - std::exchange(last, now)).count(), longest_turn);
+            if (waited > seconds)
                 return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(30));
         }
