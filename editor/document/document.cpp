@@ -122,18 +122,29 @@ void Document::begin(std::string name) {
     gesture_.emplace();
     gesture_->name = std::move(name);
     gesture_->selected_before = selection_;
-    in_gesture_.clear();
+}
+
+HistoryEntry Document::end_gesture() {
+    HistoryEntry entry = std::move(*gesture_);
+    gesture_.reset();
+    for (const ComponentChange& change : entry.components)
+        newest_change_[change.entity.index] = 0;
+    change_before_.clear();
+    return entry;
 }
 
 void Document::set(Entity entity, ecs::PoolBase& pool, const ecs::Value& value) {
     assert(gesture_ && "edits belong to a gesture");
-    for (const std::size_t index : in_gesture_[entity.bits()])
-        if (ComponentChange& known = gesture_->components[index]; known.pool == &pool) {
+    if (entity.index >= newest_change_.size())
+        newest_change_.resize(entity.index + 1);
+    for (std::uint32_t number = newest_change_[entity.index]; number > 0; number = change_before_[number - 1])
+        if (ComponentChange& known = gesture_->components[number - 1]; known.pool == &pool) {
             known.after = value;
             return apply(entity, pool, value);
         }
-    in_gesture_[entity.bits()].push_back(gesture_->components.size());
+    change_before_.push_back(newest_change_[entity.index]);
     gesture_->components.push_back({entity, &pool, registry_.value(pool, entity), value});
+    newest_change_[entity.index] = std::uint32_t(gesture_->components.size());
     apply(entity, pool, value);
 }
 
@@ -221,8 +232,7 @@ bool Document::commit() {
     if (!gesture_)
         return false;
     settle_lamps();
-    HistoryEntry entry = std::move(*gesture_);
-    gesture_.reset();
+    HistoryEntry entry = end_gesture();
     std::erase_if(entry.components,
                   [](const ComponentChange& change) { return same_value(*change.pool, change.before, change.after); });
     std::erase_if(entry.settings, [](const SettingChange& change) { return change.before == change.after; });
@@ -236,8 +246,7 @@ bool Document::commit() {
 void Document::cancel() {
     if (!gesture_)
         return;
-    const HistoryEntry entry = std::move(*gesture_);
-    gesture_.reset();
+    const HistoryEntry entry = end_gesture();
     apply(entry, false);
     select(entry.selected_before);
 }
@@ -283,7 +292,11 @@ void Document::apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value
             name_changed(entity, registry_.try_get<scene::Name>(entity), value.get());
     }
     registry_.set_value(pool, entity, value.get());
-    updates_[{entity, pool.type_index}] = {entity, &pool, value};
+    if (updates_.size() >= tidied_at_) {
+        tidy_updates();
+        tidied_at_ = std::max(2 * updates_.size(), most_untidied);
+    }
+    updates_.push_back({entity, &pool, value});
     handles_ = std::max(handles_, entity.index + 1);
     ++revision_;
 }

@@ -115,7 +115,7 @@ public:
 
     // --- Selection, in the order in which it was made ------------------------------------------------------------
     const std::vector<Entity>& selection() const { return selection_; }
-    bool selected(Entity entity) const { return selected_.count(entity) > 0; }
+    bool selected(Entity entity) const { return entity.index < selected_.size() && selected_[entity.index]; }
     void select(std::vector<Entity> entities);
     void toggle(Entity entity);
 
@@ -136,6 +136,8 @@ private:
     void name_changed(Entity entity, const void* before, const void* after);
     void name_everything();
     void find_children();
+    HistoryEntry end_gesture();
+    void tidy_updates();
 
     ecs::Registry registry_;
     scene::MeshStore meshes_;
@@ -157,15 +159,20 @@ private:
     History history_;
     std::uint64_t saved_serial_ = 0;
     std::optional<HistoryEntry> gesture_;
-    std::unordered_map<std::uint64_t, std::vector<std::size_t>> in_gesture_; // by entity, indices of its changes
+    // Of the gesture: of each entity (by index) its newest change, of each change the one before it of the same entity;
+    // numbers are by one more than in the list, 0: none.
+    std::vector<std::uint32_t> newest_change_, change_before_;
 
     std::unordered_map<std::string, Entity> by_name_;
     std::vector<Entity> roots_;
     std::unordered_map<Entity, std::vector<Entity>> children_;
     std::uint64_t structure_revision_ = 1, children_revision_ = 0, revision_ = 1, settings_revision_ = 1;
     std::vector<Entity> selection_;
-    std::unordered_set<Entity> selected_;
-    std::map<std::pair<Entity, std::size_t>, Update> updates_;
+    std::vector<bool> selected_; // by index
+    // In the order in which they came: of those of one component the last counts. Tidied when there are so many.
+    std::vector<Update> updates_;
+    std::size_t tidied_at_ = most_untidied;
+    static constexpr std::size_t most_untidied = 65536;
     std::uint32_t handles_ = 0;
 };
 

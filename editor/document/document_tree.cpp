@@ -2,6 +2,7 @@
 #include "editor/document/document.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace sunfleck::editor {
 
@@ -62,20 +63,25 @@ bool Document::is_below(Entity entity, Entity ancestor) const {
 
 std::vector<Entity> Document::family(Entity entity) {
     std::vector<Entity> result{entity};
-    std::unordered_set<Entity> seen{entity};
     for (std::size_t i = 0; i < result.size(); ++i)
         for (const Entity child : children(result[i]))
-            if (seen.insert(child).second)
+            if (child != entity) // of a cycle, which a damaged file may have
                 result.push_back(child);
     return result;
 }
 
 void Document::select(std::vector<Entity> entities) {
+    for (const Entity entity : selection_)
+        selected_[entity.index] = false;
     selection_.clear();
-    selected_.clear();
-    for (const Entity entity : entities)
-        if (exists(entity) && selected_.insert(entity).second)
-            selection_.push_back(entity);
+    for (const Entity entity : entities) {
+        if (!exists(entity) || selected(entity))
+            continue;
+        if (entity.index >= selected_.size())
+            selected_.resize(entity.index + 1);
+        selected_[entity.index] = true;
+        selection_.push_back(entity);
+    }
 }
 
 void Document::toggle(Entity entity) {
@@ -87,13 +93,20 @@ void Document::toggle(Entity entity) {
     select(std::move(now));
 }
 
+// By entity, then component, one of each.
+void Document::tidy_updates() {
+    const auto key = [](const Update& update) { return std::pair(update.entity, update.pool->type_index); };
+    const auto before = [&](const Update& a, const Update& b) { return key(a) < key(b); };
+    std::stable_sort(updates_.begin(), updates_.end(), before);
+    const auto same = [&](const Update& a, const Update& b) { return key(a) == key(b); };
+    // Backwards, since the last of those that are the same stays.
+    updates_.erase(updates_.begin(), std::unique(updates_.rbegin(), updates_.rend(), same).base());
+}
+
 std::vector<Update> Document::take_updates() {
-    std::vector<Update> result;
-    result.reserve(updates_.size());
-    for (auto& [key, update] : updates_)
-        result.push_back(std::move(update));
-    updates_.clear();
-    return result;
+    tidy_updates();
+    tidied_at_ = most_untidied;
+    return std::exchange(updates_, {});
 }
 
 std::vector<Update> Document::all_updates() {

@@ -43,6 +43,15 @@ void retarget(const ecs::PoolBase& pool, void* value, const std::unordered_map<E
         }
 }
 
+// Of what entities have in this document, and files keep.
+std::vector<ecs::PoolBase*> kept_pools(Document& document) {
+    std::vector<ecs::PoolBase*> result;
+    for (ecs::PoolBase* pool : document.registry().all_pools())
+        if (pool->size() > 0 && pool->is_copyable() && !pool->is_derived())
+            result.push_back(pool);
+    return result;
+}
+
 } // namespace
 
 std::string what(const Document& document, const Entities& entities) {
@@ -50,14 +59,22 @@ std::string what(const Document& document, const Entities& entities) {
 }
 
 Entities topmost(const Document& document, const Entities& entities) {
-    const std::unordered_set<Entity> all(entities.begin(), entities.end());
+    std::vector<bool> given; // by index
+    for (const Entity entity : entities) {
+        if (!document.exists(entity))
+            continue;
+        if (entity.index >= given.size())
+            given.resize(entity.index + 1);
+        given[entity.index] = true;
+    }
+    const auto is_given = [&](Entity entity) { return entity.index < given.size() && given[entity.index]; };
     Entities result;
     for (const Entity entity : entities) {
         std::size_t depth = 0;
         Entity above = document.parent(entity);
-        while (!above.is_null() && all.count(above) == 0 && ++depth < document.entity_count())
+        while (!above.is_null() && !is_given(above) && ++depth < document.entity_count())
             above = document.parent(above);
-        if (above.is_null() || all.count(above) == 0)
+        if (above.is_null() || !is_given(above))
             result.push_back(entity);
     }
     return result;
@@ -67,16 +84,15 @@ void remove(Document& document, const Entities& entities) {
     if (entities.empty())
         return;
     document.begin("Delete " + what(document, entities));
-    ecs::Registry& registry = document.registry();
     // First who, then away with them: the tree is found again after each change.
     Entities all;
     for (const Entity top : topmost(document, entities)) {
         const Entities family = document.family(top);
         all.insert(all.end(), family.begin(), family.end());
     }
-    for (auto entity = all.rbegin(); entity != all.rend(); ++entity)
-        for (ecs::PoolBase* pool : registry.all_pools())
-            if (pool->contains(*entity) && pool->is_copyable() && !pool->is_derived())
+    for (ecs::PoolBase* pool : kept_pools(document))
+        for (auto entity = all.rbegin(); entity != all.rend(); ++entity)
+            if (pool->contains(*entity))
                 document.set(*entity, *pool, nullptr);
     document.select({});
     document.commit();
@@ -86,7 +102,6 @@ Entities duplicate(Document& document, const Entities& entities) {
     if (entities.empty())
         return {};
     document.begin("Duplicate " + what(document, entities));
-    ecs::Registry& registry = document.registry();
     std::unordered_map<Entity, Entity> copies;
     Entities all, tops;
     for (const Entity top : topmost(document, entities))
@@ -96,9 +111,10 @@ Entities duplicate(Document& document, const Entities& entities) {
             if (entity == top)
                 tops.push_back(copies[entity]);
         }
+    const std::vector<ecs::PoolBase*> pools = kept_pools(document);
     for (const Entity entity : all)
-        for (ecs::PoolBase* pool : registry.all_pools()) {
-            if (!pool->contains(entity) || !pool->is_copyable() || pool->is_derived())
+        for (ecs::PoolBase* pool : pools) {
+            if (!pool->contains(entity))
                 continue;
             const std::shared_ptr<void> value = pool->copy_value(pool->address(pool->position_of(entity.index)));
             if (pool == &pool_of<scene::Name>(document))
