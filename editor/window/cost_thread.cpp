@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace sunfleck::editor {
 namespace {
@@ -17,7 +18,8 @@ using CostClock = std::chrono::steady_clock;
 constexpr int warm_up_blocks = 3, frames_of_block = 3;
 constexpr std::uint32_t small_width = 64, small_height = 36;
 // Whether the interval is narrow enough is looked at when there are so many pairs, and then each time that their number
-// has grown by half: who looks after every pair stops at the narrow ones among many, and those miss more often.
+// has grown by half; it has to be so twice in a row. Who looks after every pair, or once, stops at the narrow ones
+// among many, and those miss more often.
 constexpr std::size_t fewest_pairs = 16;
 constexpr double precise_share = 0.05;   // of the frame: how wide the interval may be
 constexpr double telling_interval = 0.5; // s: the GUI's own frames disturb what is measured
@@ -197,7 +199,8 @@ Status CostThread::measure(Work& work) {
     work.began = CostClock::now();
     CostClock::time_point told = work.began;
     std::size_t next_look = fewest_pairs;
-    for (bool precise = false; !precise && seconds_of(CostClock::now() - work.began) < effort_.longest;) {
+    for (bool narrow = false, precise = false;
+         !precise && seconds_of(CostClock::now() - work.began) < effort_.longest;) {
         std::map<std::string, double> times[2];
         double frame_ms[2] = {};
         const int first = int(work.log_ratios.size() % 2); // A B, then B A
@@ -217,8 +220,8 @@ Status CostThread::measure(Work& work) {
         const CostInterval interval = cost_of_ratios(work.log_ratios, usual_ms);
         if (work.log_ratios.size() >= next_look) {
             next_look += next_look / 2;
-            precise = seconds_of(CostClock::now() - work.began) >= effort_.shortest &&
-                      interval.high - interval.low <= precise_share * usual_ms;
+            const bool was_narrow = std::exchange(narrow, interval.high - interval.low <= precise_share * usual_ms);
+            precise = narrow && was_narrow && seconds_of(CostClock::now() - work.began) >= effort_.shortest;
         }
         if (const auto now = CostClock::now(); !precise && seconds_of(now - told) > telling_interval) {
             told = now;
