@@ -81,14 +81,17 @@ TEST_F(EditorCost, IntervalsContainWhatALongerMeasurementFinds) {
                                                          .dump()
                                                   << "\n";
     }
+    const auto is_narrow = [](const Found& one) { return one.width <= 0.05; };
     const auto contained = std::count_if(found.begin(), found.end(), [](const Found& one) { return one.contained; });
-    const auto precise = std::count_if(found.begin(), found.end(), [](const Found& one) { return one.width <= 0.05; });
-    std::printf("%zu of %zu settings: %d intervals contain what was found later, %d are 5 %% of the frame or less\n",
-                found.size(), std::size(all_changes), int(contained), int(precise));
-    // Shares of ten at full size. In the short one an interval of a second says little, but that all is in order.
+    const auto right =
+        std::count_if(found.begin(), found.end(), [&](const Found& one) { return one.contained && is_narrow(one); });
+    std::printf("%zu of %zu settings: %d intervals contain what was found later, %d are 5 %% of the frame or less, %d "
+                "both\n",
+                found.size(), std::size(all_changes), int(contained),
+                int(std::count_if(found.begin(), found.end(), is_narrow)), int(right));
+    // Of ten at full size. In the short one an interval of a second says little, but that all is in order.
     if (found.size() == std::size(all_changes)) {
-        EXPECT_GE(contained, 8);
-        EXPECT_EQ(precise, 10);
+        EXPECT_GE(right, 8);
     }
 }
 
