@@ -5,13 +5,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace sunfleck::viewer {
 
+// Of several, that of the last name: their order in the registry is another once the scene is read from its file.
 std::optional<float> scene_exposure(ecs::Registry& registry) {
     std::optional<float> ev100;
-    registry.view<scene::Exposure>().each(
-        [&](ecs::Entity, const scene::Exposure& exposure) { ev100 = exposure.ev100; });
+    std::string_view last;
+    registry.view<scene::Exposure>().each([&](ecs::Entity entity, const scene::Exposure& exposure) {
+        const scene::Name* name = registry.try_get<scene::Name>(entity);
+        const std::string_view text = name != nullptr ? std::string_view(name->name) : std::string_view();
+        if (ev100 && text < last)
+            return;
+        ev100 = exposure.ev100;
+        last = text;
+    });
     return ev100;
 }
 

@@ -78,7 +78,7 @@ Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, 
     SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
     if (modify)
         SUNFLECK_TRY(modify(registry_));
-    if (add_default_light(registry_))
+    if (report.default_light && add_default_light(registry_))
         report.notes.push_back("the scene has no lights: lit by the default sky and sun");
     SUNFLECK_TRY(upload_meshes());
     return report;

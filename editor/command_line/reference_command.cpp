@@ -79,9 +79,11 @@ void make_lambertian(ecs::Registry& registry) {
 Status load(const ReferenceOptions& options, const std::filesystem::path& path, TracedScene& scene) {
     io::ImportOptions import = import_options(options.scene);
     import.content_hash = &scene.content_hash;
-    SUNFLECK_TRY(io::load_scene(path, scene.registry, scene.meshes, scene.textures, import));
+    SUNFLECK_ASSIGN(const io::ImportReport report,
+                    io::load_scene(path, scene.registry, scene.meshes, scene.textures, import));
     SUNFLECK_TRY(apply_environment(options.scene, scene.registry, &scene.content_hash));
-    viewer::add_default_light(scene.registry);
+    if (report.default_light)
+        viewer::add_default_light(scene.registry);
     if (options.lambertian)
         make_lambertian(scene.registry);
     scene.last_frame = options.scene.warmup + options.scene.frames - 1;

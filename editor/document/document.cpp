@@ -91,7 +91,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& pa
     for (const auto& [name, value] : report.settings)
         if (const Status status = document->settings_.set(name, value); !status)
             document->notes_.push_back(status.error().message);
-    if (viewer::add_default_light(document->registry_))
+    if (report.default_light && viewer::add_default_light(document->registry_))
         document->notes_.push_back("The scene has no lights: a sky and a sun were added");
     document->name_everything();
     document->path_ = path;

@@ -40,6 +40,7 @@ Status Document::save(const std::filesystem::path& path) {
                      "' is there and belongs to something else; choose another name"};
     io::SaveOptions options;
     options.settings = viewer::unusual_lighting(settings_);
+    options.exact = true;
     SUNFLECK_TRY(io::save_scene(path, registry_, meshes_, textures_, options));
     path_ = path;
     stamp_ = stamp_of(path);

@@ -254,6 +254,7 @@ void Recovery::write(std::unique_ptr<Copy>& copy) {
     base.revision = copy_revision_;
     io::SaveOptions options;
     options.settings = viewer::unusual_lighting(copy->settings);
+    options.exact = true;
     slot_ = 1 - slot_;
     const nlohmann::json json = {
         {"file", about.file}, {"edits", about.edits}, {"count", about.count}, {"names", base.text()}, {"slot", slot_}};

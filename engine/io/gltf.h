@@ -42,6 +42,8 @@ struct ImportReport {
     std::map<std::string, std::uint64_t> counts;       // "nodes", "meshes", "triangles", "materials", "textures", ...
     std::map<std::string, std::uint64_t> memory_bytes; // "vertices", "indices", "textures"
     std::map<std::string, std::string> settings;       // lighting settings of a scene file
+    // Whether the scene may be given a light if it has none; scene files say no where it is meant so.
+    bool default_light = true;
 };
 
 // Adds a scene of the file to `registry`. Names of entities are made unique by appending a number. What

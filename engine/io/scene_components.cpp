@@ -3,6 +3,7 @@
 #include "engine/scene/environment_map.h"
 #include "engine/scene/simulation_components.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::io {
@@ -27,6 +28,10 @@ ComponentAccess access() {
                 T value{};
                 SUNFLECK_TRY(fill(&value));
                 return validate(T::description(), &value);
+            },
+            [](ecs::Registry& registry, ecs::Entity entity) {
+                if (registry.has<T>(entity))
+                    registry.remove<T>(entity);
             }};
 }
 
@@ -109,6 +114,8 @@ Status check_entity(const std::string& name, const json& components) {
         const ComponentAccess* access = find_component(component);
         if (access == nullptr)
             return Error{"entity '" + name + "': unknown component '" + component + "'"};
+        if (fields.is_null())
+            continue;
         const Status status =
             access->check([&, &values = fields](void* object) { return fill_component(access->type, object, values); });
         if (!status)
@@ -125,6 +132,10 @@ Status apply_entity(ecs::Registry& registry, const std::string& name, const json
     }
     for (const auto& [component, fields] : components.items()) {
         const ComponentAccess* access = find_component(component);
+        if (fields.is_null()) {
+            access->remove(registry, entity);
+            continue;
+        }
         SUNFLECK_TRY(access->set(registry, entity, [&, &values = fields](void* object) {
             return fill_component(access->type, object, values);
         }));
@@ -132,22 +143,40 @@ Status apply_entity(ecs::Registry& registry, const std::string& name, const json
     return {};
 }
 
-json entities_json(ecs::Registry& registry, bool overridden) {
+json entities_json(ecs::Registry& registry, bool overridden, bool exact) {
     json entities = json::object();
     for (const ecs::Entity entity : registry.entities()) {
         const scene::Name* name = registry.try_get<scene::Name>(entity);
         if (name == nullptr)
             continue;
-        const auto add = [&](const std::vector<ComponentAccess>& list) {
-            for (const ComponentAccess& access : list)
-                if (const void* object = access.find(registry, entity))
-                    for (const Field& field : access.type.fields)
-                        entities[name->name][std::string(access.type.name)][std::string(field.name)] =
-                            field_to_json(field, object);
+        const auto add = [&](const ComponentAccess& access) {
+            if (const void* object = access.find(registry, entity))
+                for (const Field& field : access.type.fields)
+                    entities[name->name][std::string(access.type.name)][std::string(field.name)] =
+                        field_to_json(field, object);
         };
-        add(saved_components());
-        if (overridden)
-            add(overridden_components());
+        for (const ComponentAccess& access : saved_components())
+            add(access);
+        for (const ComponentAccess& access : overridden_components())
+            if (overridden)
+                add(access);
+        if (!exact)
+            continue;
+        const bool has_geometry = registry.has<scene::MeshInstance>(entity);
+        if (!registry.has<scene::Transform>(entity))
+            entities[name->name][std::string(scene::Transform::description().name)] = nullptr;
+        if (has_geometry && !registry.has<scene::Material>(entity))
+            entities[name->name][std::string(scene::Material::description().name)] = nullptr;
+        if (!has_geometry)
+            add(*find_component(std::string(scene::Material::description().name)));
+        const std::string_view lights[] = {scene::PointLight::description().name, scene::SpotLight::description().name,
+                                           scene::DirectionalLight::description().name};
+        const auto has = [&](std::string_view type) {
+            return find_component(std::string(type))->find(registry, entity) != nullptr;
+        };
+        if (std::count_if(std::begin(lights), std::end(lights), has) > 1)
+            for (const std::string_view light : lights)
+                add(*find_component(std::string(light)));
     }
     return entities;
 }

@@ -17,6 +17,7 @@ struct ComponentAccess {
     const void* (*find)(ecs::Registry&, ecs::Entity);
     Status (*set)(ecs::Registry&, ecs::Entity, const std::function<Status(void*)>& fill);
     Status (*check)(const std::function<Status(void*)>& fill); // whether `set` would work
+    void (*remove)(ecs::Registry&, ecs::Entity);               // it need not have one
 };
 
 // Components that glTF cannot express.
@@ -27,9 +28,11 @@ const std::vector<ComponentAccess>& overridden_components();
 
 // Whether apply_entity would succeed.
 Status check_entity(const std::string& name, const nlohmann::json& components);
-// After check_entity. Names that are not nodes create entities that only the scene file has.
+// After check_entity. Names that are not nodes create entities that only the scene file has; a component that is null
+// is one that the entity does not have.
 Status apply_entity(ecs::Registry& registry, const std::string& name, const nlohmann::json& components);
-// The components of all named entities; `overridden`: also those that glTF can express.
-nlohmann::json entities_json(ecs::Registry& registry, bool overridden);
+// The components of all named entities; `overridden`: also those that glTF can express. `exact`: also that an entity
+// has no place or no material where a node of glTF has one, and materials of entities without geometry.
+nlohmann::json entities_json(ecs::Registry& registry, bool overridden, bool exact);
 
 } // namespace sunfleck::io

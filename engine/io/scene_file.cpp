@@ -46,13 +46,15 @@ Status check_file(const json& file) {
     }
     for (const auto& [key, value] : file.items())
         if (key != "sunfleck_scene" && key != "checksum" && key != "gltf" && key != "gltf_checksum" &&
-            key != "entities" && key != "settings")
+            key != "entities" && key != "settings" && key != "default_light")
             return Error{"it has an unknown key '" + key + "'"};
     if (!file.contains("gltf") || !file["gltf"].is_string())
         return Error{"it names no glTF file"};
     for (const char* key : {"entities", "settings"})
         if (file.contains(key) && !file[key].is_object())
             return Error{fmt::format("'{}' must be an object", key)};
+    if (file.contains("default_light") && !file["default_light"].is_boolean())
+        return Error{"'default_light' must be true or false"};
     return {};
 }
 
@@ -121,7 +123,16 @@ Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Reg
     const json& settings = file.contains("settings") ? file["settings"] : nothing;
     for (const auto& [name, value] : settings.items())
         report->settings[name] = settings_text(value);
+    report->default_light = file.value("default_light", true);
     return report;
+}
+
+// But for surfaces that shine.
+bool has_light(const ecs::Registry& registry) {
+    return registry.count<scene::AreaLight>() + registry.count<scene::PointLight>() +
+               registry.count<scene::SpotLight>() + registry.count<scene::DirectionalLight>() +
+               registry.count<scene::Environment>() >
+           0;
 }
 
 Status check_names(ecs::Registry& registry) {
@@ -200,9 +211,11 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
     } else {
         SUNFLECK_TRY(save_geometry(path, previous, registry, meshes, textures, file));
     }
-    file["entities"] = entities_json(registry, !options.gltf_reference.empty());
+    file["entities"] = entities_json(registry, !options.gltf_reference.empty(), options.exact);
     for (const auto& [setting, value] : options.settings)
         file["settings"][setting] = value;
+    if (options.exact && !has_light(registry))
+        file["default_light"] = false;
     file["checksum"] = checksum_of(file.dump());
     SUNFLECK_TRY(write_file(path, file.dump(2) + "\n"));
     // What an earlier save has written, and nothing that someone else may have.

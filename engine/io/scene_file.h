@@ -24,6 +24,9 @@ struct SaveOptions {
     // is written.
     std::string gltf_reference;
     std::map<std::string, std::string> settings; // lighting settings by name
+    // Also what glTF cannot say: that an entity has no place, geometry no material, a material no geometry, several
+    // lights of one entity, and that there are no lights at all, so that none are added.
+    bool exact = false;
 };
 
 // Writes `path` (.scene.json) and, without a reference, a .glb file of the same name (or with `.2`, so that the files

@@ -48,7 +48,7 @@ json entity_schema() {
     json entity = {{"type", "object"}, {"additionalProperties", false}, {"properties", json::object()}};
     for (const auto* list : {&saved_components(), &overridden_components()})
         for (const ComponentAccess& access : *list) {
-            json component = {{"type", "object"},
+            json component = {{"type", {"object", "null"}}, // null: it has none, whatever the glTF file says
                               {"description", access.type.tooltip},
                               {"additionalProperties", false},
                               {"properties", json::object()}};
@@ -76,6 +76,9 @@ std::string scene_file_schema() {
           {"checksum",
            {{"description", "FNV-1a of this file without this line; omit it when editing by hand"},
             {"type", "string"}}},
+          {"default_light",
+           {{"description", "Whether a sky and a sun are added where the scene has no lights; usually true"},
+            {"type", "boolean"}}},
           {"settings", {{"description", "Lighting settings by name, as sunfleck info lists them"}, {"type", "object"}}},
           {"entities",
            {{"description",

@@ -197,7 +197,7 @@ TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
         ASSERT_EQ(left.size(), 1u);
         auto found = Recovery::load(left[0]);
         ASSERT_TRUE(found) << found.error().message;
-        EXPECT_EQ(content(**found), content(*wanted));
+        EXPECT_EQ(content(**found), content(*wanted)) << first_difference(content(**found), content(*wanted));
         EXPECT_FALSE(left[0].edits.empty()) << "it is said what would be restored";
         EXPECT_TRUE((*found)->unsaved());
         EXPECT_TRUE((*found)->path().empty()) << "no file is replaced";
