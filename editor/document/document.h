@@ -160,7 +160,7 @@ private:
     std::uint64_t saved_serial_ = 0;
     std::optional<HistoryEntry> gesture_;
     // Of the gesture: of each entity (by index) its newest change, of each change the one before it of the same entity;
-    // numbers are by one more than in the list, 0: none.
+    // numbers count from one, 0: none.
     std::vector<std::uint32_t> newest_change_, change_before_;
 
     std::unordered_map<std::string, Entity> by_name_;
