@@ -46,6 +46,10 @@ scene::Transform decompose(const std::vector<double>& values, bool& exact) {
     return transform;
 }
 
+std::string own_name(const tinygltf::Node& node, int index) {
+    return node.name.empty() ? "node " + std::to_string(index) : node.name;
+}
+
 bool is_visible(const tinygltf::Node& node) {
     const auto found = node.extensions.find("KHR_node_visibility");
     return found == node.extensions.end() || !found->second.Has("visible") || !found->second.Get("visible").IsBool() ||
@@ -187,11 +191,20 @@ void NodeImport::add_to(ecs::Registry& registry, scene::MeshStore& meshes, scene
     registry_ = &registry;
     meshes_ = &meshes;
     content_.materials.add_textures(textures);
+    places_.assign(model_->nodes.size(), {});
     entities_.assign(model_->nodes.size(), ecs::null_entity);
     registry.view<scene::Name>().each([&](ecs::Entity, const scene::Name& name) { names_.insert(name.name); });
     for (const int root : roots)
-        if (entities_[std::size_t(root)].is_null()) // a scene may name a node twice
-            add_node(root, ecs::null_entity, true);
+        if (!places_[std::size_t(root)].reached) // a scene may name a node twice
+            reach(root, -1, true);
+    // In the file's order, whatever the tree: what is drawn may depend on the order of entities, and a scene that was
+    // saved comes back in that of its registry.
+    for (std::size_t i = 0; i < places_.size(); ++i)
+        if (places_[i].reached)
+            add_node(int(i));
+    for (std::size_t i = 0; i < places_.size(); ++i)
+        if (const int parent = places_[i].parent; parent >= 0)
+            registry.emplace<scene::Parent>(entities_[i], {entities_[std::size_t(parent)]});
     bind_skins();
     for (auto& [node, animation] : content_.animations) {
         const ecs::Entity entity = entities_[std::size_t(node)];
@@ -203,13 +216,28 @@ void NodeImport::add_to(ecs::Registry& registry, scene::MeshStore& meshes, scene
     }
 }
 
-void NodeImport::add_node(int index, ecs::Entity parent, bool visible) {
+// Names nodes by the tree: of equal names, the node that is reached first has it.
+void NodeImport::reach(int index, int parent, bool visible) {
     const tinygltf::Node& node = model_->nodes[std::size_t(index)];
-    const std::string name = node.name.empty() ? "node " + std::to_string(index) : node.name;
-    const ecs::Entity entity = child_of(parent, name, transforms_[std::size_t(index)]);
+    Place& place = places_[std::size_t(index)];
+    if (place.name.empty()) // a scene may also name what lies below another of its nodes
+        place.name = unique_name(own_name(node, index));
+    place.reached = true;
+    place.visible = visible && is_visible(node);
+    place.parent = parent;
+    for (const int child : node.children)
+        reach(child, index, place.visible);
+}
+
+void NodeImport::add_node(int index) {
+    const tinygltf::Node& node = model_->nodes[std::size_t(index)];
+    const Place& place = places_[std::size_t(index)];
+    const ecs::Entity entity = registry_->create();
+    registry_->emplace<scene::Name>(entity, {place.name});
+    registry_->emplace<scene::Transform>(entity, transforms_[std::size_t(index)]);
     entities_[std::size_t(index)] = entity;
-    visible = visible && is_visible(node);
-    if (visible && in_range(node.mesh, content_.meshes)) {
+    const std::string name = own_name(node, index);
+    if (place.visible && in_range(node.mesh, content_.meshes)) {
         const auto instances = instances_.find(index);
         if (instances == instances_.end())
             add_mesh(index, entity);
@@ -219,11 +247,9 @@ void NodeImport::add_node(int index, ecs::Entity parent, bool visible) {
     }
     if (in_range(node.camera, model_->cameras))
         add_camera(model_->cameras[std::size_t(node.camera)], entity, name);
-    if (const tinygltf::Light* light = light_of(node); visible && light != nullptr)
+    if (const tinygltf::Light* light = light_of(node); place.visible && light != nullptr)
         add_light(*light, entity);
     note_left_out(index);
-    for (const int child : node.children)
-        add_node(child, entity, visible);
 }
 
 void NodeImport::add_mesh(int index, ecs::Entity entity) {

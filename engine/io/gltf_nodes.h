@@ -39,7 +39,8 @@ private:
     NodeImport(const tinygltf::Model& model, GltfContent content) : model_(&model), content_(std::move(content)) {}
     Status read_node(std::size_t index);
     Status read_instances(std::size_t index);
-    void add_node(int index, ecs::Entity parent, bool visible);
+    void reach(int index, int parent, bool visible);
+    void add_node(int index);
     void add_mesh(int index, ecs::Entity entity);
     void add_primitive(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
     void deform(int node, const ImportedPrimitive& primitive, ecs::Entity entity);
@@ -56,6 +57,12 @@ private:
     std::vector<scene::Transform> transforms_;
     std::map<int, std::vector<scene::Transform>> instances_; // EXT_mesh_gpu_instancing, by node
     // State while adding.
+    struct Place {
+        bool reached = false, visible = false; // in the scene; and nothing hides it
+        int parent = -1;                       // node
+        std::string name;
+    };
+    std::vector<Place> places_; // by node
     ecs::Registry* registry_ = nullptr;
     scene::MeshStore* meshes_ = nullptr;
     std::vector<ecs::Entity> entities_; // by node

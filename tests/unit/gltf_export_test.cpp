@@ -117,5 +117,34 @@ TEST(GltfExport, PowersOfLightAndCamerasAreExact) {
     }
 }
 
+// Groups are younger than what was put into them. Light of equal lamps is sampled in the order of entities.
+TEST(GltfExport, EntitiesComeBackInTheirOrder) {
+    const tests::Folder folder("gltf_order");
+    World from, to;
+    std::vector<ecs::Entity> entities;
+    for (const char* name : {"lamp in a group", "lamp", "group in a group", "group"}) {
+        entities.push_back(from.registry.create());
+        from.registry.emplace<scene::Name>(entities.back(), {name});
+        from.registry.emplace<scene::Transform>(entities.back());
+    }
+    from.registry.emplace<scene::Parent>(entities[0], {entities[2]});
+    from.registry.emplace<scene::Parent>(entities[2], {entities[3]});
+    const std::filesystem::path file = folder.path / "group.glb", again = folder.path / "again.glb";
+    ASSERT_TRUE(io::export_gltf(file, from.registry, from.meshes, from.textures));
+    ASSERT_TRUE(io::import_gltf(file, to.registry, to.meshes, to.textures));
+    const auto order = [](World& world) {
+        std::vector<std::pair<std::string, std::string>> names; // and those of parents
+        for (const ecs::Entity entity : world.registry.entities()) {
+            const auto* parent = world.registry.try_get<scene::Parent>(entity);
+            names.emplace_back(world.registry.get<scene::Name>(entity).name,
+                               parent != nullptr ? world.registry.get<scene::Name>(parent->parent).name : "");
+        }
+        return names;
+    };
+    EXPECT_EQ(order(to), order(from));
+    ASSERT_TRUE(io::export_gltf(again, to.registry, to.meshes, to.textures));
+    EXPECT_EQ(read_file(again).value(), read_file(file).value());
+}
+
 } // namespace
 } // namespace sunfleck
