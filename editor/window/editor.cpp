@@ -356,7 +356,7 @@ void Program::after_frame() {
 // Where widgets are, once no event asks for frames (while a scene plays, others may): a key let go may follow the last.
 void Program::tell_scripts() {
     if (std::exchange(widgets_due_, false))
-        session_->messages.check(write_widgets(options_.widgets, ui::notes()));
+        session_->messages.check(write_widgets(options_.widgets, ui::notes(), session_->input->mouse));
 }
 
 Status Program::finish(bool whole, bool edits_wait) {

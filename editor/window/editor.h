@@ -18,7 +18,7 @@ struct Options {
     bool allow_outside = false;   // io::ImportOptions::allow_outside, of all scenes
     std::string shaders;    // the project's folder: its shaders are compiled again when they change; empty: they stay
     std::string state_file; // empty: sunfleck/editor.json in the configuration folder
-    std::string widgets;    // file for the visible widgets, written whenever the GUI has come to rest
+    std::string widgets;    // file for the visible widgets and the pointer, written whenever the GUI has come to rest
     std::string report;     // file for counters, written at the end
     bool operator==(const Options&) const = default;
 };

@@ -5,6 +5,7 @@
 #include "engine/statistics/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace sunfleck::editor {
@@ -32,9 +33,10 @@ void ReportFigures::note_frame(double milliseconds) {
     }
 }
 
-Status write_widgets(const std::filesystem::path& path, const std::vector<ui::Note>& notes) {
+Status write_widgets(const std::filesystem::path& path, const std::vector<ui::Note>& notes, vec2 pointer) {
     static std::string written;
     Json json;
+    json["pointer"] = {int(std::lround(pointer.x)), int(std::lround(pointer.y))};
     json["widgets"] = Json::array();
     for (const ui::Note& note : notes)
         json["widgets"].push_back({{"name", note.name},

@@ -16,9 +16,10 @@ struct ReportFigures {
     void note_frame(double milliseconds);
 };
 
-// JSON: {"widgets": [{"name", "value", "x", "y", "width", "height"}, ...]}, pixels of the window. Written only where it
-// differs from what was written last.
-Status write_widgets(const std::filesystem::path& path, const std::vector<ui::Note>& notes);
+// JSON: {"pointer": [x, y], "widgets": [{"name", "value", "x", "y", "width", "height"}, ...]}, pixels of the window.
+// Written only where it differs from what was written last. Events come in order: once the pointer is said to be where
+// a script has moved it, all that the script sent before has been taken, too.
+Status write_widgets(const std::filesystem::path& path, const std::vector<ui::Note>& notes, vec2 pointer);
 Status write_report(const std::filesystem::path& path, const ReportFigures& figures, Session& session,
                     int validation_messages);
 

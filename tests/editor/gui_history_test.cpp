@@ -96,7 +96,7 @@ private:
     void number() {
         if (random_() % 3 == 0)
             select();
-        DrivenEditor::let_events_arrive();
+        editor_.catch_up();
         const std::string box = some("inspector/", random_() % 2 == 0 ? "/x" : "/value");
         static const char* const values[] = {"0.5", "1", "0.25", "2", "0", "nan", "1e9", "-0.5"};
         const char* const value = values[random_() % std::size(values)];
@@ -122,16 +122,15 @@ TEST_F(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
     const auto saved = [&](const std::string& name) {
         fs::create_directories(folder / name);
         editor->key("ctrl+shift+s");
-        // The window takes a frame for each key, and many may be on their way.
-        EXPECT_TRUE(DrivenEditor::wait_until([&] { return editor->find("dialog/name").has_value(); }, 300.0));
         name_file(editor->file(name + "/room.scene.json"));
-        EXPECT_TRUE(DrivenEditor::wait_until([&] { return fs::exists(folder / name / "room.scene.json"); }))
-            << editor->value("status/message");
+        EXPECT_TRUE(editor->wait_for("status/message", "Saved " + editor->file(name + "/room.scene.json")));
         EXPECT_TRUE(editor->wait_for("menu/title", "room.scene.json"));
         std::string bytes;
         for (const char* file : {"room.scene.json", "room.glb"})
             if (const auto text = read_file(folder / name / file))
                 bytes += *text;
+            else
+                ADD_FAILURE() << text.error().message;
         return bytes;
     };
     const std::string first = saved("first");
@@ -148,6 +147,7 @@ TEST_F(EditorWindowHistory, UndoAndRedoThroughTheWindow) {
         for (int i = 0; i < edits + 5; ++i)
             command += " z";
         editor->run(command + " keyup shift keyup ctrl");
+        EXPECT_TRUE(editor->catch_up());
     };
     many("keydown shift ");
     const std::string last = saved("last");

@@ -1,26 +1,50 @@
-// The editor's window under random use: clicks, drags, keys and texts of all kinds do no harm.
+// The editor's window under random use: clicks, drags, keys and texts of all kinds do no harm, and can be undone.
 #include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <random>
+#include <set>
 
 namespace sunfleck {
 namespace {
 
+namespace fs = std::filesystem;
 using tests::DrivenEditor, tests::Widget;
 
-// What ends the program, or would lead out of the test's folder.
+bool is_command(const std::string& name, const std::string& group) {
+    return name.starts_with("menu/" + group + "/") || name.starts_with("commands/" + group + "/");
+}
+
+// What ends the program, leads out of the test's folder, or gives other keys to commands, which the test presses.
 bool is_left_out(const std::string& name) {
-    return name.ends_with("/Quit") || name.starts_with("dialog/folder");
+    const bool folder = name.starts_with("dialog/") && (name.ends_with("/") || name == "dialog/..");
+    const bool keys = name.starts_with("commands/") && name.find(": ") == name.npos && name != "commands/search";
+    return name.ends_with("Quit") || folder || keys;
+}
+
+// What puts another scene in the place of this one, with a history of its own.
+bool replaces_scene(const std::string& name) {
+    return is_command(name, "File") && name.find("Save") == name.npos && !name.ends_with("Reload");
 }
 
 class RandomUser {
 public:
     RandomUser(DrivenEditor& editor, std::uint32_t seed) : editor_(editor), random_(seed) {}
 
+    // From now on in the scene that is open.
+    void stay_in_scene() { stays_ = true; }
+    // As fast as a hand, but never far ahead of what the program has taken.
     void act() {
+        act_once();
+        if (++acts_ % 4 == 0)
+            editor_.catch_up();
+    }
+
+private:
+    void act_once() {
         const std::uint32_t kind = below(24);
         if (kind >= 20)
             menu();
@@ -37,12 +61,11 @@ public:
         else
             editor_.resize(400 + int(below(900)), 300 + int(below(500)));
     }
-
-private:
     std::uint32_t below(std::size_t limit) { return std::uint32_t(random_() % limit); }
+    bool leaves_out(const std::string& name) const { return is_left_out(name) || (stays_ && replaces_scene(name)); }
     const Widget* some_widget() {
         widgets_ = editor_.widgets();
-        std::erase_if(widgets_, [](const Widget& widget) { return is_left_out(widget.name) || widget.width <= 0; });
+        std::erase_if(widgets_, [&](const Widget& widget) { return leaves_out(widget.name) || widget.width <= 0; });
         return widgets_.empty() ? nullptr : &widgets_[below(widgets_.size())];
     }
     void click() {
@@ -58,7 +81,7 @@ private:
         choose([](const std::string& name) {
             return name.starts_with("menu/") && name != "menu/title" && name.find('/', 5) == std::string::npos;
         });
-        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        editor_.catch_up();
         choose([](const std::string& name) { return name.starts_with("menu/") && name.find('/', 5) != name.npos; });
         if (below(3) == 0)
             editor_.key("Escape");
@@ -66,11 +89,19 @@ private:
     void choose(const std::function<bool(const std::string&)>& wanted) {
         widgets_ = editor_.widgets();
         std::erase_if(widgets_, [&](const Widget& widget) {
-            return is_left_out(widget.name) || widget.value == "disabled" || !wanted(widget.name);
+            return leaves_out(widget.name) || widget.value == "disabled" || !wanted(widget.name);
         });
+        // Mostly what was not tried yet.
+        const auto new_ones = std::stable_partition(
+            widgets_.begin(), widgets_.end(), [&](const Widget& widget) { return chosen_.count(widget.name) == 0; });
+        if (new_ones != widgets_.begin() && below(4) > 0)
+            widgets_.erase(new_ones, widgets_.end());
         if (widgets_.empty())
             return;
-        editor_.point_at(widgets_[below(widgets_.size())]);
+        const Widget& choice = widgets_[below(widgets_.size())];
+        if (choice.name.find('/', 5) != choice.name.npos) // a menu is opened again and again
+            chosen_.insert(choice.name);
+        editor_.point_at(choice);
         editor_.run("xdotool click 1");
     }
     void drag() {
@@ -78,36 +109,14 @@ private:
             editor_.drag(widget->name, int(below(400)) - 200, int(below(300)) - 150);
     }
     void key() {
-        static const char* const keys[] = {"ctrl+z",
-                                           "ctrl+z",
-                                           "ctrl+shift+z",
-                                           "ctrl+d",
-                                           "ctrl+g",
-                                           "ctrl+a",
-                                           "Delete",
-                                           "Escape",
-                                           "Escape",
-                                           "w",
-                                           "e",
-                                           "r",
-                                           "f",
-                                           "Home",
-                                           "ctrl+c",
-                                           "ctrl+v",
-                                           "ctrl+x",
-                                           "space",
-                                           "ctrl+s",
-                                           "ctrl+shift+s",
-                                           "ctrl+n",
-                                           "ctrl+o",
-                                           "Tab",
-                                           "Return",
-                                           "ctrl+p",
-                                           "ctrl+l",
-                                           "h",
-                                           "g",
-                                           "Up",
-                                           "Down"};
+        static const char* const keys[] = {"ctrl+z", "ctrl+z", "ctrl+shift+z", "ctrl+d", "ctrl+g", "ctrl+a",
+                                           "Delete", "Escape", "Escape",       "w",      "e",      "r",
+                                           "f",      "Home",   "ctrl+c",       "ctrl+v", "ctrl+x", "space",
+                                           "ctrl+s", "Tab",    "Return",       "ctrl+p", "ctrl+l", "ctrl+shift+s",
+                                           "h",      "g",      "Up",           "Down"};
+        static const char* const other_scenes[] = {"ctrl+n", "ctrl+o"};
+        if (!stays_ && below(15) == 0)
+            return editor_.key(other_scenes[below(std::size(other_scenes))]);
         editor_.key(keys[below(std::size(keys))]);
     }
     void enter() {
@@ -120,6 +129,9 @@ private:
     DrivenEditor& editor_;
     std::mt19937 random_;
     std::vector<Widget> widgets_;
+    std::set<std::string> chosen_; // in menus
+    bool stays_ = false;
+    unsigned acts_ = 0;
 };
 
 double resident_mib(pid_t process) {
@@ -130,30 +142,79 @@ double resident_mib(pid_t process) {
     return 0.0;
 }
 
-using EditorWindowUse = tests::EditorWindowTest;
-
-// A quarter of a minute; ./run bench editor takes twenty. SUNFLECK_SEED repeats a failure.
-TEST_F(EditorWindowUse, RandomUseDoesNoHarm) {
-    const char* const seed_text = std::getenv("SUNFLECK_SEED");
-    const std::uint32_t seed = seed_text != nullptr ? std::uint32_t(std::atoi(seed_text)) : 1u;
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    editor->start({"cornell", "--validation"});
-    ASSERT_TRUE(editor->settles()) << editor->log();
-    RandomUser user(*editor, seed);
-    const char* const seconds_text = std::getenv("SUNFLECK_USE_SECONDS");
-    const int seconds = seconds_text != nullptr ? std::atoi(seconds_text) : tests::by_size(15, 1200);
-    const auto begin = std::chrono::steady_clock::now(), end = begin + std::chrono::seconds(seconds);
-    int events = 0;
-    double half = 0.0; // memory when half of the time has passed, MiB
-    for (; std::chrono::steady_clock::now() < end && editor->runs(); ++events) {
-        user.act();
-        if (half == 0.0 && std::chrono::steady_clock::now() - begin > (end - begin) / 2)
-            half = resident_mib(editor->process());
+class EditorWindowUse : public tests::EditorWindowTest {
+protected:
+    // Whatever is open is closed, nothing plays, and the window has the size that it began with.
+    void come_to_rest() const {
+        editor->resize(1280, 800);
+        const auto asks = [&] {
+            const std::vector<Widget> all = editor->widgets();
+            return std::any_of(all.begin(), all.end(), [](const Widget& one) {
+                return one.name.starts_with("dialog/") ||
+                       (one.name.starts_with("menu/") && one.name.find('/', 5) != one.name.npos);
+            });
+        };
+        // One for what is typed, one for the list that it lies in, one for the selection.
+        for (int escapes = 0; escapes < 3 || (escapes < 10 && asks()); ++escapes) {
+            editor->key("Escape");
+            ASSERT_TRUE(editor->catch_up());
+        }
+        ASSERT_FALSE(asks());
+        if (editor->find("viewport/Stop")) { // what plays never rests
+            ASSERT_TRUE(editor->click("viewport/Stop"));
+            ASSERT_TRUE(editor->appears("viewport/Play"));
+        }
     }
-    ASSERT_TRUE(editor->runs()) << "ended after " << events << " events\n" << editor->log();
-    const double memory = resident_mib(editor->process());
-    const auto report = editor->end();
-    ASSERT_TRUE(report.is_object()) << "ended after " << events << " events\n" << editor->log();
+    void open_fresh_scene() const {
+        const fs::path scenes = fs::path(SUNFLECK_TOOL).parent_path() / "../scenes";
+        fs::copy_file(scenes / "cornell.scene.json", folder / "fresh.scene.json");
+        fs::copy_file(scenes / "cornell.glb", folder / "cornell.glb");
+        menu("File", "Open...");
+        name_file(editor->file("fresh.scene.json"));
+        ASSERT_TRUE(editor->wait_until([&] {
+            return editor->value("menu/title") == "fresh.scene.json" || editor->find("dialog/Discard").has_value();
+        })) << message();
+        if (editor->find("dialog/Discard")) {
+            ASSERT_TRUE(editor->click("dialog/Discard"));
+        }
+        ASSERT_TRUE(editor->wait_for("menu/title", "fresh.scene.json")) << message();
+    }
+    // Under the same name each time, into a folder of its own.
+    std::string saved(const std::string& name) const {
+        fs::create_directories(folder / name);
+        menu("File", "Save as...");
+        name_file(editor->file(name + "/room.scene.json"));
+        EXPECT_TRUE(editor->wait_until([&] { return message() == "Saved " + editor->file(name + "/room.scene.json"); }))
+            << message();
+        std::string bytes;
+        for (const char* file : {"room.scene.json", "room.glb"})
+            if (const auto text = read_file(folder / name / file))
+                bytes += *text;
+            else
+                ADD_FAILURE() << text.error().message;
+        return bytes;
+    }
+    void undo_all() const {
+        for (int rounds = 0; rounds < 200; ++rounds) {
+            ASSERT_TRUE(editor->click("menu/Edit"));
+            ASSERT_TRUE(editor->appears("menu/Edit/Undo"));
+            const bool all = editor->value("menu/Edit/Undo") == "disabled";
+            editor->key("Escape");
+            ASSERT_TRUE(editor->catch_up());
+            if (all)
+                return;
+            std::string keys;
+            for (int i = 0; i < 40; ++i)
+                keys += " ctrl+z";
+            editor->run("xdotool key --delay 10" + keys);
+            ASSERT_TRUE(editor->catch_up());
+        }
+        FAIL() << "there is always more to undo";
+    }
+    void print_and_judge(const nlohmann::json& report, bool whole) const;
+};
+
+void EditorWindowUse::print_and_judge(const nlohmann::json& report, bool whole) const {
     EXPECT_EQ(report["validation_messages"], 0) << editor->log();
     int used = 0;
     std::string unused;
@@ -163,11 +224,51 @@ TEST_F(EditorWindowUse, RandomUseDoesNoHarm) {
         else
             unused += " '" + name + "'";
     const int commands = int(report["commands"].size());
-    std::printf("seed %u: %d events, %d of %d commands, %.0f MiB at half time, %.0f MiB at the end; never:%s\n", seed,
-                events, used, commands, half, memory, unused.c_str());
-    if (seconds >= 1200) { // of less, chance decides
+    std::printf("%d of %d commands; never:%s\n", used, commands, unused.c_str());
+    if (whole) { // else chance decides
         EXPECT_GE(used, 0.9 * commands);
-        EXPECT_LE(memory, 1.01 * half);
+    }
+}
+
+// A quarter of a minute; ./run bench editor takes twenty. SUNFLECK_SEED repeats a failure. The second half is spent in
+// one scene, which all undone is as it was: its bytes, and the memory that the program has.
+TEST_F(EditorWindowUse, RandomUseDoesNoHarmAndIsUndone) {
+    const char* const seed_text = std::getenv("SUNFLECK_SEED");
+    const std::uint32_t seed = seed_text != nullptr ? std::uint32_t(std::atoi(seed_text)) : 1u;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    editor->start({"cornell", "--validation"});
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    RandomUser user(*editor, seed);
+    const char* const seconds_text = std::getenv("SUNFLECK_USE_SECONDS");
+    const int seconds = seconds_text != nullptr ? std::atoi(seconds_text) : tests::by_size(15, 1200);
+    int events = 0;
+    const auto use = [&] {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(500 * seconds);
+        for (; std::chrono::steady_clock::now() < end && editor->runs(); ++events)
+            user.act();
+        ASSERT_TRUE(editor->runs()) << "ended after " << events << " events\n" << editor->log();
+        ASSERT_NO_FATAL_FAILURE(come_to_rest());
+    };
+    ASSERT_NO_FATAL_FAILURE(use());
+    ASSERT_NO_FATAL_FAILURE(open_fresh_scene());
+    const std::string fresh = saved("fresh");
+    ASSERT_TRUE(editor->settles());
+    const double half = resident_mib(editor->process());
+    user.stay_in_scene();
+    ASSERT_NO_FATAL_FAILURE(use());
+    const double used = resident_mib(editor->process());
+    ASSERT_NO_FATAL_FAILURE(undo_all());
+    EXPECT_EQ(saved("undone"), fresh);
+    ASSERT_TRUE(editor->settles());
+    const double end = resident_mib(editor->process());
+    const auto report = editor->end();
+    ASSERT_TRUE(report.is_object()) << "ended after " << events << " events\n" << editor->log();
+    std::printf(
+        "seed %u: %d events; %.0f MiB at half time, %.0f MiB after the second half, %.0f MiB when it was undone\n",
+        seed, events, half, used, end);
+    print_and_judge(report, seconds >= 1200);
+    if (seconds >= 1200) {
+        EXPECT_LE(end, 1.01 * half);
     }
 }
 

@@ -69,7 +69,7 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     before.end = now();
     ASSERT_TRUE(editor->settles());
     editor->key("f");
-    editor->let_events_arrive();
+    editor->catch_up();
     ASSERT_TRUE(editor->settles());
 
     const auto drag = [&] {

@@ -34,7 +34,7 @@ protected:
     }
     // Types a path into the file dialog that is open, or is about to open.
     void name_file(const std::string& path) const {
-        editor->let_events_arrive(); // and no other dialog is meant
+        editor->catch_up(); // and no other dialog is meant
         ASSERT_TRUE(editor->click("dialog/name"));
         editor->key("ctrl+a");
         editor->type(path);

@@ -83,7 +83,7 @@ TEST_F(EditorWindow, AClickInThePictureSelectsAndAHandleMoves) {
     ASSERT_TRUE(editor->wait_for("inspector/name", "tall block"));
     for (const char* tool : {"viewport/Rotate", "viewport/Move"}) { // and not what is behind the button
         ASSERT_TRUE(editor->click(tool));
-        editor->let_events_arrive();
+        editor->catch_up();
         EXPECT_EQ(editor->value("inspector/name"), "tall block");
     }
     ASSERT_TRUE(editor->appears("viewport/gizmo y"));
@@ -248,7 +248,7 @@ TEST_F(EditorWindow, TimePassesWhileItRests) {
     ASSERT_TRUE(editor->wait_for("inspector/name", "tall block"));
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     editor->run("xdotool click 1");
-    editor->let_events_arrive();
+    editor->catch_up();
     EXPECT_FALSE(editor->find("hierarchy/rename").has_value());
     editor->run("xdotool click --repeat 2 --delay 60 1");
     EXPECT_TRUE(editor->appears("hierarchy/rename")) << "and this is one";

@@ -111,6 +111,8 @@ private:
         ::close(ends[0]);
         number_ = std::atoi(text);
         manager_ = launch({"openbox", "--config-file", "/dev/null"}, folder_ / "display.log");
+        // It answers: a window that is opened while it starts may never be shown.
+        wait_until([&] { return run("xdotool set_num_desktops 1 get_num_desktops").output == "1\n"; }, 60.0);
     }
 
     std::filesystem::path folder_;
