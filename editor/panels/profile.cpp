@@ -183,13 +183,18 @@ void Profile::history(const std::deque<ProfiledFrame>& frames, double budget) {
     const auto line = [&](double value, ImU32 colour, const std::string& text, float place) {
         const float y = low.y + size.y * (1.0f - float(std::min(value / top, 1.0)));
         list->AddLine(ImVec2(low.x, y), ImVec2(low.x + size.x, y), colour);
-        const float room = size.x - ImGui::CalcTextSize(text.c_str()).x - 8.0f;
-        list->AddText(ImVec2(low.x + 4.0f + place * room, std::max(y - ui::unit(), low.y)), colour, text.c_str());
+        // Above the line, or below where there is no room, and readable over bars.
+        const ImVec2 text_size = ImGui::CalcTextSize(text.c_str());
+        const float above = y - text_size.y - 1.0f;
+        const ImVec2 from(low.x + 4.0f + place * (size.x - text_size.x - 8.0f), above < low.y ? y + 2.0f : above);
+        list->AddRectFilled(ImVec2(from.x - 2.0f, from.y), ImVec2(from.x + text_size.x + 2.0f, from.y + text_size.y),
+                            IM_COL32(16, 15, 14, 200));
+        list->AddText(from, colour, text.c_str());
     };
-    line(budget, IM_COL32(240, 200, 90, 220), "budget", 0.5f);
+    line(budget, IM_COL32(240, 200, 90, 220), "budget", 0.0f);
     line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high), 1.0f);
     if (high > 1.4 * middle)
-        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.75f);
+        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.5f);
     if (!ImGui::IsItemHovered())
         return;
     const auto index = std::size_t(std::max((ImGui::GetIO().MousePos.x - low.x) / wide, 0.0f));
@@ -220,11 +225,9 @@ void Profile::graph(const char* name, const std::vector<gpu::ScopeTime>& scopes,
         ends.push_back(scope.end_ms);
         deepest = std::max(deepest, ends.size());
         list->AddRectFilled(from, to, colour_of_name(scope.name));
-        if (to.x - from.x > 2.0f * ui::unit()) {
-            list->PushClipRect(from, to, true);
-            list->AddText(ImVec2(from.x + 3.0f, from.y), IM_COL32(255, 255, 255, 255), scope.name.c_str());
-            list->PopClipRect();
-        }
+        if (const float room = to.x - from.x - 6.0f; room > 2.0f * ui::unit())
+            list->AddText(ImVec2(from.x + 3.0f, from.y), IM_COL32(255, 255, 255, 255),
+                          ui::fitted(scope.name, room).c_str());
         const std::string time = milliseconds(scope.end_ms - scope.begin_ms);
         ui::note_place(scope.name, time, from, to);
         if (ImGui::IsMouseHoveringRect(from, to) && ImGui::IsWindowHovered())
