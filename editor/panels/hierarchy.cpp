@@ -293,8 +293,7 @@ void Hierarchy::show_selection(Session& session) {
 
 void Hierarchy::draw(Session& session) {
     const ui::Scope scope("hierarchy");
-    const float room = ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().FramePadding.x;
-    ui::text_box("search", filter_, ui::fitted("Search names and components", room).c_str(), -1.0f);
+    ui::text_box("search", filter_, "Search names and components", -1.0f);
     follow(session);
     ImGui::TextDisabled(filter_.empty() ? "%zu entities" : "%zu found",
                         filter_.empty() ? session.document->entity_count() : rows_.size());

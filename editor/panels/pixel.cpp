@@ -48,7 +48,8 @@ std::string light_text(vec3 irradiance) {
 }
 
 std::string percent(float share) {
-    return format(share < 0.001f ? "%.2f %%" : "%.1f %%", 100.0 * double(share));
+    const char* const pattern = share < 0.001f ? "%.2f %%" : share < 0.9995f ? "%.1f %%" : "%.0f %%";
+    return format(pattern, 100.0 * double(share));
 }
 
 std::string entity_name(Session& session, Entity entity) {
@@ -68,6 +69,23 @@ bool begin_values(const char* name) {
     return true;
 }
 
+// In as many lines as it needs, which end at the gaps between numbers: Dear ImGui also ends lines at a decimal point.
+std::string broken_at_gaps(const std::string& text, float room) {
+    constexpr std::string_view gap = "  ";
+    std::string result = text;
+    std::size_t begin = 0; // of the line
+    for (std::size_t at = result.find(gap); at != result.npos; at = result.find(gap, at + 1)) {
+        const std::size_t next = std::min(result.find(gap, at + gap.size()), result.size());
+        if (const std::size_t end_of_line = result.rfind('\n', at); end_of_line != result.npos)
+            begin = std::max(begin, end_of_line + 1);
+        if (ImGui::CalcTextSize(result.c_str() + begin, result.c_str() + next).x <= room)
+            continue;
+        result.replace(at, gap.size(), "\n");
+        begin = at + 1;
+    }
+    return result;
+}
+
 void row(const std::string& name, const std::string& value, std::string_view tip = {}) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -75,7 +93,7 @@ void row(const std::string& name, const std::string& value, std::string_view tip
     ImGui::TextDisabled("%s", name.c_str());
     ui::tooltip(tip);
     ImGui::TableNextColumn();
-    ImGui::TextUnformatted(value.c_str());
+    ImGui::TextUnformatted(broken_at_gaps(value, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopTextWrapPos();
     ui::note(name, value);
 }

@@ -111,8 +111,9 @@ bool choice(const std::string& name, bool chosen, std::string_view tip) {
 
 bool text_box(const std::string& name, std::string& text, const char* hint, float width, bool enter) {
     ImGui::SetNextItemWidth(width);
-    const bool changed =
-        ImGui::InputTextWithHint(("##" + name).c_str(), hint, &text, enter ? ImGuiInputTextFlags_EnterReturnsTrue : 0);
+    const float room = ImGui::CalcItemWidth() - 2.0f * ImGui::GetStyle().FramePadding.x;
+    const bool changed = ImGui::InputTextWithHint(("##" + name).c_str(), fitted(hint, room).c_str(), &text,
+                                                  enter ? ImGuiInputTextFlags_EnterReturnsTrue : 0);
     note(name, text);
     return changed;
 }
