@@ -39,6 +39,7 @@ protected:
         editor->key("ctrl+a");
         editor->type(path);
         editor->key("Return");
+        ASSERT_TRUE(editor->catch_up()); // a frame for each key
     }
     // Types into a list's search box, until the list follows.
     void search(const std::string& box, const std::string& text) const {
