@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <queue>
 #include <span>
@@ -14,6 +15,9 @@ namespace {
 
 constexpr float normal_length = 1.0f; // m: opposite normals are twice as far apart
 constexpr float min_extent = 0.3f;    // m: so that flux counts even in a cluster without extent
+// Clusters with less than so many times the mean flux are divided by surfaces, where one surface has at least this
+// share of the flux, and the others together have it, too.
+constexpr double small_cluster = 6.0, least_share = 0.25;
 
 // Position and scaled normal, m.
 using Features = std::array<float, 6>;
@@ -21,6 +25,17 @@ using Features = std::array<float, 6>;
 Features features_of(const LightSample& sample) {
     const vec3 n = sample.normal * normal_length;
     return {sample.position.x, sample.position.y, sample.position.z, n.x, n.y, n.z};
+}
+
+// Whether both may lie on one surface: on one plane or, where normals differ a little, on one that bends from one to
+// the other, so that no chord is inclined to it by more than the normals are to each other.
+bool on_one_surface(const LightSample& a, const LightSample& b) {
+    constexpr float smooth = 0.9f; // cosine; more is an edge
+    if (glm::dot(a.normal, b.normal) < smooth)
+        return false;
+    const vec3 chord = b.position - a.position, size = glm::max(glm::abs(a.position), glm::abs(b.position));
+    const float rounding = 16.0f * std::numeric_limits<float>::epsilon() * std::max({size.x, size.y, size.z});
+    return std::abs(glm::dot(a.normal, chord)) <= glm::length(a.normal - b.normal) * glm::length(chord) + rounding;
 }
 
 struct Cluster {
@@ -32,9 +47,11 @@ struct Cluster {
 
 class Subdivision {
 public:
-    Subdivision(const std::vector<LightSample>& samples, float spread) : samples_(samples), spread_(spread) {
+    Subdivision(const std::vector<LightSample>& samples, std::uint32_t count, float spread)
+        : samples_(samples), spread_(spread) {
         order_.resize(samples.size());
         std::iota(order_.begin(), order_.end(), 0u);
+        small_ = small_cluster * measure(0, std::uint32_t(samples.size())).flux / count;
     }
 
     Cluster measure(std::uint32_t first, std::uint32_t count) const {
@@ -61,8 +78,67 @@ public:
         return cluster;
     }
 
-    // At the median of the flux along the longest axis.
+    // Small ones by surfaces, since a VPL lies on one; others, and those that have no surface of weight, at the median.
     std::pair<Cluster, Cluster> divide(const Cluster& cluster) {
+        std::uint32_t left = cluster.flux < small_ ? move_surface_first(cluster) : 0;
+        left = left > 0 ? left : move_nearer_half_first(cluster);
+        return {measure(cluster.first, left), measure(cluster.first + left, cluster.count - left)};
+    }
+
+    // A member is drawn in proportion to luminance, by `number` in [0, 1): the light's path is its. The place is that
+    // of the medoid of those on its surface; the flux is that of all, and the disc is as wide as all are spread.
+    LightSample representative(const Cluster& cluster, float number) const {
+        const auto members = std::span(order_).subspan(cluster.first, cluster.count);
+        glm::dvec3 flux(0.0);
+        std::uint32_t drawn = members.front();
+        double before = 0.0;
+        for (const std::uint32_t i : members) {
+            flux += glm::dvec3(samples_[i].flux);
+            if (before <= double(number) * cluster.flux)
+                drawn = i;
+            before += double(luminance(samples_[i].flux));
+        }
+        std::vector<std::uint32_t> around;
+        std::copy_if(members.begin(), members.end(), std::back_inserter(around),
+                     [&](std::uint32_t i) { return on_one_surface(samples_[drawn], samples_[i]); });
+        const LightSample& medoid = samples_[medoid_of(around)];
+        LightSample sample = samples_[drawn];
+        sample.flux = vec3(flux);
+        sample.position = medoid.position;
+        sample.normal = medoid.normal;
+        sample.index = medoid.index;
+        sample.radius = radius_of(members);
+        return sample;
+    }
+
+private:
+    // Puts those members first that lie on the surface that has most of the flux; returns how many, or 0 where there is
+    // no surface to divide by.
+    std::uint32_t move_surface_first(const Cluster& cluster) {
+        const auto begin = order_.begin() + cluster.first, end = begin + cluster.count;
+        auto brightest = begin, brightest_end = end;
+        double most = -1.0;
+        for (auto first = begin; first != end;) {
+            const LightSample& of_surface = samples_[*first];
+            const auto next = std::stable_partition(
+                first, end, [&](std::uint32_t i) { return on_one_surface(of_surface, samples_[i]); });
+            double flux = 0.0;
+            for (auto i = first; i != next; ++i)
+                flux += double(luminance(samples_[*i].flux));
+            if (flux > most) {
+                most = flux;
+                brightest = first, brightest_end = next;
+            }
+            first = next;
+        }
+        if (std::min(most, cluster.flux - most) < least_share * cluster.flux)
+            return 0;
+        std::rotate(begin, brightest, brightest_end);
+        return std::uint32_t(brightest_end - brightest);
+    }
+
+    // Divides at the median of the flux along the longest axis; returns how many come first.
+    std::uint32_t move_nearer_half_first(const Cluster& cluster) {
         const auto begin = order_.begin() + cluster.first, end = begin + cluster.count;
         const std::size_t axis = std::size_t(cluster.axis);
         std::sort(begin, end, [&](std::uint32_t a, std::uint32_t b) {
@@ -73,59 +149,56 @@ public:
         std::uint32_t left = 0;
         while (left + 1 < cluster.count - 1 && flux < 0.5 * cluster.flux)
             flux += double(luminance(samples_[order_[cluster.first + left++]].flux));
-        left = std::max(left, 1u);
-        return {measure(cluster.first, left), measure(cluster.first + left, cluster.count - left)};
+        return std::max(left, 1u);
     }
 
-    // The cluster's medoid, with the flux of all members and a disc as wide as they are spread. The light's path is
-    // that of one of them, drawn in proportion to luminance; `number` in [0, 1).
-    LightSample representative(const Cluster& cluster, float number) const {
-        const auto members = std::span(order_).subspan(cluster.first, cluster.count);
+    // Of all features, weighted by luminance.
+    std::array<double, 6> mean_of(std::span<const std::uint32_t> members) const {
+        double flux = 0.0;
         std::array<double, 6> mean{};
-        glm::dvec3 flux(0.0);
-        std::uint32_t drawn = members.front();
-        double before = 0.0;
         for (const std::uint32_t i : members) {
-            flux += glm::dvec3(samples_[i].flux);
-            if (before <= double(number) * cluster.flux)
-                drawn = i;
-            before += double(luminance(samples_[i].flux));
+            const double weight = double(luminance(samples_[i].flux));
+            flux += weight;
             const Features features = features_of(samples_[i]);
             for (std::size_t k = 0; k < 6; ++k)
-                mean[k] += double(luminance(samples_[i].flux)) / cluster.flux * double(features[k]);
+                mean[k] += weight * double(features[k]);
         }
-        LightSample sample = samples_[drawn];
-        sample.flux = vec3(flux);
-        place_at_medoid(cluster, mean, sample);
-        return sample;
+        for (double& feature : mean)
+            feature /= flux;
+        return mean;
     }
 
-private:
-    void place_at_medoid(const Cluster& cluster, const std::array<double, 6>& mean, LightSample& sample) const {
-        const auto members = std::span(order_).subspan(cluster.first, cluster.count);
-        std::uint32_t medoid = members.front();
-        double nearest = 1e30, variance = 0.0;
-        for (const std::uint32_t i : members) {
+    // The member nearest to the mean.
+    std::uint32_t medoid_of(std::span<const std::uint32_t> members) const {
+        const std::array<double, 6> mean = mean_of(members);
+        const auto square_to_mean = [&](std::uint32_t i) {
             const Features features = features_of(samples_[i]);
-            double in_space = 0.0, in_all = 0.0;
-            for (std::size_t k = 0; k < 6; ++k) {
-                in_all += (double(features[k]) - mean[k]) * (double(features[k]) - mean[k]);
-                in_space = k < 3 ? in_all : in_space;
-            }
-            variance += double(luminance(samples_[i].flux)) / cluster.flux * in_space;
-            if (in_all < nearest) {
-                nearest = in_all;
-                medoid = i;
-            }
+            double square = 0.0;
+            for (std::size_t k = 0; k < 6; ++k)
+                square += (double(features[k]) - mean[k]) * (double(features[k]) - mean[k]);
+            return square;
+        };
+        return *std::min_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return square_to_mean(a) < square_to_mean(b);
+        });
+    }
+
+    // Of a disc over which light varies in place as much as over the members, m.
+    float radius_of(std::span<const std::uint32_t> members) const {
+        const std::array<double, 6> mean = mean_of(members);
+        double flux = 0.0, squares = 0.0;
+        for (const std::uint32_t i : members) {
+            const double weight = double(luminance(samples_[i].flux));
+            const glm::dvec3 away = glm::dvec3(samples_[i].position) - glm::dvec3(mean[0], mean[1], mean[2]);
+            flux += weight;
+            squares += weight * glm::dot(away, away);
         }
-        sample.position = samples_[medoid].position;
-        sample.normal = samples_[medoid].normal;
-        sample.index = samples_[medoid].index;
-        sample.radius = std::sqrt(2.0f * float(variance)); // of a disc with that variance
+        return std::sqrt(2.0f * float(squares / flux));
     }
 
     const std::vector<LightSample>& samples_;
     float spread_;
+    double small_ = 0.0; // W; less is divided by surfaces
     std::vector<std::uint32_t> order_;
 };
 
@@ -135,7 +208,7 @@ std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples
                                          std::uint32_t seed) {
     if (samples.size() <= count)
         return samples;
-    Subdivision subdivision(samples, spread);
+    Subdivision subdivision(samples, count, spread);
     const auto less = [](const Cluster& a, const Cluster& b) {
         return a.error != b.error ? a.error < b.error : a.first > b.first;
     };

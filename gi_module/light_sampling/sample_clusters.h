@@ -2,6 +2,10 @@
 // orientation, and each cluster is represented by its medoid, the candidate nearest to the flux-weighted mean, with the
 // flux of all. The thesis suggests it in sec. 6.1 (samples spread evenly in space, weighted by the walks that reach
 // their region); the subdivision follows the global cuts of B. Walter et al., "Lightcuts", 2005.
+//
+// A cluster that spans several surfaces, as in a corner, has no place that stands for all: its medoid would lie on the
+// same one of them for all seeds, and the others would be dark. So small clusters are divided by surfaces first, and
+// one that is mixed even so is represented by the medoid of one surface, drawn in proportion to its share of the flux.
 #pragma once
 
 #include "gi_module/transport/light_sample.h"

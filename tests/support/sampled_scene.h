@@ -37,4 +37,11 @@ struct SampledScene {
     std::vector<Emitter> emitters;
 };
 
+inline double total_luminance(const std::vector<LightSample>& samples) {
+    double sum = 0;
+    for (const LightSample& sample : samples)
+        sum += double(luminance(sample.flux));
+    return sum;
+}
+
 } // namespace sunfleck::gi

@@ -152,8 +152,10 @@ struct SurfaceSampler {
 inline bool explained(const ShadowMapValues& maps, const raytrace::RayScene& rays, std::size_t light,
                       const ShadowMapValues::Look& look, vec3 position) {
     const vec3 origin(maps.rows[light].position_bound);
-    // The depth that the map's values are held against: the receiver's, less the bias.
-    const float w = 1.0f / (look.place.z + look.bias / shadow_near);
+    // The depth that the map's values are held against: the receiver's, less the bias; values are rounded to whole
+    // steps.
+    const float rounding = (look.lit ? 0.5f : -0.5f) * depth_step(maps.bits);
+    const float w = 1.0f / (look.place.z + (look.bias + rounding) / shadow_near);
     if (look.lit) {
         const raytrace::Ray ray{origin, position - origin, 0.0f, 1.0f};
         const auto hit = rays.closest_hit(ray);
