@@ -27,24 +27,6 @@ void Progress::show(double share, const std::string& detail) {
     last_tenth_ = tenth;
 }
 
-Patience::Patience(std::string what)
-    : thread_([this, what = std::move(what)] {
-          using Seconds = std::chrono::duration<int>;
-          const auto began = std::chrono::steady_clock::now();
-          std::unique_lock lock(mutex_);
-          for (Seconds next(10); !ended_.wait_until(lock, began + next, [this] { return end_; }); next *= 2)
-              std::fprintf(stderr, "%s: %d s so far\n", what.c_str(), next.count());
-      }) {}
-
-Patience::~Patience() {
-    {
-        const std::scoped_lock lock(mutex_);
-        end_ = true;
-    }
-    ended_.notify_one();
-    thread_.join();
-}
-
 std::function<bool(float)> progress_until_stopped(const std::string& what) {
     return [progress = std::make_shared<Progress>(what), start = std::chrono::steady_clock::now()](float share) {
         if (std::chrono::steady_clock::now() - start > std::chrono::milliseconds(500))

@@ -1,11 +1,8 @@
 // How far a program's work is, for people who watch it.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <string>
-#include <thread>
 
 namespace sunfleck::viewer {
 
@@ -24,22 +21,6 @@ private:
     std::string what_;
     int last_tenth_ = -1;
     bool drawn_ = false;
-};
-
-// For work in one piece, of which nobody knows how far it is: while this lives, a line on standard error after 10, 20,
-// 40, ... seconds says that it goes on.
-class Patience {
-public:
-    explicit Patience(std::string what);
-    ~Patience();
-    Patience(const Patience&) = delete;
-    Patience& operator=(const Patience&) = delete;
-
-private:
-    std::mutex mutex_;
-    std::condition_variable ended_;
-    bool end_ = false;
-    std::thread thread_;
 };
 
 // For work that may be quick: shows the share that is done from half a second on. False once a signal has asked for the

@@ -75,22 +75,30 @@ SceneRenderer::~SceneRenderer() {
 
 Result<io::ImportReport> SceneRenderer::load(const std::filesystem::path& path, const io::ImportOptions& options,
                                              const std::function<Status(ecs::Registry&)>& modify) {
-    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, options));
+    // Which takes longer, reading the file or preparing its meshes, cannot be told beforehand.
+    const auto half_of_progress = [&](float begin) -> std::function<bool(float)> {
+        if (!options.progress)
+            return {};
+        return [&options, begin](float share) { return options.progress(begin + 0.5f * share); };
+    };
+    io::ImportOptions reading = options;
+    reading.progress = half_of_progress(0.0f);
+    SUNFLECK_ASSIGN(io::ImportReport report, io::load_scene(path, registry_, meshes_, textures_, reading));
     if (modify)
         SUNFLECK_TRY(modify(registry_));
     if (report.default_light && add_default_light(registry_))
         report.notes.push_back("the scene has no lights: lit by the default sky and sun");
-    SUNFLECK_TRY(upload_meshes());
+    SUNFLECK_TRY(upload_meshes(half_of_progress(0.5f)));
     return report;
 }
 
-Status SceneRenderer::upload_meshes() {
+Status SceneRenderer::upload_meshes(const std::function<bool(float)>& progress) {
     const scene::EnvironmentImage* picture = nullptr;
     registry_.view<scene::EnvironmentMap>().each(
         [&](ecs::Entity, const scene::EnvironmentMap& map) { picture = map.image.get(); });
     SUNFLECK_TRY(sky_->update(picture, *submission_));
     SUNFLECK_TRY(gpu_scene_->update_textures(textures_, *submission_));
-    return gpu_scene_->update_meshes(meshes_, *submission_);
+    return gpu_scene_->update_meshes(meshes_, *submission_, progress);
 }
 
 std::unique_ptr<SceneCopy> SceneRenderer::copy_scene(CopyOf what) {
@@ -238,15 +246,34 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
     const auto start = Clock::now();
     SUNFLECK_TRY(update(request));
     SUNFLECK_ASSIGN(const VkCommandBuffer commands, submission_->begin());
-    const std::uint64_t serial = submission_->serial();
-    SUNFLECK_TRY(record(commands, request));
+    std::optional<gpu::PassProgress> passes;
+    if (request.passes_done) {
+        SUNFLECK_ASSIGN(passes, gpu::PassProgress::create(device_));
+    }
+    graph_->set_progress(passes ? &*passes : nullptr);
+    const Status recorded = record(commands, request);
+    graph_->set_progress(nullptr);
+    SUNFLECK_TRY(recorded);
     SUNFLECK_TRY(submission_->submit());
     {
         const StageTimer timer(stages_, waiting);
-        SUNFLECK_TRY(submission_->wait(serial));
+        SUNFLECK_TRY(wait_for_newest(request, passes));
     }
     statistics_.frame_ms = milliseconds(Clock::now() - start);
     return collect_statistics();
+}
+
+Status SceneRenderer::wait_for_newest(const FrameRequest& request, const std::optional<gpu::PassProgress>& passes) {
+    using namespace std::chrono_literals;
+    const std::uint64_t serial = submission_->serial() - 1;
+    if (!passes)
+        return submission_->wait(serial);
+    for (std::chrono::nanoseconds time = 1s;; time = 100ms) {
+        SUNFLECK_ASSIGN(const bool done, submission_->wait_for(serial, time));
+        if (done)
+            return {};
+        request.passes_done(passes->share_done());
+    }
 }
 
 Status SceneRenderer::collect_statistics() {

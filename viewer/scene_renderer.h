@@ -46,6 +46,8 @@ struct FrameRequest {
     bool keep_geometry = false;
     // gi::FrameInput::progress
     std::function<bool(float)> progress;
+    // Called by render_and_wait while it waits, from a second on, with the share of the passes that the GPU has done.
+    std::function<void(double)> passes_done;
 
     bool is_enlarged() const; // the screen's size is not that of the picture
 };
@@ -94,7 +96,7 @@ public:
     Result<io::ImportReport> load(const std::filesystem::path& path, const io::ImportOptions& options = {},
                                   const std::function<Status(ecs::Registry&)>& modify = {});
     // Uploads meshes and textures that were added to the stores. Waits for the GPU.
-    Status upload_meshes();
+    Status upload_meshes(const std::function<bool(float)>& progress = {});
 
     // For lighting that is made beside the frames (lighting_change.h). A copy of the scene as it is now; `world`: of
     // its entities alone.
@@ -125,6 +127,7 @@ public:
     // last call had it, or there is none.
     std::optional<float> metered_exposure();
     // Without waiting: the statistics of the newest completed frame.
+    Status wait_for_newest(const FrameRequest& request, const std::optional<gpu::PassProgress>& passes);
     Status collect_statistics();
 
     // Of all shaders, from the project's root.

@@ -111,8 +111,10 @@ void note_frame(const viewer::FrameStatistics& statistics, bool traced, Rendered
 Status draw(viewer::SceneRenderer& renderer, const viewer::FrameRequest& request, bool first) {
     if (!first)
         return renderer.render_and_wait(request);
-    const viewer::Patience patience("drawing the first picture with all of its light");
-    return renderer.render_and_wait(request);
+    Progress progress("drawing the first picture with all of its light");
+    viewer::FrameRequest watched = request;
+    watched.passes_done = [&](double share) { progress.show(share, ""); };
+    return renderer.render_and_wait(watched);
 }
 
 // Leaves `request` as it was for the last frame.

@@ -313,6 +313,8 @@ Status FrameGraph::record_pass(PassContext& context, const CompiledPass& compile
     SUNFLECK_TRY(add_slow_work(context, compiled.name));
 #endif
     const Status status = pass.execute ? pass.execute(context) : Status();
+    if (progress_ != nullptr)
+        progress_->pass_recorded(context.commands);
     return status ? status : Error{"pass '" + pass.name + "': " + status.error().message, status.error().code};
 }
 

@@ -7,6 +7,7 @@
 
 #include "engine/gpu/barriers.h"
 #include "engine/gpu/frame_resources.h"
+#include "engine/gpu/pass_progress.h"
 #include "engine/gpu/timers.h"
 
 #include <functional>
@@ -107,6 +108,8 @@ public:
 
     // Culls and derives barriers. Returns an error if a pass reads what nothing has written.
     Status compile();
+    // Counts the passes that execute() records next; null: not. It must outlive their execution.
+    void set_progress(PassProgress* progress) { progress_ = progress; }
     // Records all kept passes. compile() must have succeeded.
     Status execute(VkCommandBuffer commands, FrameResources& resources, Timers* timers);
 
@@ -169,6 +172,7 @@ private:
     void store_states();
 
     Device* device_;
+    PassProgress* progress_ = nullptr;
     std::vector<Resource> resources_;
     std::vector<Pass> passes_;
     std::vector<CompiledPass> compiled_;

@@ -86,14 +86,24 @@ Result<std::uint64_t> Submission::completed() {
 }
 
 Status Submission::wait(std::uint64_t serial) {
+    const Result<bool> done = wait_for(serial, std::chrono::nanoseconds::max());
+    return done ? Status() : done.error();
+}
+
+Result<bool> Submission::wait_for(std::uint64_t serial, std::chrono::nanoseconds time) {
     if (serial == 0)
-        return {};
+        return true;
     VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
     info.semaphoreCount = 1;
     info.pSemaphores = &timeline_;
     info.pValues = &serial;
-    SUNFLECK_VK(device_.vk.vkWaitSemaphores(device_.handle(), &info, UINT64_MAX), "waiting for the GPU");
-    return {};
+    const bool for_ever = time == std::chrono::nanoseconds::max();
+    const VkResult result =
+        device_.vk.vkWaitSemaphores(device_.handle(), &info, for_ever ? UINT64_MAX : std::uint64_t(time.count()));
+    if (result == VK_TIMEOUT)
+        return false;
+    SUNFLECK_VK(result, "waiting for the GPU");
+    return true;
 }
 
 Status Submission::immediate(const std::function<Status(VkCommandBuffer)>& record) {

@@ -4,6 +4,7 @@
 
 #include "engine/gpu/resources.h"
 
+#include <chrono>
 #include <functional>
 
 namespace sunfleck::gpu {
@@ -28,6 +29,8 @@ public:
     // Serials up to this one are finished on the GPU.
     Result<std::uint64_t> completed();
     Status wait(std::uint64_t serial);
+    // Whether it is finished after at most so long.
+    Result<bool> wait_for(std::uint64_t serial, std::chrono::nanoseconds time);
 
     // Records, submits and waits: for set-up and read-back, never within a frame.
     Status immediate(const std::function<Status(VkCommandBuffer)>& record);

@@ -45,17 +45,20 @@ Result<GpuScene::Geometry> GpuScene::gather(const MeshStore& meshes, const std::
     ranges_changed_ = true;
     removals_ = meshes.removals();
     constexpr std::size_t unseen_triangles = 1u << 16; // at most, between calls of `progress`
-    std::size_t unseen = unseen_triangles;
+    std::size_t unseen = unseen_triangles, before = 0, all = 1;
+    for (std::uint32_t i = 0; i < meshes.size(); ++i)
+        all += meshes[i].triangle_count();
     for (std::uint32_t i = 0; i < meshes.size(); ++i) {
         bool went_on = true;
-        const auto go_on = [&] {
-            unseen = 0;
-            return went_on = went_on && (!progress || progress(float(i) / float(meshes.size())));
-        };
         const Mesh& mesh = meshes[i];
+        const auto go_on = [&](float share_of_mesh) {
+            unseen = 0;
+            const double done = double(before) + double(share_of_mesh) * double(mesh.triangle_count());
+            return went_on = went_on && (!progress || progress(float(done / double(all))));
+        };
         unseen += mesh.triangle_count();
         if (unseen > unseen_triangles)
-            go_on();
+            go_on(0.0f);
         ranges_.push_back({std::uint32_t(indices.size()),
                            std::uint32_t(mesh.indices.size()),
                            std::uint32_t(mesh.positions.size()),
@@ -80,6 +83,7 @@ Result<GpuScene::Geometry> GpuScene::gather(const MeshStore& meshes, const std::
         const std::vector<MeshDetail> details = make_mesh_details(mesh, go_on);
         if (!went_on)
             return Error{"preparing the meshes was stopped", ErrorCode::stopped};
+        before += mesh.triangle_count();
         ranges_.back().closed = is_closed(details.front().indices);
         for (const MeshDetail& detail : details) {
             ranges_.back().details.push_back({std::uint32_t(indices.size()), std::uint32_t(detail.indices.size()),
@@ -101,12 +105,13 @@ void GpuScene::forget_meshes(gpu::FrameResources* resources) {
     }
 }
 
-Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission) {
+Status GpuScene::update_meshes(const MeshStore& meshes, gpu::Submission& submission,
+                               const std::function<bool(float)>& progress) {
     if (has_all(meshes))
         return {};
     SUNFLECK_TRY(device_.wait_idle());
     forget_meshes(nullptr);
-    SUNFLECK_ASSIGN(const Geometry geometry, gather(meshes, {}));
+    SUNFLECK_ASSIGN(const Geometry geometry, gather(meshes, progress));
     const auto make = [&](gpu::Buffer& target, const char* name, const auto& values,
                           VkBufferUsageFlags usage) -> Status {
         SUNFLECK_ASSIGN(target, make_geometry_buffer(device_, name, values, usage));

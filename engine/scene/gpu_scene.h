@@ -57,10 +57,11 @@ public:
     explicit GpuScene(gpu::Device& device) : device_(device), textures_(device) {}
 
     // Uploads meshes that are new in the store. Submits and waits when there are any: loading time, not frame time.
-    Status update_meshes(const MeshStore& meshes, gpu::Submission& submission);
-    // The same without submitting anything: add_passes copies them in this frame. For hosts with loops of their own.
     // `progress` is called with the share that is done while there are any; if it returns false, that is an error, and
     // the next call begins again.
+    Status update_meshes(const MeshStore& meshes, gpu::Submission& submission,
+                         const std::function<bool(float)>& progress = {});
+    // The same without submitting anything: add_passes copies them in this frame. For hosts with loops of their own.
     Status stage_meshes(const MeshStore& meshes, gpu::FrameResources& resources,
                         const std::function<bool(float)>& progress = {});
     Status update_textures(const TextureStore& textures, gpu::Submission& submission);

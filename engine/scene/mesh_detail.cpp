@@ -1,6 +1,7 @@
 #include "engine/scene/mesh_detail.h"
 
 #include <algorithm>
+#include <cmath>
 #include <meshoptimizer.h>
 
 namespace sunfleck::scene {
@@ -27,7 +28,7 @@ std::vector<std::uint32_t> join_vertices(const Mesh& mesh) {
 
 } // namespace
 
-std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool()>& go_on) {
+std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool(float)>& progress) {
     std::vector<MeshDetail> details(1);
     details.reserve(32); // keeps `whole` in place
     MeshDetail& whole = details.front();
@@ -39,7 +40,8 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<
     const float scale = meshopt_simplifyScale(positions, mesh.positions.size(), sizeof(vec3));
     std::size_t target = whole.indices.size() / 6 * 3;
     while (details.size() < 32 && mesh.triangle_count() >= min_mesh && target / 3 >= min_triangles) {
-        if (go_on && mesh.triangle_count() > large_mesh && !go_on())
+        // Of a large mesh, each level takes about half as long as the one before.
+        if (progress && mesh.triangle_count() > large_mesh && !progress(1.0f - std::exp2(1.0f - float(details.size()))))
             break;
         MeshDetail detail;
         detail.indices.resize(details.front().indices.size());

@@ -14,9 +14,9 @@ struct MeshDetail {
 };
 
 // From fine to coarse, each with about half the triangles of the previous one; the first is the whole mesh with
-// coincident vertices merged. Small meshes and meshes that cannot be simplified have only the first. `go_on` is asked
-// before each level of a large mesh; the list ends where it returns false.
-std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool()>& go_on = {});
+// coincident vertices merged. Small meshes and meshes that cannot be simplified have only the first. `progress` is
+// called before each level of a large mesh, with the share that is done; the list ends where it returns false.
+std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool(float)>& progress = {});
 
 // Watertight: every edge has two triangles, once in each direction (coincident vertices count as one). From outside,
 // only front faces are visible.

@@ -268,5 +268,31 @@ TEST_F(ComputePassTest, StoresShareEqualPipelines) {
     EXPECT_EQ(first->handle(), second->handle());
 }
 
+// Of the passes that were recorded with it, and no others; nothing is done before the submission.
+TEST_F(ComputePassTest, TheDeviceSaysHowManyPassesAreDone) {
+    gpu::PassProgress progress = gpu::PassProgress::create(device()).value();
+    EXPECT_EQ(progress.share_done(), 0.0);
+    const auto record = [&](const char* name) {
+        graph.reset();
+        for (int i = 0; i < 4; ++i)
+            graph.add_pass(name).keep().execute([](gpu::PassContext&) { return Status(); });
+        ASSERT_TRUE(graph.compile());
+    };
+    record("counted");
+    graph.set_progress(&progress);
+    ASSERT_TRUE(submission->immediate([&](VkCommandBuffer commands) -> Status {
+        SUNFLECK_TRY(graph.execute(commands, resources, {}));
+        EXPECT_EQ(progress.share_done(), 0.0);
+        return {};
+    }));
+    EXPECT_EQ(progress.share_done(), 1.0);
+    EXPECT_EQ(progress.recorded(), 4u);
+    graph.set_progress(nullptr);
+    record("not counted");
+    ASSERT_TRUE(
+        submission->immediate([&](VkCommandBuffer commands) { return graph.execute(commands, resources, {}); }));
+    EXPECT_EQ(progress.recorded(), 4u);
+}
+
 } // namespace
 } // namespace sunfleck::tests

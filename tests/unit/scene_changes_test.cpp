@@ -1,4 +1,5 @@
 #include "engine/raytrace/ray_scene.h"
+#include "engine/scene/mesh_detail.h"
 #include "engine/scene/scene_changes.h"
 #include "tests/support/scene_editor.h"
 
@@ -286,6 +287,37 @@ TEST(SceneChanges, ARaySceneThatFollowsEqualsOneFromScratch) {
         }
     }
     EXPECT_GT(hits, 500u);
+}
+
+// A height field of 320,000 triangles: its levels of detail are made one by one, and whoever watches can stop after
+// each.
+TEST(MeshDetail, ALargeMeshSaysHowFarItsLevelsAre) {
+    constexpr std::uint32_t side = 401;
+    scene::Mesh mesh;
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x)
+            mesh.positions.emplace_back(float(x), std::sin(0.05f * float(x)) * std::cos(0.07f * float(y)), float(y));
+    for (std::uint32_t y = 0; y + 1 < side; ++y)
+        for (std::uint32_t x = 0; x + 1 < side; ++x) {
+            const std::uint32_t i = y * side + x;
+            for (const std::uint32_t corner : {i, i + side, i + 1, i + 1, i + side, i + side + 1})
+                mesh.indices.push_back(corner);
+        }
+    std::vector<float> shares;
+    const auto note_until = [&](std::size_t calls) {
+        shares.clear();
+        return scene::make_mesh_details(mesh, [&shares, calls](float share) {
+            shares.push_back(share);
+            return shares.size() < calls;
+        });
+    };
+    const std::size_t levels = note_until(1000).size();
+    ASSERT_GT(levels, 4u);
+    EXPECT_EQ(shares.front(), 0.0f);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_GT(shares.back(), 0.9f);
+    EXPECT_LT(shares.back(), 1.0f);
+    EXPECT_EQ(note_until(3).size(), 3u);
 }
 
 } // namespace

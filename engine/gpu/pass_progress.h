@@ -1,0 +1,28 @@
+// How many of a frame's passes the device has done, while it works on them: for frames that take so long that somebody
+// wants to know. It makes each pass wait for the one before, so other frames are recorded without it.
+#pragma once
+
+#include "engine/gpu/resources.h"
+
+namespace sunfleck::gpu {
+
+class PassProgress {
+public:
+    static Result<PassProgress> create(Device& device);
+
+    // After each pass of the frame, once that is recorded.
+    void pass_recorded(VkCommandBuffer commands);
+    // Of the passes recorded, as the device counts them; from any thread. Only for showing: nothing may follow from it,
+    // since the device says it without being waited for.
+    double share_done() const;
+    std::uint32_t recorded() const { return recorded_; }
+
+private:
+    explicit PassProgress(Device& device) : device_(&device) {}
+
+    Device* device_;
+    Buffer done_; // one number, which the device writes
+    std::uint32_t recorded_ = 0;
+};
+
+} // namespace sunfleck::gpu
