@@ -73,8 +73,8 @@ TEST_F(GateLevel, EveryFrameIsWritten) {
 // The same frames give the same counters and bits, whatever was drawn at other times.
 TEST_F(GateLevel, ServesWhatIsAskedFor) {
     const auto serve = [&](const std::string& requests) {
-        return shell("cd " + folder.string() + " && printf '" + requests + "' | " SUNFLECK_TOOL " bench level --serve" +
-                     small + " 2>/dev/null");
+        return shell("(cd " + folder.string() + " && printf '" + requests +
+                     "' | " SUNFLECK_TOOL " bench level --serve" + small + " 2>/dev/null)");
     };
     const Outcome first = serve("frames 0 2\\nframes 30 3\\npicture a.png\\nquit\\n");
     const Outcome second = serve("frames 0 2\\nframes 30 3\\npicture b.png\\n"); // the end of input will do
