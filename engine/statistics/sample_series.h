@@ -15,6 +15,9 @@ public:
     static constexpr std::size_t most = 4096;
 
     void add(const Value& value) {
+        // All room at once: the series of what happens rarely would grow for hours.
+        if (count_ == 0)
+            values_.reserve(most);
         if (count_ % stride_ == 0 && values_.size() == most)
             thin_out();
         if (count_ % stride_ == 0)

@@ -32,5 +32,16 @@ TEST(SampleSeries, LongOnesAreThinnedOutEvenly) {
     EXPECT_NEAR(percentile(series.values(), 0.95), 0.95 * count, 2 * step);
 }
 
+// Memory is taken with the first value: it does not grow with a run, however rarely something is measured.
+TEST(SampleSeries, MemoryDoesNotGrow) {
+    SampleSeries<double> series;
+    series.add(1.0);
+    const double* const place = series.values().data();
+    for (int i = 0; i < 20'000; ++i) {
+        series.add(i);
+        ASSERT_EQ(series.values().data(), place);
+    }
+}
+
 } // namespace
 } // namespace sunfleck::statistics
