@@ -246,33 +246,33 @@ Status SceneRenderer::render_and_wait(const FrameRequest& request) {
     const auto start = Clock::now();
     SUNFLECK_TRY(update(request));
     SUNFLECK_ASSIGN(const VkCommandBuffer commands, submission_->begin());
-    std::optional<gpu::PassProgress> passes;
+    passes_.reset();
     if (request.passes_done) {
-        SUNFLECK_ASSIGN(passes, gpu::PassProgress::create(device_));
+        SUNFLECK_ASSIGN(passes_, gpu::PassProgress::create(device_));
     }
-    graph_->set_progress(passes ? &*passes : nullptr);
+    graph_->set_progress(passes_ ? &*passes_ : nullptr);
     const Status recorded = record(commands, request);
     graph_->set_progress(nullptr);
     SUNFLECK_TRY(recorded);
     SUNFLECK_TRY(submission_->submit());
     {
         const StageTimer timer(stages_, waiting);
-        SUNFLECK_TRY(wait_for_newest(request, passes));
+        SUNFLECK_TRY(wait_for_newest(request));
     }
     statistics_.frame_ms = milliseconds(Clock::now() - start);
     return collect_statistics();
 }
 
-Status SceneRenderer::wait_for_newest(const FrameRequest& request, const std::optional<gpu::PassProgress>& passes) {
+Status SceneRenderer::wait_for_newest(const FrameRequest& request) const {
     using namespace std::chrono_literals;
     const std::uint64_t serial = submission_->serial() - 1;
-    if (!passes)
+    if (!passes_)
         return submission_->wait(serial);
     for (std::chrono::nanoseconds time = 1s;; time = 100ms) {
         SUNFLECK_ASSIGN(const bool done, submission_->wait_for(serial, time));
         if (done)
             return {};
-        request.passes_done(passes->share_done());
+        request.passes_done(passes_->share_done());
     }
 }
 

@@ -16,6 +16,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 namespace sunfleck::viewer {
 
@@ -127,7 +128,6 @@ public:
     // last call had it, or there is none.
     std::optional<float> metered_exposure();
     // Without waiting: the statistics of the newest completed frame.
-    Status wait_for_newest(const FrameRequest& request, const std::optional<gpu::PassProgress>& passes);
     Status collect_statistics();
 
     // Of all shaders, from the project's root.
@@ -148,6 +148,8 @@ private:
                                const gpu::UploadSlice& camera);
     Status add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
                        const gpu::UploadSlice& camera, gpu::ResourceId output);
+    // The last submission; tells request.passes_done meanwhile.
+    Status wait_for_newest(const FrameRequest& request) const;
     void draw_samples();
     Status draw_lines(const FrameRequest& request);
     shared::CameraRow camera_row(const FrameRequest& request) const;
@@ -166,6 +168,7 @@ private:
     std::unique_ptr<gpu::Submission> submission_;
     std::unique_ptr<gpu::FrameResources> resources_;
     std::unique_ptr<gpu::Timers> timers_;
+    std::optional<gpu::PassProgress> passes_; // of the frame that was recorded last, if somebody wants to know
     std::unique_ptr<gpu::FrameGraph> graph_;
     std::unique_ptr<scene::GpuScene> gpu_scene_;
     std::unique_ptr<raytrace::RayScene> rays_;

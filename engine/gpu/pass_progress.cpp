@@ -1,6 +1,5 @@
 #include "engine/gpu/pass_progress.h"
 
-#include <algorithm>
 #include <cstring>
 
 namespace sunfleck::gpu {
@@ -34,7 +33,7 @@ void PassProgress::pass_recorded(VkCommandBuffer commands) {
 double PassProgress::share_done() const {
     std::uint32_t done = 0;
     std::memcpy(&done, done_.mapped(), sizeof(done));
-    return recorded_ > 0 ? double(std::min(done, recorded_)) / recorded_ : 0.0;
+    return recorded_ > 0 ? double(done) / recorded_ : 0.0;
 }
 
 } // namespace sunfleck::gpu

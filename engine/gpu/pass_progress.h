@@ -1,5 +1,6 @@
 // How many of a frame's passes the device has done, while it works on them: for frames that take so long that somebody
-// wants to know. It makes each pass wait for the one before, so other frames are recorded without it.
+// wants to know. Each count waits for the passes before it, which costs something, so other frames are recorded without
+// it.
 #pragma once
 
 #include "engine/gpu/resources.h"
@@ -12,8 +13,8 @@ public:
 
     // After each pass of the frame, once that is recorded.
     void pass_recorded(VkCommandBuffer commands);
-    // Of the passes recorded, as the device counts them; from any thread. Only for showing: nothing may follow from it,
-    // since the device says it without being waited for.
+    // Of the passes recorded, as the device counts them; from any thread once all are recorded. Only for people to
+    // read: the device writes it while it is read.
     double share_done() const;
     std::uint32_t recorded() const { return recorded_; }
 

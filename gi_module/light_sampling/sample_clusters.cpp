@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -31,7 +32,7 @@ Features features_of(const LightSample& sample) {
 // the other, so that no chord is inclined to it by more than the normals are to each other.
 bool on_one_surface(const LightSample& a, const LightSample& b) {
     constexpr float smooth = 0.9f; // cosine; more is an edge
-    if (glm::dot(a.normal, b.normal) < smooth)
+    if (!(glm::dot(a.normal, b.normal) >= smooth))
         return false;
     const vec3 chord = b.position - a.position, size = glm::max(glm::abs(a.position), glm::abs(b.position));
     const float rounding = 16.0f * std::numeric_limits<float>::epsilon() * std::max({size.x, size.y, size.z});
@@ -78,14 +79,15 @@ public:
         return cluster;
     }
 
-    // Small ones by surfaces, since a VPL lies on one; others, and those that have no surface of weight, at the median.
+    // Small ones by surfaces, since a VPL lies on one; others, and those without a surface that holds enough of the
+    // flux, at the median.
     std::pair<Cluster, Cluster> divide(const Cluster& cluster) {
         std::uint32_t left = cluster.flux < small_ ? move_surface_first(cluster) : 0;
         left = left > 0 ? left : move_nearer_half_first(cluster);
         return {measure(cluster.first, left), measure(cluster.first + left, cluster.count - left)};
     }
 
-    // A member is drawn in proportion to luminance, by `number` in [0, 1): the light's path is its. The place is that
+    // A member is drawn in proportion to luminance, by `number` in [0, 1); the sample has its path. The place is that
     // of the medoid of those on its surface; the flux is that of all, and the disc is as wide as all are spread.
     LightSample representative(const Cluster& cluster, float number) const {
         const auto members = std::span(order_).subspan(cluster.first, cluster.count);
@@ -100,7 +102,7 @@ public:
         }
         std::vector<std::uint32_t> around;
         std::copy_if(members.begin(), members.end(), std::back_inserter(around),
-                     [&](std::uint32_t i) { return on_one_surface(samples_[drawn], samples_[i]); });
+                     [&](std::uint32_t i) { return i == drawn || on_one_surface(samples_[drawn], samples_[i]); });
         const LightSample& medoid = samples_[medoid_of(around)];
         LightSample sample = samples_[drawn];
         sample.flux = vec3(flux);
@@ -121,7 +123,7 @@ private:
         for (auto first = begin; first != end;) {
             const LightSample& of_surface = samples_[*first];
             const auto next = std::stable_partition(
-                first, end, [&](std::uint32_t i) { return on_one_surface(of_surface, samples_[i]); });
+                first + 1, end, [&](std::uint32_t i) { return on_one_surface(of_surface, samples_[i]); });
             double flux = 0.0;
             for (auto i = first; i != next; ++i)
                 flux += double(luminance(samples_[*i].flux));
@@ -131,7 +133,8 @@ private:
             }
             first = next;
         }
-        if (std::min(most, cluster.flux - most) < least_share * cluster.flux)
+        if (brightest_end - brightest == end - begin ||
+            std::min(most, cluster.flux - most) < least_share * cluster.flux)
             return 0;
         std::rotate(begin, brightest, brightest_end);
         return std::uint32_t(brightest_end - brightest);

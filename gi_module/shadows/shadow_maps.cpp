@@ -126,11 +126,12 @@ Result<bool> ShadowMaps::configure(const MapLayout& layout, gpu::FrameResources&
 
 // As many as there are layers, but of large scenes fewer: whoever waits for a first frame of minutes sees how many
 // passes are done.
-std::size_t ShadowMaps::maps_of_a_pass(const scene::GpuScene& scene) const {
+std::size_t ShadowMaps::maps_of_a_pass(const scene::GpuScene& scene, Occluders occluders) const {
     constexpr std::uint64_t most_triangles = 1u << 24; // in all maps of a pass: some seconds of a software rasteriser
     std::uint64_t triangles = 1;
     for (const scene::DrawItem& item : scene.draws())
-        triangles += item.index_count / 3;
+        if (occluders == Occluders::all || item.is_static == (occluders == Occluders::static_only))
+            triangles += item.index_count / 3;
     return std::size_t(std::clamp<std::uint64_t>(most_triangles / triangles, 1, layers_));
 }
 
@@ -140,7 +141,7 @@ Status ShadowMaps::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& sce
     counters.maps += requests.size();
     const auto in_chunks = [&](std::span<const ShadowRequest> all, Occluders occluders, const gpu::Buffer& target,
                                bool over_static) -> Status {
-        const std::size_t most = maps_of_a_pass(scene);
+        const std::size_t most = maps_of_a_pass(scene, occluders);
         for (std::size_t first = 0; first < all.size(); first += most) {
             const auto part = all.subspan(first, std::min(most, all.size() - first));
             SUNFLECK_ASSIGN(Chunk chunk,

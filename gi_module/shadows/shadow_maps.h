@@ -120,7 +120,7 @@ private:
     std::size_t detail_level(const ShadowRequest& request, const scene::DrawItem& item) const;
     MapPart part_covered(const ShadowRequest& request, const Bounds& bounds, bool wants_area) const;
     static bool shows_front_faces_only(const ShadowRequest& request, const scene::DrawItem& item);
-    std::size_t maps_of_a_pass(const scene::GpuScene& scene) const;
+    std::size_t maps_of_a_pass(const scene::GpuScene& scene, Occluders occluders) const;
     Status add_drawing(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Chunk& chunk,
                        const gpu::Buffer& target, bool over_static);
     Status draw_chunk(gpu::PassContext& context, const scene::GpuScene& scene, const Chunk& chunk, bool load) const;

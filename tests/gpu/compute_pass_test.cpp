@@ -286,6 +286,8 @@ TEST_F(ComputePassTest, TheDeviceSaysHowManyPassesAreDone) {
         return {};
     }));
     EXPECT_EQ(progress.share_done(), 1.0);
+    EXPECT_TRUE(submission->wait_for(submission->serial() - 1, std::chrono::nanoseconds(0)).value());
+    EXPECT_FALSE(submission->wait_for(submission->serial(), std::chrono::milliseconds(1)).value()) << "not submitted";
     EXPECT_EQ(progress.recorded(), 4u);
     graph.set_progress(nullptr);
     record("not counted");

@@ -66,7 +66,7 @@ ecs::Entity first_lamp(GpuWorld& world) {
 // A tenth of the pairs in the short size: any that is not explained is an error at either, and the share that agrees is
 // known to 0.1 per cent from 50,000 pairs of a kind.
 void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits, int pairs, std::uint32_t texels = 512,
-                         double least_agreement = 0.99, double least_nearest = 0.99) {
+                         double least_filtered = 0.99, double least_nearest = 0.99) {
     GpuWorld world(make);
     gi::Settings settings = plain_light();
     settings.lights = 96;
@@ -113,8 +113,8 @@ void compare_with_embree(void (*make)(assets::SceneBuilder&), std::uint32_t bits
         const double filtered = double(agreed_filtered[which]) / counted[which];
         std::printf("%s pairs: %.2f %% agree, filtered look-up %.2f %%\n", which ? "occluded" : "free", 100.0 * nearest,
                     100.0 * filtered);
-        EXPECT_GE(filtered, least_agreement) << (which ? "occluded" : "free") << " pairs";
-        EXPECT_GE(nearest, std::min(least_nearest, least_agreement)) << (which ? "occluded" : "free") << " pairs";
+        EXPECT_GE(filtered, least_filtered) << (which ? "occluded" : "free") << " pairs";
+        EXPECT_GE(nearest, least_nearest) << (which ? "occluded" : "free") << " pairs";
     }
     EXPECT_EQ(unexplained, 0) << "of " << pairs;
 }
@@ -125,7 +125,7 @@ TEST_F(ShadowMapTest, AgreesWithEmbreeInCornell) {
 // The legs of table and chairs have many edges. Which share of the pairs lies at one depends on where the samples are:
 // without the filter, over six seeds, 98.7 to 98.9 % agree with those of plain walks, 98.9 to 99.0 with medoids.
 TEST_F(ShadowMapTest, AgreesWithEmbreeInTableRoom) {
-    compare_with_embree(assets::make_table_room, 16, by_size(100000, 1000000), 512, 0.99, 0.985);
+    compare_with_embree(assets::make_table_room, 16, by_size(100000, 1000000), 512, 0.99, 0.988);
 }
 TEST_F(ShadowMapTest, AgreesWithEmbreeInFourPillars) {
     compare_with_embree(assets::make_four_pillars, 16, by_size(100000, 1000000));
@@ -137,8 +137,8 @@ TEST_F(ShadowMapTest, AgreesWithEmbreeWith32Bits) {
 // The default, and what is left of it where many samples share the memory: edges of shadows are off by up to a texel,
 // so that the share that differs grows with the texels' side. Nothing else may differ.
 TEST_F(ShadowMapTest, AgreesWithEmbreeAtTheSizesThatAreUsed) {
-    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 256, 0.975);
-    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 68, 0.92);
+    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 256, 0.975, 0.975);
+    compare_with_embree(assets::make_table_room, 16, by_size(20000, 200000), 68, 0.92, 0.92);
 }
 
 // A hollow box with walls of 20 cm stands on a floor; nothing inside it may be lit, and nothing of the open floor may

@@ -202,7 +202,7 @@ struct SamplerCase {
 // geometric mean.
 TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
     const SamplerCase cases[] = {{"cornell", assets::make_cornell, 0.02},
-                                 {"area_room", assets::make_area_room, 0.062},
+                                 {"area_room", assets::make_area_room, 0.061},
                                  {"table_room", assets::make_table_room, 0.01},
                                  {"four_pillars", assets::make_four_pillars, 0.029},
                                  {"near_occluder", assets::make_near_occluder, 0.023},
@@ -217,7 +217,7 @@ TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
                                  {"lantern_game", assets::make_lantern_game, 0.057}};
     const std::uint32_t seeds = by_size(8u, 32u);
     double logarithms = 0.0;
-    const auto tested = std::span(cases).first(by_size(4u, 14u));
+    const auto tested = std::span(cases).first(by_size<std::size_t>(4, std::size(cases)));
     for (const SamplerCase& one : tested) {
         StillWorld world(one.make);
         world.set(sampler(300, 64, 1));
@@ -239,7 +239,9 @@ TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
                     100.0 * more.off, more.squares);
         EXPECT_LT(more.squares, clusters.squares) << one.name;
     }
-    EXPECT_LT(std::exp(logarithms / double(tested.size())), 0.5);
+    const double geometric_mean = std::exp(logarithms / double(tested.size()));
+    std::printf("squared error over that of plain walks, geometric mean: %.2f\n", geometric_mean);
+    EXPECT_LT(geometric_mean, 0.5);
 }
 
 } // namespace

@@ -2,6 +2,9 @@
 
 #include "gi_module/light_sampling/sample_clusters.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <random>
 
 namespace sunfleck::gi {
@@ -215,6 +218,21 @@ TEST(SampleClusters, ACurvedSurfaceIsOneSurface) {
     }
     for (std::uint32_t seed = 1; seed <= 20; ++seed)
         EXPECT_GT(cluster_samples(samples, 1, 0.5f, seed).front().normal.y, std::cos(0.01f));
+}
+
+// Of triangles without area, or too large for their normal: such a sample is a surface of its own, and nothing hangs.
+TEST(SampleClusters, SamplesWithoutANormalAreKept) {
+    const float nothing = std::numeric_limits<float>::quiet_NaN();
+    for (const vec3 normal : {vec3(0.0f), vec3(nothing), vec3(0.0f, 0.5f, 0.0f)}) {
+        std::vector<LightSample> samples = corner_samples(3.0f, 2.0f);
+        for (std::size_t i = 0; i < samples.size(); i += 3)
+            samples[i].normal = normal;
+        for (const std::uint32_t count : {1u, 2u, 50u, 999u}) {
+            const std::vector<LightSample> few = cluster_samples(samples, count, 0.5f, 1);
+            EXPECT_LE(few.size(), count);
+            EXPECT_NEAR(total_luminance(few) / total_luminance(samples), 1.0, 1e-4);
+        }
+    }
 }
 
 } // namespace
