@@ -85,12 +85,14 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     const bool prepares = DrivenEditor::wait_until([&] { return editor->find("status/building").has_value(); }, 10.0);
     const Window second = drag(); // cancels what is prepared for the first
     editor->point_at(*editor->find("viewport/picture"));
-    Window after{second.end, 0.0};
+    // Only while the pointer moves: when it rests and all light is there, no frame is due.
+    std::vector<Window> after;
     // Until all light is there, and a while longer: what the widgets say may be of before. To and fro, since a pointer
     // at the edge of the screen moves no more.
-    for (int round = 0, rested = 0; rested < 2 && now() - after.begin < 120.0; ++round) {
+    for (int round = 0, rested = 0; rested < 2 && now() - second.end < 120.0; ++round) {
+        const double begin = now();
         move(100, round % 2 == 0 ? 3 : -3, 0);
-        after.end = now();
+        after.push_back({begin, now()});
         rested = editor->value("status/settled") == "yes" ? rested + 1 : 0;
     }
     ASSERT_TRUE(editor->settles());
@@ -99,7 +101,9 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
 
     const double frame = median(scene_ms(report, before)), dragged = median(scene_ms(report, first));
     const double longest = std::max(longest_gap_ms(report, first), longest_gap_ms(report, second));
-    const double longest_after = longest_gap_ms(report, after);
+    double longest_after = 0.0;
+    for (const Window& round : after)
+        longest_after = std::max(longest_after, longest_gap_ms(report, round));
     std::printf("scene frame %.1f ms, %.1f ms while dragged; longest gap between GUI frames %.1f ms while dragged, "
                 "%.1f ms while light is made; new light %d times\n",
                 frame, dragged, longest, longest_after, int(report["long_builds"]));
