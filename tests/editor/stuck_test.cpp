@@ -40,6 +40,13 @@ double longest_gap_ms(const nlohmann::json& report, const Window& window) {
     return 1e3 * std::max(longest, window.end - last);
 }
 
+double longest_gap_ms(const nlohmann::json& report, const std::vector<Window>& windows) {
+    double longest = 0.0;
+    for (const Window& window : windows)
+        longest = std::max(longest, longest_gap_ms(report, window));
+    return longest;
+}
+
 using EditorWindowStuck = tests::EditorWindowTest;
 
 // Of `atrium` (262,000 triangles) at full size, else of `gallery`. The pointer never rests, so that GUI frames are due
@@ -101,9 +108,7 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
 
     const double frame = median(scene_ms(report, before)), dragged = median(scene_ms(report, first));
     const double longest = std::max(longest_gap_ms(report, first), longest_gap_ms(report, second));
-    double longest_after = 0.0;
-    for (const Window& round : after)
-        longest_after = std::max(longest_after, longest_gap_ms(report, round));
+    const double longest_after = longest_gap_ms(report, after);
     std::printf("scene frame %.1f ms, %.1f ms while dragged; longest gap between GUI frames %.1f ms while dragged, "
                 "%.1f ms while light is made; new light %d times\n",
                 frame, dragged, longest, longest_after, int(report["long_builds"]));
