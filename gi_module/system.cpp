@@ -1,5 +1,6 @@
 #include "gi_module/system.h"
 
+#include "engine/core/progress_part.h"
 #include "gi_module/inspection/visibility_listing.h"
 #include "gi_module/light_part_views.h"
 
@@ -11,6 +12,11 @@ std::span<const EmbeddedShader> sunfleck_gi_shaders();
 }
 
 namespace sunfleck::gi {
+namespace {
+
+constexpr float until_samples = 0.1f; // of FrameInput::progress; visibility takes most of the rest
+
+} // namespace
 
 std::vector<gpu::EmbeddedShader> shaders() {
     std::vector<gpu::EmbeddedShader> result;
@@ -99,7 +105,7 @@ Status System::update(ecs::Registry& registry, const scene::SceneChanges& change
     resources_.begin_frame(input.serial, input.completed_serial);
     SUNFLECK_TRY(find_view());
     const SceneView scene{registry, changes, meshes, gpu_scene, rays};
-    update_samples(scene);
+    SUNFLECK_TRY(update_samples(scene));
     // Kept samples keep what was found for them.
     const bool static_changed = !samples_.outdated() && geometry_generation_ != rays.static_generation();
     if (!samples_.outdated())
@@ -213,9 +219,10 @@ Status System::act(std::string_view name, std::uint32_t action, std::uint32_t ke
     return Error{"nothing can be done to rows of '" + std::string(name) + "'"};
 }
 
-void System::update_samples(const SceneView& scene) {
+Status System::update_samples(const SceneView& scene) {
     const StageTimer timer(cpu_times_, "light samples");
-    samples_.update(scene, settings_.sample_request(plan_), settings_, restart_, input_.keep_samples);
+    return samples_.update(scene, settings_.sample_request(plan_), settings_,
+                           {restart_, input_.keep_samples, progress_part(input_.progress, 0.0f, until_samples)});
 }
 
 Status System::make_rows(const SceneView& scene, bool static_changed) {
@@ -241,10 +248,10 @@ Status System::update_visibility(const SceneView& scene, bool static_changed) {
                 return true;
         return false;
     };
-    SUNFLECK_TRY(
-        visibility_.update(settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene, samples_.samples(),
-                                       samples_.generation(), samples_.moved(), static_changed, lit_elsewhere,
-                                       settings_generation_, input_.progress, cpu_times_, max_buffer_bytes_}));
+    SUNFLECK_TRY(visibility_.update(
+        settings_, {scene.registry, scene.changes, scene.meshes, scene.gpu_scene, samples_.samples(),
+                    samples_.generation(), samples_.moved(), static_changed, lit_elsewhere, settings_generation_,
+                    progress_part(input_.progress, until_samples, 1.0f), cpu_times_, max_buffer_bytes_}));
     return {};
 }
 

@@ -93,7 +93,7 @@ private:
     bool wants_visibility() const;
     CellSet cells_with_maps(const scene::GpuScene& gpu_scene) const;
     bool any_in_use(bool TechniqueEntry::*request) const;
-    void update_samples(const SceneView& scene);
+    Status update_samples(const SceneView& scene);
     Status make_rows(const SceneView& scene, bool static_changed);
     Status update_visibility(const SceneView& scene, bool static_changed);
     Status update_techniques(const SceneView& scene);

@@ -7,6 +7,8 @@
 #include "gi_module/light_sampling/emitters.h"
 #include "gi_module/light_sampling/sampling_settings.h"
 
+#include <functional>
+
 namespace sunfleck::gi {
 
 // How the samples are divided between direct light (samples on emitters) and reflected light.
@@ -27,8 +29,10 @@ std::vector<LightSample> sample_direct(const std::vector<Emitter>& emitters, std
 // with the flux that the surface reflects. Only whole walks count: they go on until there are at least `count` samples;
 // then the excess is dropped at random and the flux of the rest scaled up, so that no bounce is favoured (stopping in
 // the middle of a walk, as the thesis does, favours early ones). The result does not depend on the number of threads.
+// `progress`: see SampleSource::make.
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                         const SampleRequest& settings, const raytrace::RayScene& rays);
+                                         const SampleRequest& settings, const raytrace::RayScene& rays,
+                                         const std::function<bool(float)>& progress = {});
 
 // Sample `index` of `count` of one emitter's direct light. Its position on the emitter does not change when the emitter
 // moves. Those of a ball that moves are points within it, which its own surface does not shadow.

@@ -4,6 +4,7 @@
 #include "gi_module/transport/reflectance.h"
 
 #include "engine/core/jobs.h"
+#include "engine/core/progress_part.h"
 #include "engine/core/random.h"
 
 #include <algorithm>
@@ -116,7 +117,8 @@ std::vector<LightSample> thin_out(std::vector<LightSample> samples, std::uint32_
 } // namespace
 
 std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, std::uint32_t count,
-                                         const SampleRequest& settings, const raytrace::RayScene& rays) {
+                                         const SampleRequest& settings, const raytrace::RayScene& rays,
+                                         const std::function<bool(float)>& progress) {
     if (count == 0 || emitters.empty() || settings.bounces == 0)
         return {};
     const RandomWalks random_walks(emitters, settings, rays);
@@ -126,7 +128,13 @@ std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, s
     const std::uint64_t wanted = std::max<std::uint64_t>(
         count, std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, max_candidates));
     const std::uint32_t max_walks = most_walks(wanted);
+    const std::function<bool(float)> walking = progress_part(progress, 0.0f, settings.candidates > 1 ? 0.5f : 1.0f);
+    const auto share_walked = [&] {
+        return std::max(float(samples.size()) / float(wanted), float(walks) / float(max_walks));
+    };
     while (samples.size() < wanted && walks < max_walks) {
+        if (walking && !walking(share_walked()))
+            return {};
         // Rounds run in parallel; walks are then taken in order until there are enough samples.
         std::vector<std::vector<LightSample>> round(walks_per_round);
         parallel_for_chunks(walks_per_round, 16, [&](std::size_t begin, std::size_t end) {
@@ -140,7 +148,7 @@ std::vector<LightSample> sample_indirect(const std::vector<Emitter>& emitters, s
         for (LightSample& sample : samples)
             sample.flux /= float(walks);
     if (settings.candidates > 1)
-        return cluster_samples(samples, count, settings.spread, settings.seed);
+        return cluster_samples(samples, count, settings.spread, settings.seed, progress_part(progress, 0.5f, 1.0f));
     return thin_out(std::move(samples), count, settings.seed);
 }
 

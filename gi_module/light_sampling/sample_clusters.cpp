@@ -20,6 +20,8 @@ constexpr float min_extent = 0.3f;    // m: so that flux counts even in a cluste
 // share of the flux, and the others together have it, too.
 constexpr double small_cluster = 6.0, least_share = 0.25;
 
+constexpr std::size_t clusters_between_reports = 64;
+
 // Position and scaled normal, m.
 using Features = std::array<float, 6>;
 
@@ -208,16 +210,22 @@ private:
 } // namespace
 
 std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples, std::uint32_t count, float spread,
-                                         std::uint32_t seed) {
+                                         std::uint32_t seed, const std::function<bool(float)>& progress) {
     if (samples.size() <= count)
         return samples;
     Subdivision subdivision(samples, count, spread);
     const auto less = [](const Cluster& a, const Cluster& b) {
         return a.error != b.error ? a.error < b.error : a.first > b.first;
     };
+    // Each halving of all clusters takes about as long.
+    const auto share_divided = [&](std::size_t clusters) {
+        return std::log2(float(clusters)) / std::log2(float(count));
+    };
     std::priority_queue<Cluster, std::vector<Cluster>, decltype(less)> clusters(less);
     clusters.push(subdivision.measure(0, std::uint32_t(samples.size())));
     while (clusters.size() < count && clusters.top().error > 0) {
+        if (progress && clusters.size() % clusters_between_reports == 0 && !progress(share_divided(clusters.size())))
+            return {};
         const Cluster worst = clusters.top();
         clusters.pop();
         const auto [left, right] = subdivision.divide(worst);

@@ -12,6 +12,7 @@
 
 #include "gi_module/transport/light_sample.h"
 
+#include <functional>
 #include <vector>
 
 namespace sunfleck::gi {
@@ -21,7 +22,8 @@ namespace sunfleck::gi {
 // geometric mean of 14 rooms, AnywhereSampler in gpu_tests), at the price of a bias that all seeds share and that
 // shrinks with the clusters. `spread`: 0 subdivides where most flux is, 1 where most surface is. `seed` draws the path
 // of each cluster's light, and the surface that it stands on, from its members, in proportion to their luminance.
+// `progress`: called with the share that is done; if it returns false, there are no samples.
 std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples, std::uint32_t count, float spread,
-                                         std::uint32_t seed);
+                                         std::uint32_t seed, const std::function<bool(float)>& progress = {});
 
 } // namespace sunfleck::gi

@@ -3,13 +3,10 @@
 #include "engine/core/hash.h"
 #include "engine/core/jobs.h"
 #include "gi_module/light_sampling/clamping_loss.h"
-#include "gi_module/light_sampling/sample_source.h"
 #include "gi_module/transport/clamping.h"
 #include "gi_module/transport/light_plan.h"
 
 #include <algorithm>
-#include <atomic>
-#include <tuple>
 
 namespace sunfleck::gi {
 namespace {
@@ -34,26 +31,11 @@ std::uint64_t hash_emitters(const std::vector<Emitter>& emitters) {
     return hash;
 }
 
-std::uint64_t next_generation() {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
-}
-
 // Whether samples are made for light that movers reflect.
 bool wants_movers(const SampleRequest& request, const scene::SceneChanges& changes) {
     if (!request.indirect || request.bounces == 0 || request.movers_are_static || !(request.mover_share > 0.0f))
         return false;
     return !MoverReflections::reflecting(changes).empty();
-}
-
-// Samples for dynamic emitters: their share, but at least two each. `others`: there are static ones, too.
-std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_emitters, bool others) {
-    if (dynamic_emitters == 0 || request.lights == 0)
-        return 0;
-    if (!others)
-        return request.lights;
-    const std::uint32_t share = std::uint32_t(float(request.lights) * request.dynamic_share);
-    return std::min(request.lights, std::max(share, 2 * std::uint32_t(dynamic_emitters)));
 }
 
 constexpr std::size_t loss_rays = 64;     // by which the loss of a single sample is estimated
@@ -107,10 +89,10 @@ void SampleSet::report(Report& report) const {
     report.set(clamped_share, 100.0 * loss_);
 }
 
-void SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
-                       bool previous_lost, bool keep) {
+Status SampleSet::update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
+                         const UpdateOptions& options) {
     moved_.clear();
-    keep = keep && cause_.valid;
+    const bool keep = options.keep && cause_.valid;
     const std::vector<Emitter> fixed = keep ? emitters_ : std::vector<Emitter>();
     const std::vector<Emitter> dynamic = keep ? dynamic_emitters_ : std::vector<Emitter>();
     find_emitters(scene, request);
@@ -119,8 +101,8 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request, con
     outdated_ = !fits && keep;
     if (others) {
         cause_ = now;
-        make_samples(request, scene);
-    } else if (previous_lost) {
+        SUNFLECK_TRY(make_samples(request, scene, options.progress));
+    } else if (options.previous_lost) {
         followed_ = followed_before_;
     }
     followed_before_ = followed_;
@@ -140,6 +122,7 @@ void SampleSet::update(const SceneView& scene, const SampleRequest& request, con
     follow_movers(scene, settings);
     if (blocks && !followed_.movers.samples().empty())
         blocked_paths_.check(samples_, dynamic_samples_);
+    return {};
 }
 
 // Emitters that move have samples of their own, and so have those that once changed their flux: the first change
@@ -215,47 +198,6 @@ SampleSet::Cause SampleSet::cause_of(const SampleRequest& request, const SceneVi
 bool SampleSet::is_cause(const Cause& now) const {
     return cause_.valid && now.request.same_samples(cause_.request) && now.emitters == cause_.emitters &&
            now.geometry == cause_.geometry && now.movers_reflect == cause_.movers_reflect;
-}
-
-void SampleSet::make_samples(const SampleRequest& request, const SceneView& scene) {
-    const raytrace::RayScene& rays = scene.rays;
-    const std::uint32_t on_movers =
-        cause_.movers_reflect ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
-    followed_.movers.reset(scene.changes, scene.meshes, rays, on_movers, request);
-    followed_.let_through.clear();
-    SampleRequest fixed = request; // for static emitters: what the others leave
-    fixed.lights -= std::min(request.lights, std::uint32_t(followed_.movers.samples().size()));
-    const std::uint32_t share = dynamic_share(fixed, dynamic_emitters_.size(), !emitters_.empty());
-    followed_.lights.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
-    fixed.lights -= std::min(fixed.lights, std::uint32_t(followed_.lights.samples().size()));
-    samples_ = sample_sources()[request.source].make(emitters_, fixed, rays);
-    for (const auto* dynamic : {&followed_.lights.samples(), &followed_.movers.samples()})
-        samples_.insert(samples_.end(), dynamic->begin(), dynamic->end());
-    sort_samples();
-    generation_ = next_generation();
-}
-
-void SampleSet::sort_samples() {
-    // By all that decides which technique lights a sample, so that a technique's samples are few, long runs.
-    const auto key = [](const LightSample& sample) {
-        return std::tuple(light_class(sample.kind), sample.dynamic, path_part(sample.bounce, sample.punctual));
-    };
-    std::stable_sort(samples_.begin(), samples_.end(),
-                     [&](const LightSample& a, const LightSample& b) { return key(a) < key(b); });
-    // Within a class, dynamic samples keep their order.
-    std::vector<LightSample> dynamic = followed_.lights.samples();
-    dynamic.insert(dynamic.end(), followed_.movers.samples().begin(), followed_.movers.samples().end());
-    std::vector<std::uint32_t> order(dynamic.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return key(dynamic[a]) < key(dynamic[b]); });
-    dynamic_samples_.assign(dynamic.size(), 0);
-    for (std::uint32_t i = 0, next = 0; i < samples_.size(); ++i) {
-        samples_[i].index = i;
-        if (samples_[i].dynamic)
-            dynamic_samples_[order[next++]] = i;
-    }
 }
 
 // `follower`: the sample's place in dynamic_samples_. `moved`: since the update before; where that was lost, the sample

@@ -18,6 +18,7 @@
 #include "gi_module/transport/light_row.h"
 #include "gi_module/transport/report.h"
 
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -35,10 +36,17 @@ struct SceneView {
 
 class SampleSet {
 public:
-    // Generates or moves samples. Call once a frame, then update_rows. `previous_lost`: nobody saw what the update
-    // before this one made, so dynamic samples go on from where they were before it. `keep`: FrameInput::keep_samples.
-    void update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
-                bool previous_lost = false, bool keep = false);
+    struct UpdateOptions {
+        // Nobody saw what the update before this one made, so dynamic samples go on from where they were before it.
+        bool previous_lost = false;
+        bool keep = false; // FrameInput::keep_samples
+        // Called with the share that is done while all samples are made anew, by the calling thread. If it returns
+        // false, the update ends with an error, and the next one begins again.
+        std::function<bool(float)> progress = {};
+    };
+    // Generates or moves samples. Call once a frame, then update_rows.
+    Status update(const SceneView& scene, const SampleRequest& request, const LightSettings& settings,
+                  const UpdateOptions& options);
     // Samples were kept that no longer fit.
     bool outdated() const { return outdated_; }
     // Fills the rows that shaders read. `slots`: shadow maps that fit into memory; sample i uses slot i % slots.
@@ -95,7 +103,8 @@ private:
     bool is_cause(const Cause& now) const;
     void keep_emitters(const std::vector<Emitter>& fixed, const std::vector<Emitter>& dynamic);
     bool find_varying(ecs::Registry& registry);
-    void make_samples(const SampleRequest& request, const SceneView& scene);
+    Status make_samples(const SampleRequest& request, const SceneView& scene,
+                        const std::function<bool(float)>& progress);
     void sort_samples();
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);

@@ -6,10 +6,11 @@ namespace sunfleck::gi {
 namespace {
 
 std::vector<LightSample> sample_by_random_walks(const std::vector<Emitter>& emitters, const SampleRequest& request,
-                                                const raytrace::RayScene& rays) {
+                                                const raytrace::RayScene& rays,
+                                                const std::function<bool(float)>& progress) {
     const SampleBudget budget = divide_samples(request, emitters);
     std::vector<LightSample> samples = sample_direct(emitters, budget.direct, request, rays);
-    const std::vector<LightSample> indirect = sample_indirect(emitters, budget.indirect, request, rays);
+    const std::vector<LightSample> indirect = sample_indirect(emitters, budget.indirect, request, rays, progress);
     samples.insert(samples.end(), indirect.begin(), indirect.end());
     return samples;
 }

@@ -3,6 +3,7 @@
 #include "gi_module/visibility/visibility_database.h"
 
 #include "engine/core/jobs.h"
+#include "engine/core/progress_part.h"
 
 #include <algorithm>
 
@@ -27,14 +28,11 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
                                std::span<const LightSample> samples, const VisibilityOptions& options,
                                const std::function<bool(float)>& progress) {
     constexpr float until_patches = 0.1f; // of the work
-    const auto part = [&](float begin, float end) {
-        return progress ? [&progress, begin, end](float share) { return progress(begin + (end - begin) * share); }
-                        : std::function<bool(float)>();
-    };
     options_ = options;
     samples_ = samples;
     static_blockers_ = {};
-    bool stopped = !patches_.build(registry, meshes, options.patches, static_blockers_, part(0.0f, until_patches));
+    bool stopped = !patches_.build(registry, meshes, options.patches, static_blockers_,
+                                   progress_part(progress, 0.0f, until_patches));
     movers_.clear();
     mover_slots_.clear();
     unlit_slots_.clear();
@@ -46,7 +44,7 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
         make_groups();
         choose_exact_roots();
         status = check_size();
-        stopped = status && !split_and_decide(part(until_patches, 1.0f));
+        stopped = status && !split_and_decide(progress_part(progress, until_patches, 1.0f));
     }
     if (stopped)
         status = Error{"preparing the lighting was stopped", ErrorCode::stopped};
@@ -78,14 +76,15 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
 
 // Level by level: decide all pairs of the level's nodes, then split those with enough partial pairs.
 bool VisibilityDatabase::split_and_decide(const std::function<bool(float)>& progress) {
-    BuildProgress reporter(progress, options_.patches.levels);
+    const bool coarse_roots = !is_exact_.empty() && !groups_.empty();
+    BuildProgress reporter(progress, options_.patches.levels + 1 + (coarse_roots ? 1 : 0));
     std::uint32_t first = 0;
     while (first < patches_.nodes().size()) {
         const std::uint32_t end = std::uint32_t(patches_.nodes().size());
         static_states_.resize(at(end, 0));
-        reporter.begin_level(end - first);
-        if (first == 0)
+        if (first == 0 && coarse_roots)
             decide_coarse_roots(reporter);
+        reporter.begin_level(end - first);
         parallel_for_chunks(end - first, 4, [&](std::size_t begin, std::size_t stop) {
             if (reporter.stopped())
                 return;

@@ -72,8 +72,7 @@ bool VisibilityDatabase::may_split_more() const {
 }
 
 void VisibilityDatabase::decide_coarse_roots(BuildProgress& progress) {
-    if (is_exact_.empty() || groups_.empty())
-        return;
+    progress.begin_level(samples_.size());
     parallel_for_chunks(samples_.size(), 1, [&](std::size_t begin, std::size_t end) {
         std::vector<PairState> states(patches_.nodes().size());
         for (std::size_t sample = begin; sample < end && !progress.stopped(); ++sample) {
@@ -81,9 +80,10 @@ void VisibilityDatabase::decide_coarse_roots(BuildProgress& progress) {
             for (std::uint32_t node = 0; node < patches_.roots(); ++node)
                 if (!is_exact(node))
                     static_states_[at(node, std::uint32_t(sample))] = std::uint8_t(states[node]);
-            progress.add(0);
+            progress.add(1);
         }
     });
+    progress.end_level();
 }
 
 // All charts that one blocker hides, or the sample's tangent plane, at once.

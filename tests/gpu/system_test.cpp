@@ -211,8 +211,9 @@ TEST_F(Systems, HostsSeeAndEndWhatComesBeforeTheLight) {
     for (host::Context* context : {fresh.get(), stopped.get()})
         for (const char* name : {"direct", "indirect"})
             ASSERT_TRUE(context->set(name, "light_samples"));
-    // Up to 0.2 geometry is prepared; once that is there, light takes all of the share: patches up to 0.1.
-    for (const float until : {0.0f, 0.02f, 0.05f, 0.09f, 0.1f, 0.15f, 0.2f, 0.02f, 0.08f, 0.15f, 0.0f}) {
+    // Up to 0.2 geometry is prepared; once that is there, light takes all of the share: samples up to 0.1, patches up
+    // to 0.19.
+    for (const float until : {0.0f, 0.02f, 0.05f, 0.09f, 0.1f, 0.15f, 0.2f, 0.02f, 0.08f, 0.12f, 0.15f, 0.18f, 0.0f}) {
         const Status status = update(*stopped, until);
         ASSERT_FALSE(status) << until;
         EXPECT_EQ(status.error().code, ErrorCode::stopped) << status.error().message;

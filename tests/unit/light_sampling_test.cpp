@@ -74,6 +74,37 @@ TEST(LightSampling, BadLightsAreLeftOut) {
     EXPECT_TRUE(sample_indirect(world.emitters, 10, {}, *world.rays).empty());
 }
 
+TEST(LightSampling, SaysHowFarItIsAndCanBeStopped) {
+    const SampledScene world(assets::make_four_pillars);
+    SampleRequest settings;
+    constexpr std::uint32_t count = 2000;
+    for (const std::uint32_t candidates : {1u, 64u}) {
+        settings.candidates = candidates;
+        std::vector<float> shares;
+        float until = 2.0f;
+        const auto sampled = [&] {
+            shares.clear();
+            return sample_indirect(world.emitters, count, settings, *world.rays, [&](float share) {
+                shares.push_back(share);
+                return share < until;
+            });
+        };
+        EXPECT_EQ(sampled().size(), count);
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+        const auto before = [&](float share) {
+            return std::lower_bound(shares.begin(), shares.end(), share) - shares.begin();
+        };
+        EXPECT_GT(before(0.5f), 1) << "walks";
+        EXPECT_GT(before(1.0f) - before(0.5f), 1) << (candidates > 1 ? "clusters" : "walks");
+        EXPECT_EQ(before(1.01f), std::ptrdiff_t(shares.size()));
+        for (until = 0.0f; until < (candidates > 1 ? 0.95f : 0.45f); until += 0.1f) {
+            EXPECT_TRUE(sampled().empty()) << until;
+            EXPECT_GE(shares.back(), until);
+            EXPECT_EQ(before(until), std::ptrdiff_t(shares.size()) - 1) << "it goes on";
+        }
+    }
+}
+
 TEST(LightSampling, CountsAreExactAndResultsIndependentOfThreads) {
     const SampledScene world(assets::make_four_pillars);
     for (const Sequence sequence : {Sequence::sobol, Sequence::pseudo_random})
