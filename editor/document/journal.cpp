@@ -1,6 +1,7 @@
 #include "editor/document/journal.h"
 
 #include "editor/document/edits.h"
+#include "engine/core/output.h"
 
 #include <cerrno>
 #include <cstring>
@@ -218,6 +219,7 @@ JournalWriter::~JournalWriter() {
 
 Status JournalWriter::create(const std::filesystem::path& path) {
     file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0600);
+    path_ = path;
     return file_ >= 0 ? Status() : Status(Error{"cannot write '" + path.string() + "': " + std::strerror(errno)});
 }
 
@@ -272,17 +274,18 @@ Status JournalWriter::append(std::uint64_t epoch, std::uint64_t revision, const 
     const std::string line = line_of(json) + "\n";
     if (file_ < 0)
         return {};
-    // In one call: a crash leaves all of it or a part without its end, which readers leave out.
+    // A crash leaves all of it or a part without its end, which readers leave out. What an edit says is not flushed to
+    // disk, which may take as long as a frame: should the machine itself stop, the edits since the last copy are lost.
     const off_t before = ::lseek(file_, 0, SEEK_END);
-    errno = ENOSPC; // of a write that stopped short
-    if (::write(file_, line.data(), line.size()) == ssize_t(line.size()))
+    const Status written = write_all(file_, line, path_);
+    if (written)
         return {};
-    const std::string why = std::strerror(errno);
     // Else the next line would go on from what was written of this one, and be unreadable, too. This edit is missing
     // then: readers have to stop here.
     const bool cut = before >= 0 && ::ftruncate(file_, before) == 0;
     complete_ = false;
-    return Error{"an edit could not be kept for a crash: " + why + (cut ? "" : "; nor can further ones")};
+    return Error{"an edit could not be kept for a crash: " + written.error().message +
+                 (cut ? "" : "; nor can further ones")};
 }
 
 Replayed edits_of_journal(const std::string& text, const JournalBase& base) {

@@ -53,6 +53,7 @@ public:
 
 private:
     int file_ = -1;
+    std::filesystem::path path_;  // for messages
     std::vector<Update> updates_; // one for each component
     std::map<std::pair<Entity, std::size_t>, std::size_t> places_;
     std::map<std::string, std::string> settings_;

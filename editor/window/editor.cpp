@@ -360,7 +360,6 @@ void Program::tell_scripts() {
 }
 
 Status Program::finish(bool whole, bool edits_wait) {
-    session_->opening.reset();
     keep_camera();
     state_.layout = layout_->state();
     window().size(state_.width, state_.height);
@@ -379,7 +378,8 @@ Status Program::finish(bool whole, bool edits_wait) {
     if (!edits_wait && recovered_from_)
         Recovery::discard(*recovered_from_);
     recovery_.reset();
-    end_soon(); // all is saved
+    end_soon(); // all is saved; what follows may wait for threads
+    session_->opening.reset();
     session_->cost.reset();
     session_->comparison.reset();
     scene_.reset(); // cancels, and lets go of its pictures once the GUI has

@@ -73,18 +73,6 @@ private:
     bool was_pending_ = false;
 };
 
-Status write_all(int file, std::string_view content, const fs::path& path) {
-    while (!content.empty()) {
-        const ssize_t written = ::write(file, content.data(), content.size());
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written <= 0)
-            return system_error(path);
-        content.remove_prefix(std::size_t(written));
-    }
-    return {};
-}
-
 Status write_stream(const fs::path& target, std::string_view content, const fs::path& path) {
     const PipeSignalHeld held;
     // Waits for a pipe's reader, unless a signal comes. Behind a name of /proc there may be a regular file.
@@ -242,6 +230,18 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 }
 
 } // namespace
+
+Status write_all(int file, std::string_view content, const fs::path& path) {
+    while (!content.empty()) {
+        const ssize_t written = ::write(file, content.data(), content.size());
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return system_error(path);
+        content.remove_prefix(std::size_t(written));
+    }
+    return {};
+}
 
 Result<OutputTarget> find_output(const fs::path& path) {
     OutputTarget target{OutputKind::new_file, path};

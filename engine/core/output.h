@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace sunfleck {
 
@@ -34,6 +35,10 @@ struct NamedFile {
 Status check_outputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs = {});
 // That, and try_output of each.
 Status try_outputs(std::span<const NamedFile> outputs, std::span<const NamedFile> inputs = {});
+
+// All of it to an open file, in as many calls as it takes: one that is interrupted or cut short is gone on with.
+// `path`: for the message. On an error, a part may have been written.
+Status write_all(int file, std::string_view content, const std::filesystem::path& path);
 
 // What was printed reaches a file or pipe only now: an error where it is full or closed.
 Status flush_standard_output();

@@ -4,6 +4,8 @@
 #include "engine/core/output.h"
 #include "tests/support/gltf_files.h"
 
+#include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <dlfcn.h>
@@ -11,9 +13,11 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <map>
+#include <poll.h>
 #include <set>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace {
@@ -158,6 +162,46 @@ TEST_F(RobustWriteFaults, EachCallMayFail) {
     for (const char* call : {"open", "write", "fsync", "rename", "flock", "fchown", "fchmod"})
         EXPECT_GT(reached[call], 0) << call;
     std::printf("%d tried, %d refused, %d written\n", tried, refused, written);
+}
+
+// A pipe is written to, not replaced: each call with each error, more than a pipe holds at once.
+TEST_F(RobustWriteFaults, EachCallToAPipeMayFail) {
+    const std::string content(200'000, 'n');
+    const fs::path pipe = folder.path / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::map<std::string, int> reached;
+    for (const int error : {ENOSPC, EACCES, EIO, EINTR, 0})
+        for (int at = 0;; ++at) {
+            std::string received;
+            // Opened for writing, too, so that neither side waits for the other to open it.
+            const int file = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC);
+            ASSERT_GE(file, 0);
+            std::atomic<bool> written_all = false;
+            std::thread reader([&] {
+                std::array<char, 4096> piece;
+                pollfd waits{file, POLLIN, 0};
+                while (::poll(&waits, 1, 10) > 0 || !written_all)
+                    if ((waits.revents & POLLIN) != 0)
+                        received.append(piece.data(),
+                                        std::size_t(std::max<ssize_t>(::read(file, piece.data(), piece.size()), 0)));
+            });
+            const Status status = with_fault(at, error, [&] { return write_file(pipe, content); });
+            written_all = true;
+            reader.join();
+            ::close(file);
+            if (fault.name == nullptr)
+                break;
+            ++reached[fault.name];
+            const std::string what =
+                std::string(fault.name) + ", call " + std::to_string(at) + ", " + std::strerror(error);
+            // Opening a pipe may wait for long: what interrupts it ends it.
+            const bool opening = std::string_view(fault.name) == "open" && error != 0;
+            EXPECT_EQ(bool(status), !opening && !matters(fault.name, error)) << what;
+            EXPECT_TRUE(status ? received == content : content.starts_with(received)) << what;
+            EXPECT_TRUE(fs::is_fifo(pipe)) << what;
+        }
+    EXPECT_GT(reached["open"], 0);
+    EXPECT_GT(reached["write"], 0);
 }
 
 // The same for a scene of two files: whatever fails, an old or a new scene is there.
