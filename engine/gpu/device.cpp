@@ -235,6 +235,7 @@ struct DeviceBuilder {
         traits.name = all.properties.deviceName;
         traits.driver = std::string(driver.driverName) + " " + driver.driverInfo;
         traits.software = all.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        traits.shares_memory = traits.software || all.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU;
         traits.max_image_layers = limits.maxImageArrayLayers;
         traits.max_texel_elements = limits.maxTexelBufferElements;
         traits.max_storage_range = limits.maxStorageBufferRange;

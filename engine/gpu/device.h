@@ -38,7 +38,8 @@ struct HostDevice {
 struct DeviceTraits {
     std::string name;
     std::string driver;
-    bool software = false; // a CPU device: kernels take the shapes that suit it
+    bool software = false;      // a CPU device: kernels take the shapes that suit it
+    bool shares_memory = false; // what it takes is missing elsewhere: a CPU device, or a GPU without memory of its own
     std::uint32_t max_image_layers = 0;
     std::uint64_t max_texel_elements = 0;
     std::uint64_t max_storage_range = 0;

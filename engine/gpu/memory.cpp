@@ -48,10 +48,10 @@ Result<std::uint32_t> Memory::choose_type(std::uint32_t allowed, MemoryUse use) 
 
 Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, bool linear, bool dedicated, bool map,
                                          const std::string& what) {
-    // Elsewhere the device has memory of its own, and refuses what does not fit.
-    if (device_.traits().software)
-        SUNFLECK_TRY(check_memory(size, "'" + what + "'",
-                                  "the picture's size, the level's, the light samples (lights) or shadow_memory"));
+    const std::string settings = "the picture's size, the level's, the light samples (lights) or shadow_memory";
+    // Other devices have memory of their own, and refuse what does not fit.
+    if (device_.traits().shares_memory)
+        SUNFLECK_TRY(check_memory(size, "'" + what + "'", settings));
     VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     info.allocationSize = size;
     info.memoryTypeIndex = type;
@@ -60,7 +60,10 @@ Result<std::uint32_t> Memory::make_block(VkDeviceSize size, std::uint32_t type, 
     block.free_ranges.reserve(2);
     blocks_.reserve(blocks_.size() + 1);
     const std::string doing = "allocating " + std::to_string(size >> 20) + " MiB of GPU memory for '" + what + "'";
-    SUNFLECK_VK(device_.vk.vkAllocateMemory(device_.handle(), &info, nullptr, &block.memory), doing);
+    const VkResult allocated = device_.vk.vkAllocateMemory(device_.handle(), &info, nullptr, &block.memory);
+    if (allocated == VK_ERROR_OUT_OF_DEVICE_MEMORY || allocated == VK_ERROR_OUT_OF_HOST_MEMORY)
+        return Error{vulkan_error(allocated, doing).message + ". Lower " + settings, ErrorCode::memory};
+    SUNFLECK_VK(allocated, doing);
     if (map) {
         void* mapped = nullptr;
         const VkResult result = device_.vk.vkMapMemory(device_.handle(), block.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
