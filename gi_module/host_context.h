@@ -9,6 +9,7 @@
 #include "gi_module/g_buffer/conversion.h"
 #include "gi_module/host_checks.h"
 #include "gi_module/light_sensors/light_sensors.h"
+#include "gi_module/numbered.h"
 #include "gi_module/system.h"
 #include "sunfleck/host.h"
 
@@ -44,9 +45,9 @@ struct Description {
     std::vector<std::uint32_t> removed_meshes; // of which the store still has some
     scene::TextureStore textures;
     std::vector<SharedMaterial> materials;
-    std::vector<std::optional<Instance>> instances; // empty: removed
-    std::vector<std::optional<Light>> lights;
-    std::vector<std::optional<Sensor>> sensors;
+    Numbered<Instance> instances;
+    Numbered<Light> lights;
+    Numbered<Sensor> sensors;
     std::uint64_t next_order = 0;
 
     const SharedMaterial& surface_of(const Instance& instance) const {
@@ -68,8 +69,13 @@ struct Mirror {
     void set_sensor(ecs::Entity entity, const SensorData& data);
     void set_surface(ecs::Entity entity, const SharedMaterial& surface);
 
+    struct Instance {
+        ecs::Entity entity;
+        std::uint32_t surface = 0; // what surface_id says: 0 before the first update
+    };
     ecs::Registry registry;
-    std::vector<ecs::Entity> instances, lights, sensors; // null: removed
+    Numbered<Instance> instances;
+    Numbered<ecs::Entity> lights, sensors;
     scene::ChangeTracker change_tracker{scene::ChangeTracker::Space::of_scene};
 };
 
@@ -90,9 +96,8 @@ struct Follower {
     std::unique_ptr<gi::GBufferConversion> conversion;
     std::unique_ptr<gi::LightSensors> sensors; // null until their first step
     std::unique_ptr<gpu::FrameGraph> graph;
-    scene::SceneSpace space;                // of the last update
-    std::vector<std::uint32_t> surface_ids; // by instance
-    std::optional<mat4> view_projection;    // of the last frame recorded
+    scene::SceneSpace space;             // of the last update
+    std::optional<mat4> view_projection; // of the last frame recorded
     bool updated = false;
     bool unrecorded = false; // the last update was not followed by a frame
 };
@@ -184,8 +189,8 @@ auto Context::Implementation::run(const Call& call) noexcept -> decltype(call())
 }
 
 template <typename T>
-Status check_there(const std::vector<std::optional<T>>& list, std::uint32_t number, const char* what) {
-    if (number < list.size() && list[number])
+Status check_there(const Numbered<T>& all, std::uint32_t number, const char* what) {
+    if (all.find(number) != nullptr)
         return {};
     return wrong(std::string("there is no ") + what + " " + std::to_string(number));
 }

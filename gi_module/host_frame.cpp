@@ -150,11 +150,10 @@ void Context::Implementation::number_surfaces() {
     std::unordered_map<ecs::Entity, std::uint32_t> rows;
     for (const scene::DrawItem& item : follower->gpu_scene->draws())
         rows[item.entity] = item.row;
-    const std::vector<ecs::Entity>& instances = follower->mirror.instances;
-    follower->surface_ids.assign(instances.size(), 0);
-    for (std::size_t i = 0; i < instances.size(); ++i)
-        if (const auto found = rows.find(instances[i]); found != rows.end())
-            follower->surface_ids[i] = found->second + 1;
+    for (auto& [number, instance] : follower->mirror.instances) {
+        const auto found = rows.find(instance.entity);
+        instance.surface = found == rows.end() ? 0 : found->second + 1;
+    }
 }
 
 // Nobody refers to them any more. The GPU's copy goes with the next update.
@@ -166,9 +165,10 @@ void Context::Implementation::drop_removed_meshes() {
 
 std::uint32_t Context::surface_id(std::uint32_t instance) const {
     const Implementation& self = *implementation_;
-    if (self.busy || self.damaged || self.follower == nullptr || instance >= self.follower->surface_ids.size())
+    if (self.busy || self.damaged || self.follower == nullptr)
         return 0;
-    return self.follower->surface_ids[instance];
+    const Mirror::Instance* known = self.follower->mirror.instances.find(instance);
+    return known == nullptr ? 0 : known->surface;
 }
 
 Status Context::record(VkCommandBuffer commands, const Camera& camera, const FrameImages& images) {

@@ -82,16 +82,12 @@ Status check_material_there(const Description& description, std::uint32_t materi
 
 Mirror::Mirror(const Description& description) {
     scene::register_components(registry);
-    instances.assign(description.instances.size(), ecs::null_entity);
-    lights.assign(description.lights.size(), ecs::null_entity);
-    sensors.assign(description.sensors.size(), ecs::null_entity);
     // In the order in which they were added.
     using Add = void (Mirror::*)(const Description&, std::uint32_t);
     std::map<std::uint64_t, std::pair<Add, std::uint32_t>> ordered;
     const auto list = [&](const auto& entries, Add add_entry) {
-        for (std::uint32_t i = 0; i < entries.size(); ++i)
-            if (entries[i])
-                ordered.emplace(entries[i]->order, std::pair(add_entry, i));
+        for (const auto& [number, entry] : entries)
+            ordered.emplace(entry.order, std::pair(add_entry, number));
     };
     list(description.instances, &Mirror::add);
     list(description.lights, &Mirror::add_light);
@@ -101,10 +97,9 @@ Mirror::Mirror(const Description& description) {
 }
 
 void Mirror::add(const Description& description, std::uint32_t number) {
-    const Description::Instance& instance = *description.instances[number];
-    instances.resize(std::max<std::size_t>(instances.size(), number + 1), ecs::null_entity);
+    const Description::Instance& instance = description.instances[number];
     const ecs::Entity entity = registry.create();
-    instances[number] = entity;
+    instances.add_as(number, {entity});
     registry.emplace<scene::MeshInstance>(entity, {instance.mesh});
     set_surface(entity, description.surface_of(instance));
     if (instance.mobility == Mobility::moving)
@@ -113,9 +108,8 @@ void Mirror::add(const Description& description, std::uint32_t number) {
 }
 
 void Mirror::add_light(const Description& description, std::uint32_t number) {
-    lights.resize(std::max<std::size_t>(lights.size(), number + 1), ecs::null_entity);
-    lights[number] = registry.create();
-    set_light(lights[number], description.lights[number]->data);
+    lights.add_as(number, registry.create());
+    set_light(lights[number], description.lights[number].data);
 }
 
 // In place of a light of another kind. One of the same kind changes where it is.
@@ -169,10 +163,9 @@ Status Context::remove_mesh(std::uint32_t mesh) {
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_mesh_there(self.description, mesh));
-        const auto& instances = self.description.instances;
-        for (std::size_t i = 0; i < instances.size(); ++i)
-            if (instances[i] && instances[i]->mesh == mesh)
-                return wrong("instance " + std::to_string(i) + " has mesh " + std::to_string(mesh) +
+        for (const auto& [number, instance] : self.description.instances)
+            if (instance.mesh == mesh)
+                return wrong("instance " + std::to_string(number) + " has mesh " + std::to_string(mesh) +
                              "; remove the instance first");
         // Whoever follows the scene may still look at it, until the next update.
         self.description.removed_meshes.push_back(mesh);
@@ -217,9 +210,9 @@ Status Context::set_material(std::uint32_t material, const MaterialData& data) {
         SharedMaterial& changed = self.description.materials[material];
         SUNFLECK_ASSIGN(changed, self.make_material(data, &changed));
         self.mirror([&](Mirror& mirror) {
-            for (std::size_t i = 0; i < mirror.instances.size(); ++i)
-                if (const auto& instance = self.description.instances[i]; instance && instance->material == material)
-                    mirror.set_surface(mirror.instances[i], changed);
+            for (const auto& [number, instance] : self.description.instances)
+                if (instance.material == material)
+                    mirror.set_surface(mirror.instances[number].entity, changed);
         });
         return {};
     });
@@ -238,13 +231,13 @@ Result<std::uint32_t> Context::add_instance(const InstanceData& data) {
         SUNFLECK_TRY(check_transform("InstanceData::transform", data.transform, description.meshes.bounds(data.mesh)));
         SUNFLECK_TRY(check_albedo("InstanceData::albedo", data.albedo));
         SUNFLECK_TRY(check_strength("InstanceData::emission", data.emission));
-        description.instances.push_back(Description::Instance{description.next_order++,
-                                                              data.mesh,
-                                                              matrix_of(data.transform),
-                                                              data.mobility,
-                                                              data.material,
-                                                              {material_of(data.albedo, data.emission), {}}});
-        const auto number = std::uint32_t(description.instances.size() - 1);
+        const std::uint32_t number =
+            description.instances.add(Description::Instance{description.next_order++,
+                                                            data.mesh,
+                                                            matrix_of(data.transform),
+                                                            data.mobility,
+                                                            data.material,
+                                                            {material_of(data.albedo, data.emission), {}}});
         self.mirror([&](Mirror& mirror) { mirror.add(description, number); });
         return number;
     });
@@ -255,10 +248,10 @@ Status Context::set_transform(std::uint32_t instance, const Matrix4& transform) 
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
-        Description::Instance& changed = *self.description.instances[instance];
+        Description::Instance& changed = self.description.instances[instance];
         SUNFLECK_TRY(check_transform("transform", transform, self.description.meshes.bounds(changed.mesh)));
         changed.transform = matrix_of(transform);
-        self.mirror([&](Mirror& mirror) { mirror.place(mirror.instances[instance], changed.transform); });
+        self.mirror([&](Mirror& mirror) { mirror.place(mirror.instances[instance].entity, changed.transform); });
         return {};
     });
 }
@@ -270,10 +263,10 @@ Status Context::set_surface(std::uint32_t instance, const Vector3& albedo, const
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
         SUNFLECK_TRY(check_albedo("albedo", albedo));
         SUNFLECK_TRY(check_strength("emission", emission));
-        Description::Instance& changed = *self.description.instances[instance];
+        Description::Instance& changed = self.description.instances[instance];
         changed.own = {material_of(albedo, emission), {}};
         changed.material = no_material;
-        self.mirror([&](Mirror& mirror) { mirror.set_surface(mirror.instances[instance], changed.own); });
+        self.mirror([&](Mirror& mirror) { mirror.set_surface(mirror.instances[instance].entity, changed.own); });
         return {};
     });
 }
@@ -283,10 +276,10 @@ Status Context::remove_instance(std::uint32_t instance) {
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.instances, instance, "instance"));
-        self.description.instances[instance].reset();
+        self.description.instances.remove(instance);
         self.mirror([&](Mirror& mirror) {
-            mirror.registry.destroy(mirror.instances[instance]);
-            mirror.instances[instance] = ecs::null_entity;
+            mirror.registry.destroy(mirror.instances[instance].entity);
+            mirror.instances.remove(instance);
         });
         return {};
     });
@@ -298,8 +291,7 @@ Result<std::uint32_t> Context::add_light(const LightData& data) {
         Description& description = self.description;
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_light(data));
-        description.lights.push_back(Description::Light{description.next_order++, data});
-        const auto number = std::uint32_t(description.lights.size() - 1);
+        const std::uint32_t number = description.lights.add(Description::Light{description.next_order++, data});
         self.mirror([&](Mirror& mirror) { mirror.add_light(description, number); });
         return number;
     });
@@ -311,7 +303,7 @@ Status Context::set_light(std::uint32_t light, const LightData& data) {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
         SUNFLECK_TRY(check_light(data));
-        self.description.lights[light]->data = data;
+        self.description.lights[light].data = data;
         self.mirror([&](Mirror& mirror) { mirror.set_light(mirror.lights[light], data); });
         return {};
     });
@@ -322,10 +314,10 @@ Status Context::remove_light(std::uint32_t light) {
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.lights, light, "light"));
-        self.description.lights[light].reset();
+        self.description.lights.remove(light);
         self.mirror([&](Mirror& mirror) {
             mirror.registry.destroy(mirror.lights[light]);
-            mirror.lights[light] = ecs::null_entity;
+            mirror.lights.remove(light);
         });
         return {};
     });

@@ -17,9 +17,8 @@ mat4 place_of(const SensorData& sensor) {
 } // namespace
 
 void Mirror::add_sensor(const Description& description, std::uint32_t number) {
-    sensors.resize(std::max<std::size_t>(sensors.size(), number + 1), ecs::null_entity);
-    sensors[number] = registry.create();
-    set_sensor(sensors[number], description.sensors[number]->data);
+    sensors.add_as(number, registry.create());
+    set_sensor(sensors[number], description.sensors[number].data);
 }
 
 void Mirror::set_sensor(ecs::Entity entity, const SensorData& data) {
@@ -46,8 +45,7 @@ Result<std::uint32_t> Context::add_sensor(const SensorData& data) {
         Description& description = self.description;
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_sensor(data));
-        description.sensors.push_back(Description::Sensor{description.next_order++, data});
-        const auto number = std::uint32_t(description.sensors.size() - 1);
+        const std::uint32_t number = description.sensors.add(Description::Sensor{description.next_order++, data});
         self.mirror([&](Mirror& mirror) { mirror.add_sensor(description, number); });
         return number;
     });
@@ -59,7 +57,7 @@ Status Context::set_sensor(std::uint32_t sensor, const SensorData& data) {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
         SUNFLECK_TRY(check_sensor(data));
-        self.description.sensors[sensor]->data = data;
+        self.description.sensors[sensor].data = data;
         self.mirror([&](Mirror& mirror) { mirror.set_sensor(mirror.sensors[sensor], data); });
         return {};
     });
@@ -70,10 +68,10 @@ Status Context::remove_sensor(std::uint32_t sensor) {
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_there(self.description.sensors, sensor, "sensor"));
-        self.description.sensors[sensor].reset();
+        self.description.sensors.remove(sensor);
         self.mirror([&](Mirror& mirror) {
             mirror.registry.destroy(mirror.sensors[sensor]);
-            mirror.sensors[sensor] = ecs::null_entity;
+            mirror.sensors.remove(sensor);
         });
         return {};
     });
@@ -91,7 +89,7 @@ Status Context::step_sensors() {
 }
 
 Status Context::Implementation::step_sensors() {
-    if (description.sensors.empty())
+    if (description.sensors.empty() && (follower == nullptr || follower->sensors == nullptr))
         return {};
     if (damaged || follower == nullptr)
         SUNFLECK_TRY(restart());
@@ -106,11 +104,13 @@ Status Context::Implementation::step_sensors() {
 SensorValue Context::read_sensor(std::uint32_t sensor) const {
     const Implementation& self = *implementation_;
     SensorValue value;
-    if (self.busy || self.damaged || self.follower == nullptr || sensor >= self.follower->mirror.sensors.size() ||
-        self.follower->mirror.sensors[sensor].is_null())
+    if (self.busy || self.damaged || self.follower == nullptr)
         return value;
     const Mirror& mirror = self.follower->mirror;
-    if (const auto* reading = mirror.registry.try_get<scene::SensorReading>(mirror.sensors[sensor])) {
+    const ecs::Entity* entity = mirror.sensors.find(sensor);
+    if (entity == nullptr)
+        return value;
+    if (const auto* reading = mirror.registry.try_get<scene::SensorReading>(*entity)) {
         value.irradiance = {reading->irradiance.x, reading->irradiance.y, reading->irradiance.z};
         value.share = reading->share;
         value.open = reading->open;

@@ -55,6 +55,13 @@ TEST_F(RobustHostMemory, DoesNotGrowWithItsFrames) {
         ASSERT_TRUE(context.set_transform(1, box_matrix(vec3(std::sin(t), 0.6f, std::cos(t)), vec3(0.6f))));
         ASSERT_TRUE(context.set_light(
             *lamp, {host::LightKind::point, {3, 3, 5}, {std::cos(2 * t), 1.5f + 0.5f * std::sin(3 * t), 0.5f}}));
+        // Something comes, and what came a frame ago goes.
+        const auto guest =
+            context.add_instance({1, box_matrix(vec3(-0.8f, 0.4f, -0.8f), vec3(0.3f)), host::Mobility::moving});
+        ASSERT_TRUE(guest) << guest.error().message;
+        if (frame > 0) {
+            ASSERT_TRUE(context.remove_instance(*guest - 1));
+        }
         ASSERT_TRUE(program.frame(context, 0));
         samples.push_back(memory_now(context));
     }

@@ -273,7 +273,8 @@ public:
     Result<std::uint32_t> add_mesh(const MeshData& mesh);
     // Refused while an instance has it. Its memory is free after the next update.
     Status remove_mesh(std::uint32_t mesh);
-    // Materials and their textures stay until clear(). A changed material changes all instances that have it.
+    // Materials and their textures stay until clear(), those that set_material replaces, too. A changed material
+    // changes all instances that have it.
     Result<std::uint32_t> add_material(const MaterialData& material);
     Status set_material(std::uint32_t material, const MaterialData& data);
     Result<std::uint32_t> add_instance(const InstanceData& instance);
