@@ -21,6 +21,57 @@ TEST_F(RobustHost, MissingFeaturesNeedNoContext) {
     expect_argument(without_value(host::missing_features(device().instance(), VK_NULL_HANDLE)), "physical_device");
 }
 
+// The loader's functions, but for a device that says that it knows another version, or lacks features.
+std::uint32_t claimed_version = VK_API_VERSION_1_3;
+VkBool32 VkPhysicalDeviceVulkan13Features::*claimed_missing = nullptr;
+bool claims_no_feature = false;
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL claiming_functions(VkInstance instance, const char* name) {
+    static const PFN_vkGetInstanceProcAddr real = gpu::loader_functions();
+    static PFN_vkGetPhysicalDeviceProperties real_properties = nullptr;
+    static PFN_vkGetPhysicalDeviceFeatures2 real_features = nullptr;
+    const PFN_vkVoidFunction function = real(instance, name);
+    if (std::string_view(name) == "vkGetPhysicalDeviceProperties") {
+        real_properties = reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(function);
+        return reinterpret_cast<PFN_vkVoidFunction>(
+            +[](VkPhysicalDevice device, VkPhysicalDeviceProperties* properties) {
+                real_properties(device, properties);
+                properties->apiVersion = claimed_version;
+            });
+    }
+    if (std::string_view(name) == "vkGetPhysicalDeviceFeatures2") {
+        real_features = reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(function);
+        return reinterpret_cast<PFN_vkVoidFunction>(+[](VkPhysicalDevice device, VkPhysicalDeviceFeatures2* features) {
+            auto* of12 = static_cast<VkPhysicalDeviceVulkan12Features*>(features->pNext);
+            auto* of13 = static_cast<VkPhysicalDeviceVulkan13Features*>(of12->pNext);
+            if (!claims_no_feature)
+                real_features(device, features);
+            if (claimed_missing != nullptr)
+                of13->*claimed_missing = VK_FALSE;
+        });
+    }
+    return function;
+}
+
+TEST_F(RobustHost, MissingFeaturesAreNamed) {
+    using Names = std::vector<std::string>;
+    const auto missing = [&] {
+        return host::missing_features(device().instance(), device().physical_device(), claiming_functions).value();
+    };
+    for (const auto& [version, lacks] :
+         {std::pair(VK_API_VERSION_1_2, Names{"Vulkan 1.3"}), std::pair(VK_API_VERSION_1_3, Names{}),
+          std::pair(VK_MAKE_API_VERSION(0, 1, 4, 300), Names{})}) {
+        claimed_version = version;
+        EXPECT_EQ(missing(), lacks) << VK_API_VERSION_MINOR(version);
+    }
+    claimed_missing = &VkPhysicalDeviceVulkan13Features::synchronization2;
+    EXPECT_EQ(missing(), Names{"synchronization2"});
+    claimed_missing = nullptr;
+    claims_no_feature = true;
+    EXPECT_EQ(missing(), gpu::required_feature_names());
+    claims_no_feature = false;
+}
+
 TEST_F(RobustHost, HandlesThatWillNotDoAreRefusedByName) {
     const HostProgram program(device());
     const host::VulkanHandles good = program.handles();
@@ -198,7 +249,7 @@ TEST_F(RobustHost, MemoryLimitsAreTheHosts) {
     host::set_memory_limit(std::uint64_t(1) << 20);
     const Status refused = program.frame(*context, 0);
     host::set_memory_limit(0);
-    if (device().traits().software) { // others have memory of their own
+    if (device().traits().shares_memory) { // others have memory of their own
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().code, ErrorCode::memory);
         EXPECT_NE(refused.error().message.find("set_memory_limit"), std::string::npos) << refused.error().message;

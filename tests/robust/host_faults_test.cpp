@@ -3,10 +3,13 @@
 #include "tests/robust/faulty_vulkan.h"
 #include "tests/robust/host_story.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <new>
 #include <random>
 #include <set>
+#include <tbb/task_scheduler_observer.h>
+#include <thread>
 
 // Where the program's own code begins and ends, from the linker.
 extern "C" {
@@ -19,10 +22,25 @@ namespace {
 // Which allocation of this thread fails, from 1; 0: none.
 thread_local std::uint64_t allocations = 0, failing_allocation = 0;
 thread_local bool counting = false;
+// The same of all other threads together, while they are counted: those that share the work of parallel loops.
+std::atomic<std::uint64_t> others_allocations{0}, others_failing_allocation{0};
+std::atomic<bool> counting_others{false};
+
+// Of threads that share the work of parallel loops. The driver has threads, too.
+thread_local bool shares_loops = false;
+
+class WorkerObserver : public tbb::task_scheduler_observer {
+public:
+    WorkerObserver() { observe(true); }
+    ~WorkerObserver() override { observe(false); }
+    void on_scheduler_entry(bool is_worker) override { shares_loops = is_worker; }
+};
 
 // `caller`: who allocates. Only code of this program, which the module is linked into, while it is called as a host
 // calls it: how the driver, the validation layer and Embree bear it is their own affair.
 bool allocation_fails(const void* caller) noexcept {
+    if (counting_others && shares_loops)
+        return caller >= &__executable_start && caller < &etext && ++others_allocations == others_failing_allocation;
     if (!counting || host_calls == 0 || faulty::state.within > 0 || caller < &__executable_start || caller >= &etext)
         return false;
     return ++allocations == failing_allocation;
@@ -289,6 +307,42 @@ TEST_F(RobustHostFaults, EveryAllocationMayFail) {
     const std::uint64_t cases = last - first + 1;
     std::printf("%llu allocations; %llu cases\n", static_cast<unsigned long long>(count),
                 static_cast<unsigned long long>(cases));
+}
+
+// Threads of parallel loops run out of memory: which work they get is chance, so that some seeds meet none.
+TEST_F(RobustHostFaults, AllocationsOfOtherThreadsMayFail) {
+    HostProgram program(device());
+    const WorkerObserver observer;
+    const auto play_counted = [&](std::uint64_t failing) {
+        faulty::state = {};
+        others_allocations = 0;
+        others_failing_allocation = failing;
+        counting_others = true;
+        Outcome outcome = play(program);
+        counting_others = false;
+        return outcome;
+    };
+    const HostPicture expected = play_counted(0).picture;
+    const std::uint64_t count = others_allocations;
+    if (std::thread::hardware_concurrency() > 1) {
+        EXPECT_GT(count, 100u);
+    }
+    const std::uint64_t first = number_from_environment("SUNFLECK_FIRST_SEED", 1);
+    const std::uint64_t last = number_from_environment("SUNFLECK_LAST_SEED", first + by_size(3u, 199u));
+    std::uint64_t refused = 0;
+    for (std::uint64_t seed = first; seed <= last && count > 0 && !HasFailure(); ++seed) {
+        std::mt19937 random{std::uint32_t(seed)};
+        const Outcome outcome = play_counted(1 + random() % count);
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        EXPECT_EQ(faulty::state.live, 0) << "objects of Vulkan's leak";
+        for (const Error& error : outcome.errors)
+            EXPECT_EQ(error.code, ErrorCode::memory) << error.message;
+        EXPECT_EQ(outcome.picture, expected);
+        refused += !outcome.errors.empty();
+    }
+    std::printf("some %llu allocations of other threads; %llu cases, %llu refused\n",
+                static_cast<unsigned long long>(count), static_cast<unsigned long long>(last - first + 1),
+                static_cast<unsigned long long>(refused));
 }
 
 } // namespace

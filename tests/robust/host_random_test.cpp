@@ -55,6 +55,7 @@ TEST_F(RobustHostCalls, AreRightOrRefused) {
     describe_room(*fresh);
     const HostPicture expected = picture_of_room(program, *fresh);
     fresh.reset();
+    ASSERT_EQ(forgotten_settings(), "");
     Tally sum;
     for (std::uint32_t seed = first; seed <= last && !HasFailure(); ++seed) {
         Sequence sequence(seed, program, *context, hook);
@@ -67,10 +68,8 @@ TEST_F(RobustHostCalls, AreRightOrRefused) {
         if (seed % 20 == 0)
             context = make_context(program, calling(hook));
         program.resize(false);
-        for (const auto& [name, value] :
-             {std::pair("baked_light", "on"), std::pair("light_maps", "on"), std::pair("low_resolution", "4"),
-              std::pair("shadow_map_bits", "16"), std::pair("specular", "none")})
-            ASSERT_TRUE(context->set(name, value));
+        for (const SettingValues& setting : host_settings)
+            ASSERT_TRUE(context->set(setting.name, setting.values[0])) << setting.name;
         if (seed % 8 == 0) {
             describe_room(*context);
             EXPECT_EQ(picture_of_room(program, *context), expected);

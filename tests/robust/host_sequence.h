@@ -3,6 +3,7 @@
 #pragma once
 
 #include "tests/robust/host_frame_calls.h"
+#include "tests/robust/host_settings.h"
 
 namespace sunfleck::tests {
 
@@ -238,15 +239,14 @@ private:
     }
     void set() {
         struct Choice {
-            const char *name, *value;
+            std::string_view name;
+            const char* value;
         };
-        constexpr Choice good[] = {{"lights", "16"},        {"lights", "8"},         {"baked_light", "off"},
-                                   {"baked_light", "on"},   {"light_maps", "off"},   {"light_maps", "on"},
-                                   {"low_resolution", "1"}, {"low_resolution", "4"}, {"shadow_map_bits", "16"},
-                                   {"specular", "gloss"},   {"specular", "none"}};
         constexpr Choice bad[] = {{"lights", "-1"}, {"lights", "nan"}, {"lights", ""},          {"", "1"},
                                   {"nothing", "1"}, {"lights", "1e9"}, {"baked_light", "maybe"}};
-        const Choice choice = wrong_ ? bad[pick(std::size(bad))] : good[pick(std::size(good))];
+        const SettingValues& setting = host_settings[pick(std::size(host_settings))];
+        const Choice choice =
+            wrong_ ? bad[pick(std::size(bad))] : Choice{setting.name, setting.values[pick(setting.values.size())]};
         expect(context_.set(choice.name, choice.value), "set");
     }
     // What returns no status: any number will do.
