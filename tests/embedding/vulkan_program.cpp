@@ -125,8 +125,11 @@ VulkanProgram::~VulkanProgram() {
 }
 
 void VulkanProgram::make_device(const Features& features) {
+#ifdef EMBEDDING_VOLK
+    require(volkInitialize(), "volkInitialize");
+#endif
     VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
-    application.apiVersion = VK_API_VERSION_1_3;
+    application.apiVersion = version;
     const char* layer = "VK_LAYER_KHRONOS_validation";
     const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
     const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -137,6 +140,9 @@ void VulkanProgram::make_device(const Features& features) {
     info.ppEnabledLayerNames = &layer;
     info.ppEnabledExtensionNames = &extension;
     require(vkCreateInstance(&info, callbacks_, &instance), "vkCreateInstance");
+#ifdef EMBEDDING_VOLK
+    volkLoadInstance(instance);
+#endif
     VkDebugUtilsMessengerCreateInfoEXT messenger{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
     messenger.messageSeverity =
         VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT;
@@ -159,6 +165,9 @@ void VulkanProgram::make_device(const Features& features) {
     device_info.queueCreateInfoCount = 1;
     device_info.pQueueCreateInfos = &queues;
     require(vkCreateDevice(physical_device, &device_info, callbacks_, &device), "vkCreateDevice");
+#ifdef EMBEDDING_VOLK
+    volkLoadDevice(device);
+#endif
     vkGetDeviceQueue(device, 0, 0, &queue);
 }
 

@@ -5,7 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <vector>
+#ifdef EMBEDDING_VOLK
+#include <volk.h>
+#else
 #include <vulkan/vulkan.h>
+#endif
 
 struct Box {
     std::array<float, 3> place; // of its lowest corner
@@ -40,6 +44,11 @@ struct GeometryFormats {
 class VulkanProgram {
 public:
     static constexpr std::uint32_t width = 160, height = 120;
+#ifdef EMBEDDING_VOLK
+    static constexpr std::uint32_t version = VK_MAKE_API_VERSION(0, 1, 4, 0);
+#else
+    static constexpr std::uint32_t version = VK_API_VERSION_1_3;
+#endif
 
     // `features`: fills in what the module needs.
     using Features = std::function<void(VkPhysicalDeviceFeatures*, VkPhysicalDeviceVulkan12Features*,
@@ -63,7 +72,9 @@ public:
     bool has_depth_format(VkFormat format) const;
     // Mean of the irradiance image's red, green and blue, and whether a number is not finite. Waits.
     std::array<double, 3> mean_irradiance(bool& finite);
-    void wait() const { vkDeviceWaitIdle(device); }
+    void wait() const {
+        vkDeviceWaitIdle(device);
+    }
 
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical_device = VK_NULL_HANDLE;

@@ -26,5 +26,7 @@ cmake --build "$work/build"
 lines=$(sed -n '/\[sunfleck: begin\]/,/\[sunfleck: end\]/p' "$source/main.cpp" | sed '1d;$d' | grep -c .)
 echo "$lines lines of glue"
 ((lines <= 60)) || { echo "more than 60 lines of glue"; exit 1; }
+grep -qs VK_LAYER_KHRONOS_validation /usr/share/vulkan/explicit_layer.d/*.json /etc/vulkan/explicit_layer.d/*.json ||
+    { echo "the validation layer is not installed (vulkan-validationlayers)"; exit 1; }
 VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation "$work/build/scene_graph" "$work/picture.ppm" 2>&1 | tee "$work/log"
 ! grep -qi 'validation' "$work/log" || { echo "the validation layer has something to say"; exit 1; }
