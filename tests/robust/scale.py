@@ -2,7 +2,8 @@
 """Large levels: the time to their first picture, memory, and whether an interrupt ends them at once.
 
 Usage: scale.py BUILD_FOLDER [FIRST LAST]     numbers of the rows below; default: all
-The first picture has 64x36 pixels and all of its light. Interrupts come at eight moments of that time. A level of more
+The first picture has 64x36 pixels and all of its light. Interrupts come at eight moments of that time; for two of the
+levels, the path tracer and the demo are interrupted, too. A level of more
 objects may take no more than n^1.2, 10,000 objects no more than 12 s (a tenth of what they took before they were counted
 on), and nobody waits longer than 0.3 s for an interrupt. Memory: what a level takes beyond a level of 10 objects grows by
 no more than n^1.2, either, and no level takes more than --memory promises by default: three quarters of what is free.
@@ -27,6 +28,7 @@ LEVELS = [("1,000 objects", {"objects": 1000}, []), ("10,000 objects", {"objects
 GROWS_FROM = {1: (0, 10), 2: (1, 10), 4: (3, 10), 5: (4, 10)}  # row: (smaller row, times as many)
 POWER = 1.2
 LATEST = 0.3  # s
+INTERRUPTED_ALSO = {1, 4}  # rows: the path tracer and the demo, too
 LONGEST_OF = {1: 12.0}  # s, by row
 UNCOUNTED = 64  # MB: pieces under 64 MiB are let through until they add up to as much (engine/core/memory_limit.h)
 
@@ -34,6 +36,15 @@ UNCOUNTED = 64  # MB: pieces under 64 MiB are let through until they add up to a
 def start(tool, level, more):
     return subprocess.Popen([tool, "render", str(level), "-o", str(level.with_suffix(".png")), "--size", "64x36", "--warmup",
                              "0", "--frames", "1", *more], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def start_endless(folder, program, level):
+    """The path tracer or the demo, which go on until somebody ends them."""
+    out, size = str(level.with_suffix("")), ["--size", "64x36"]
+    command = {"reference": ["sunfleck", "reference", str(level), "-o", out + ".pfm", "--spp", "1000000"],
+               "demo": ["sunfleck_demo", "--headless", "--scene", str(level), "-o", out, "--frames", "1000000"]}[program]
+    return subprocess.Popen([str(folder / command[0]), *command[1:], *size], stdout=subprocess.PIPE,
+                            stderr=subprocess.STDOUT)
 
 
 def finish(process):
@@ -44,9 +55,8 @@ def finish(process):
     return process.returncode, output, usage.ru_maxrss / 1024
 
 
-def interrupt(tool, level, more, seconds):
+def interrupt(process, seconds):
     """How long it goes on after an interrupt that comes after so many seconds; None where it was done by then."""
-    process = start(tool, level, more)
     time.sleep(seconds)
     sent = time.time()
     os.kill(process.pid, signal.SIGINT)  # send_signal would take the status of one that is done, and finish finds none
@@ -72,7 +82,8 @@ def grown(row, values, fixed=0.0):
 
 
 def main():
-    tool, wrong, times, memory = str(pathlib.Path(sys.argv[1]) / "bin/sunfleck"), 0, {}, {}
+    folder_of_programs = pathlib.Path(sys.argv[1]) / "bin"
+    tool, wrong, times, memory = str(folder_of_programs / "sunfleck"), 0, {}, {}
     first, last = (int(a) for a in sys.argv[2:4]) if len(sys.argv) > 3 else (1, len(LEVELS))
     print("| level | to the first picture, s | grows as | MB | grows as | an interrupt takes, s |\n|---|---|---|---|---|---|",
           flush=True)
@@ -96,7 +107,12 @@ def main():
             powers = grown(row, times), grown(row, memory, fixed)
             problems = [part for part, is_so in (("time", (powers[0] or 0) > POWER or times[row] > LONGEST_OF.get(row, 1e9)),
                                                  ("memory", (powers[1] or 0) > POWER or memory[row] > most)) if is_so]
-            waits = [w for i in range(8) if (w := interrupt(tool, level, more, times[row] * (i + .5) / 8)) is not None]
+            moments = [times[row] * (i + .5) / 8 for i in range(8)]
+            waits = [interrupt(start(tool, level, more), moment) for moment in moments]
+            if row in INTERRUPTED_ALSO:
+                waits += [interrupt(start_endless(folder_of_programs, program, level), moment)
+                          for program in ("reference", "demo") for moment in moments[::2]]
+            waits = [wait for wait in waits if wait is not None]
             if max(waits, default=0) > LATEST:
                 problems.append("interrupt")
             wrong += len(problems)
