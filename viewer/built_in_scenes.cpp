@@ -1,5 +1,6 @@
 #include "viewer/built_in_scenes.h"
 
+#include "engine/core/file.h"
 #include "viewer/option_values.h"
 
 #include <algorithm>
@@ -35,8 +36,8 @@ Error unknown_name(const std::string& scene) {
 std::vector<std::string> built_in_scene_names() {
     std::vector<std::string> names;
     std::error_code code;
-    for (const auto& entry : std::filesystem::directory_iterator(scene_folder(), code)) {
-        const std::string file = entry.path().filename().string();
+    for (const std::filesystem::path& path : folder_content(scene_folder(), code)) {
+        const std::string file = path.filename().string();
         if (const std::size_t end = file.find(".scene.json"); end != std::string::npos)
             names.push_back(file.substr(0, end));
     }

@@ -17,9 +17,9 @@ constexpr const char* preset_ending = ".json";
 std::vector<std::string> preset_names(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code code;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, code))
-        if (entry.path().extension() == preset_ending)
-            names.push_back(entry.path().stem().string());
+    for (const std::filesystem::path& path : folder_content(folder, code))
+        if (path.extension() == preset_ending)
+            names.push_back(path.stem().string());
     std::sort(names.begin(), names.end());
     return names;
 }

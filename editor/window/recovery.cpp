@@ -209,9 +209,9 @@ void Recovery::unsaved(const std::string& file, std::vector<std::string> edits, 
 
 void Recovery::remove_files() const {
     std::error_code code;
-    for (const auto& entry : fs::directory_iterator(own_, code))
-        if (entry.path().filename() != lock_name && entry.path().filename() != journal_name)
-            fs::remove(entry.path(), code);
+    for (const fs::path& path : folder_content(own_, code))
+        if (path.filename() != lock_name && path.filename() != journal_name)
+            fs::remove(path, code);
 }
 
 // The user's file has everything: only the journal is needed from here on.
@@ -294,11 +294,9 @@ void Recovery::run() {
 std::vector<Recovered> Recovery::left_behind(const fs::path& folder) {
     std::vector<std::pair<fs::file_time_type, Recovered>> found;
     std::error_code code;
-    std::vector<fs::path> runs;
-    for (const auto& entry : fs::directory_iterator(folder, code))
-        if (entry.is_directory(code))
-            runs.push_back(entry.path());
-    for (const fs::path& run : runs) {
+    for (const fs::path& run : folder_content(folder, code)) {
+        if (!fs::is_directory(run, code))
+            continue;
         const int lock = take_lock(run);
         if (lock < 0)
             continue; // it lives

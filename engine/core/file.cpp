@@ -42,4 +42,20 @@ Result<std::string> read_file(const std::filesystem::path& path, std::size_t siz
     return content;
 }
 
+std::vector<std::filesystem::path> folder_content(const std::filesystem::path& folder, std::error_code& code) {
+    std::vector<std::filesystem::path> result;
+    code.clear();
+    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code))
+        result.push_back(entry->path());
+    return result;
+}
+
+std::filesystem::path free_path(const std::filesystem::path& path) {
+    std::filesystem::path result = path;
+    std::error_code code;
+    for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(result, code)); ++number)
+        result.replace_filename(path.stem().string() + " " + std::to_string(number) + path.extension().string());
+    return result;
+}
+
 } // namespace sunfleck

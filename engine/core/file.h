@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 namespace sunfleck {
 
@@ -15,6 +17,13 @@ inline constexpr std::size_t usual_size_limit = std::size_t(1) << 31;
 
 // Regular files of at most `size_limit` bytes.
 Result<std::string> read_file(const std::filesystem::path& path, std::size_t size_limit = usual_size_limit);
+
+// What lies in a folder, in no order. Where it cannot be read, or not to its end, `code` says why: no exception, as a
+// loop over a directory_iterator would throw.
+std::vector<std::filesystem::path> folder_content(const std::filesystem::path& folder, std::error_code& code);
+
+// `path`, or with the lowest free number behind its stem: "trace 2.json".
+std::filesystem::path free_path(const std::filesystem::path& path);
 
 // The one writer of files. Writes a temporary file in the folder of `path`, flushes it to disk and renames it over
 // `path`, which keeps its owner and permissions; a new file gets `permissions`, less the process's mask. On any failure

@@ -158,6 +158,34 @@ TEST(File, AFailedWriteLeavesTheOldContentAndNoTemporaryFile) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(File, AFreeNameIsThatOfNoFile) {
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sunfleck_free_name_test";
+    std::filesystem::create_directories(folder);
+    for (const char* name : {"trace.json", "trace 2.json", "trace 3.json"}) {
+        const std::filesystem::path free = free_path(folder / "trace.json");
+        EXPECT_EQ(free, folder / name);
+        ASSERT_TRUE(write_file(free, name));
+    }
+    std::filesystem::remove(folder / "trace 2.json");
+    EXPECT_EQ(free_path(folder / "trace.json"), folder / "trace 2.json");
+    EXPECT_EQ(free_path(folder / "other"), folder / "other");
+    std::filesystem::remove_all(folder);
+}
+
+TEST(File, AFolderThatCannotBeReadIsNoException) {
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sunfleck_folder_test";
+    std::filesystem::create_directories(folder);
+    ASSERT_TRUE(write_file(folder / "data.json", "x"));
+    std::error_code code;
+    EXPECT_EQ(folder_content(folder, code), std::vector<std::filesystem::path>{folder / "data.json"});
+    EXPECT_FALSE(code);
+    for (const char* bad : {"missing", "data.json"}) {
+        EXPECT_TRUE(folder_content(folder / bad, code).empty());
+        EXPECT_TRUE(code) << bad;
+    }
+    std::filesystem::remove_all(folder);
+}
+
 TEST(MemoryLimit, CountsWhatIsAskedForBesideWhatIsThere) {
     const std::uint64_t by_default = memory_limit();
     EXPECT_GT(by_default, std::uint64_t(256) << 20);
