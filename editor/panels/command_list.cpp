@@ -16,6 +16,7 @@ private:
     void row(Session& session, Command& command);
     void take_key(Session& session, Command& command);
     std::string filter_, waiting_; // path of the command whose keys are asked for
+    int waited_ = 0;               // the last frame in which its row was there
 };
 
 bool contains(std::string text, std::string wanted) {
@@ -25,13 +26,16 @@ bool contains(std::string text, std::string wanted) {
     return text.find(wanted) != std::string::npos;
 }
 
+// Whoever presses a button elsewhere has thought better of it.
 void CommandPanel::take_key(Session& session, Command& command) {
     const app::InputState& input = *session.input;
     for (const app::Key key : input.went_down) {
         const bool modifier = key >= app::key_left_shift && key <= app::key_right_alt + 1;
-        if (modifier || key >= app::first_mouse_button)
+        if (modifier || (key >= app::first_mouse_button && ImGui::IsItemHovered()))
             continue;
         waiting_.clear();
+        if (key >= app::first_mouse_button)
+            return;
         if (key != app::key_escape)
             session.commands->bind(command,
                                    {key, input.down(app::key_left_control) || input.down(app::key_right_control),
@@ -56,12 +60,18 @@ void CommandPanel::row(Session& session, Command& command) {
         waiting_ = waits ? "" : command.path();
     else if (waits)
         take_key(session, command);
+    if (waiting_ == command.path()) {
+        waited_ = ImGui::GetFrameCount();
+        session.keys_are_asked_for = true;
+    }
     ImGui::TableNextColumn();
     ui::label(command.tooltip, {}, true);
 }
 
 void CommandPanel::draw(Session& session) {
     const ui::Scope scope("commands");
+    if (waited_ + 1 < ImGui::GetFrameCount()) // it was out of sight
+        waiting_.clear();
     ui::text_box("search", filter_, "Search commands", 13.0f * ui::unit());
     ImGui::SameLine();
     ui::label("Flying: hold the right button; W A S D, Q and E, shift, wheel", {}, true);

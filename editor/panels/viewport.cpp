@@ -180,7 +180,7 @@ void Viewport::navigate(Session& session, bool hovered) {
     if (flying_) {
         if (!input.mouse_buttons[1]) {
             flying_ = false;
-            session.window.capture_pointer(false);
+            session.capture_pointer(false);
             return;
         }
         session.camera.look(input.mouse_motion);
@@ -191,7 +191,7 @@ void Viewport::navigate(Session& session, bool hovered) {
         return;
     if (input.hit(app::first_mouse_button + 1) && !io.KeyAlt) {
         flying_ = true;
-        session.window.capture_pointer(true);
+        session.capture_pointer(true);
         return;
     }
     const vec2 motion(io.MouseDelta.x, io.MouseDelta.y);

@@ -76,6 +76,22 @@ void Commands::bind(Command& command, const Shortcut& shortcut) {
     command.shortcut = shortcut;
 }
 
+std::map<std::string, std::string> Commands::changed_keys() const {
+    std::map<std::string, std::string> result;
+    Commands usual;
+    for (const Command& command : all_)
+        if (const Command* known = usual.find(command.path());
+            known == nullptr || !(known->shortcut == command.shortcut))
+            result[command.path()] = shortcut_text(command.shortcut);
+    return result;
+}
+
+void Commands::change_keys(const std::map<std::string, std::string>& keys) {
+    for (const auto& [path, text] : keys)
+        if (Command* command = find(path))
+            bind(*command, shortcut_from_text(text));
+}
+
 std::vector<std::string> Commands::groups() const {
     std::vector<std::string> result;
     for (const Command& command : all_)

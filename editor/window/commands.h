@@ -41,6 +41,9 @@ public:
     void take_keys(const app::InputState& input, Session& session);
     // Gives a command other keys; what had them has none.
     void bind(Command& command, const Shortcut& shortcut);
+    // Keys that are not the usual ones, as texts by the paths of their commands; and the inverse.
+    std::map<std::string, std::string> changed_keys() const;
+    void change_keys(const std::map<std::string, std::string>& keys);
     // The group's entries, as a menu.
     void menu(const std::string& group, Session& session);
     std::vector<std::string> groups() const;

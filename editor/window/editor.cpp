@@ -57,7 +57,6 @@ private:
     void finish_opening();
     void keep_edits();
     void take_dropped(const app::InputState& input);
-    void take_keys(const app::InputState& input);
     void tell_scene();
     Status draw(const app::InputState& input);
     void ask_before_closing();
@@ -126,8 +125,9 @@ void Program::start_recovery() {
 Status Program::start_scene() {
     const auto wakes = [this] { wake(); };
     scene_ = std::make_unique<SceneThread>(display_->device(), wakes);
-    session_ = std::make_unique<Session>(window(), *scene_);
+    session_ = std::make_unique<Session>(*scene_);
     session_->wake = wakes;
+    session_->capture_pointer = [this](bool on) { window().capture_pointer(on); };
     session_->recent_files = state_.recent_files;
     session_->budgets = state_.budgets;
     if (!options_.shaders.empty())
@@ -140,9 +140,7 @@ Status Program::start_scene() {
         return std::make_unique<CostThread>(
             display_->device(), [this] { return scene_->busy(); }, wakes);
     };
-    for (const auto& [path, keys] : state_.keys)
-        if (Command* command = session_->commands->find(path))
-            session_->commands->bind(*command, shortcut_from_text(keys));
+    session_->commands->change_keys(state_.keys);
     start_recovery();
     layout_ = std::make_unique<Layout>();
     layout_->restore(state_.layout);
@@ -234,15 +232,6 @@ void Program::ask_before_closing() {
     session_->unless_unsaved([this] { session_->quit = true; });
 }
 
-void Program::take_keys(const app::InputState& input) {
-    const bool typing = ImGui::GetIO().WantTextInput || ui::editing_number() || layout_->flying() ||
-                        session_->dialog != Dialog::none || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
-    if (!input.focused && session_->document->in_gesture())
-        session_->document->cancel();
-    if (!typing)
-        session_->commands->take_keys(input, *session_);
-}
-
 // What a crash must not take.
 void Program::keep_edits() {
     if (recovered_from_ && recovery_->writes() > writes_before_)
@@ -318,7 +307,7 @@ Status Program::draw(const app::InputState& input) {
     ui::begin_number_boxes();
     const VkExtent2D extent = display_->extent();
     display_->gui().begin_frame(input, extent.width, extent.height, seconds, scale());
-    take_keys(input);
+    layout_->take_keys(*session_);
     layout_->draw(*session_, picture.get());
     display_->gui().end_frame();
     tell_scene();
@@ -365,12 +354,7 @@ Status Program::finish(bool whole, bool edits_wait) {
     window().size(state_.width, state_.height);
     state_.recent_files = session_->recent_files;
     state_.budgets = session_->budgets;
-    state_.keys.clear();
-    Commands usual;
-    for (const Command& command : session_->commands->all())
-        if (const Command* known = usual.find(command.path());
-            known == nullptr || !(known->shortcut == command.shortcut))
-            state_.keys[command.path()] = shortcut_text(command.shortcut);
+    state_.keys = session_->commands->changed_keys();
     const Status kept = may_save_state_ ? save_state(state_path_, state_) : Status();
     const Status reported = options_.report.empty()
                                 ? Status()

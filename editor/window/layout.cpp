@@ -1,5 +1,7 @@
 #include "editor/window/layout.h"
 
+#include "editor/window/commands.h"
+
 #include <algorithm>
 
 namespace sunfleck::editor {
@@ -34,6 +36,16 @@ void Layout::restore(const State& state) {
     for (float* share : {&state_.left, &state_.right, &state_.bottom})
         *share = std::clamp(*share, 0.05f, 0.6f);
     restore_front_ = true;
+}
+
+void Layout::take_keys(Session& session) const {
+    const bool asked_for = std::exchange(session.keys_are_asked_for, false);
+    const bool typing = asked_for || ImGui::GetIO().WantTextInput || ui::editing_number() || flying() ||
+                        session.dialog != Dialog::none || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
+    if (!session.input->focused && session.document->in_gesture())
+        session.document->cancel();
+    if (!typing)
+        session.commands->take_keys(*session.input, session);
 }
 
 // `share` of `whole` (pixels) grows towards where the dock is.

@@ -10,6 +10,9 @@ namespace sunfleck::editor {
 class Layout {
 public:
     Layout();
+    // Runs the commands that the frame's keys ask for, unless they are meant for something else: a text, a menu, a
+    // question, a flight, a command that is given other keys. Call before draw.
+    void take_keys(Session& session) const;
     // The whole window: menus, docks, viewport, status bar.
     void draw(Session& session, const ScenePicture* picture);
     bool flying() const { return viewport_.flying(); }

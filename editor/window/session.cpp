@@ -51,9 +51,8 @@ ViewRequest ViewOptions::request() const {
     return result;
 }
 
-Session::Session(app::Window& the_window, SceneThread& the_scene)
-    : window(the_window), scene(the_scene), document(std::make_shared<Document>()),
-      commands(std::make_unique<Commands>()) {}
+Session::Session(SceneThread& the_scene)
+    : scene(the_scene), document(std::make_shared<Document>()), commands(std::make_unique<Commands>()) {}
 
 Session::~Session() = default;
 

@@ -100,10 +100,9 @@ std::string full_name(const std::filesystem::path& path);
 
 class Session {
 public:
-    Session(app::Window& the_window, SceneThread& the_scene);
+    explicit Session(SceneThread& the_scene);
     ~Session();
 
-    app::Window& window;
     SceneThread& scene;
     std::shared_ptr<Document> document;
     Camera camera;
@@ -135,8 +134,9 @@ public:
     ViewRequest shown;                      // what the scene thread was told last
     ImVec4 viewport_area{0, 0, 0, 0};       // x, y, width, height: pixels of the window
 
-    std::string listing; // that a panel wants to show in this frame; empty: none does
-    std::string front;   // a panel that is to be brought to the front
+    bool keys_are_asked_for = false; // the next ones are no commands; a panel that waits for keys says so each frame
+    std::string listing;             // that a panel wants to show in this frame; empty: none does
+    std::string front;               // a panel that is to be brought to the front
 
     // Looks into the pixel at a place of the viewport: what is there, and what lights it.
     void inspect(vec2 place);
@@ -153,6 +153,7 @@ public:
     void measure_cost(const std::string& setting, const std::string& old_value);
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
     std::function<void()> wake; // from the program; from any thread: there is something new to draw
+    std::function<void(bool on)> capture_pointer = [](bool) {}; // from the program
     // Reads the file that the scene came from again, and takes over what has changed in it; edits stay.
     void reload_file();
     bool can_reload() const { return !source_.empty() && reloading_ == nullptr; }

@@ -146,6 +146,7 @@ void Gui::set_style(std::function<void(ImGuiStyle&)> change) {
 
 void Gui::use_window(Window& window) {
     window_ = &window;
+    take_escape();
     ImGuiIO& io = ImGui::GetIO();
     io.ClipboardUserData = this;
     io.SetClipboardTextFn = [](void* gui, const char* text) { static_cast<Gui*>(gui)->window_->set_clipboard(text); };
@@ -170,8 +171,8 @@ void Gui::begin_frame(const InputState& input, std::uint32_t width, std::uint32_
     for (const std::uint32_t letter : input.text)
         io.AddInputCharacter(letter);
     for (Key key = 0; key < first_mouse_button; ++key)
-        // Without a window of its own, the menu handles escape itself.
-        io.KeysDown[key] = !input.captured && seen(key) && (key != key_escape || window_ != nullptr);
+        // Where it is not the GUI's, the menu handles escape itself.
+        io.KeysDown[key] = !input.captured && seen(key) && (key != key_escape || takes_escape_);
     io.KeyCtrl = input.down(key_left_control) || input.down(345);
     io.KeyShift = input.down(key_left_shift) || input.down(344);
     io.KeyAlt = input.down(342) || input.down(346);

@@ -33,6 +33,8 @@ public:
 
     // Clipboard and pointer shapes of this window, which must outlive the GUI; and Escape goes to the GUI.
     void use_window(Window& window);
+    // Escape goes to the GUI, and not to the program alone.
+    void take_escape() { takes_escape_ = true; }
     // Changes the style at scale 1, for programs other than games.
     void set_style(std::function<void(ImGuiStyle&)> change);
 
@@ -52,6 +54,7 @@ private:
     std::uint32_t atlas_width_ = 0, atlas_height_ = 0;
     const gpu::Pipeline* pipeline_ = nullptr;
     float scale_ = 0.0f;
+    bool takes_escape_ = false;
     Window* window_ = nullptr;
     std::string pasted_; // what ImGui reads from the clipboard
     std::function<void(ImGuiStyle&)> change_style_;

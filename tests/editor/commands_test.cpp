@@ -1,0 +1,136 @@
+// Commands and their keys: which run, how they are given others, and what is kept of that.
+#include "tests/editor/panel_fixture.h"
+
+#include "editor/window/state_file.h"
+
+namespace sunfleck::editor {
+namespace {
+
+class EditorCommands : public PanelTest {
+protected:
+    std::string keys_of(std::string_view command) {
+        const Command* const found = session_.commands->find(command);
+        return found != nullptr ? shortcut_text(found->shortcut) : "no such command";
+    }
+    // Shows the list of commands with this one alone, and asks for its keys.
+    void ask_for_keys(const std::string& command) {
+        session_.front = "Commands";
+        frames(3);
+        ASSERT_NO_FATAL_FAILURE(click("commands/search"));
+        key("Ctrl+A");
+        type(command);
+        const std::string keys = keys_of(command);
+        ASSERT_NO_FATAL_FAILURE(click("commands/" + command + "/" + (keys.empty() ? "none" : keys)));
+        ASSERT_EQ(waits_for(command), true);
+    }
+    bool waits_for(const std::string& command) const { return find("commands/" + command + "/press keys") != nullptr; }
+};
+
+TEST_F(EditorCommands, KeysThatAreAskedForRunNothing) {
+    const Entity box = add("Box");
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("View/Flip"));
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+D"));
+    EXPECT_EQ(document().entity_count(), 1u) << "nothing is duplicated";
+    EXPECT_EQ(keys_of("View/Flip"), "Ctrl+D");
+    EXPECT_EQ(keys_of("Edit/Duplicate"), "") << "keys are one command's";
+    EXPECT_FALSE(waits_for("View/Flip"));
+
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("Edit/Duplicate"));
+    ASSERT_NO_FATAL_FAILURE(key("Escape"));
+    EXPECT_TRUE(document().selected(box)) << "Escape leaves the selection, too";
+    EXPECT_EQ(keys_of("Edit/Duplicate"), "");
+    EXPECT_EQ(keys_of("Edit/Select none"), "Escape");
+
+    // And then they run commands again.
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("Edit/Duplicate"));
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+Shift+F3"));
+    EXPECT_EQ(document().entity_count(), 1u);
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+Shift+F3"));
+    EXPECT_EQ(document().entity_count(), 2u);
+}
+
+TEST_F(EditorCommands, WhoeverTurnsAwayIsAskedForKeysNoLonger) {
+    add("Box");
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("View/Flip"));
+    ASSERT_NO_FATAL_FAILURE(click("viewport/Rotate"));
+    EXPECT_FALSE(waits_for("View/Flip"));
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+D"));
+    EXPECT_EQ(document().entity_count(), 2u);
+
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("View/Flip"));
+    session_.front = "Messages";
+    frames(3);
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+D"));
+    EXPECT_EQ(document().entity_count(), 3u);
+    session_.front = "Commands";
+    frames(3);
+    EXPECT_FALSE(waits_for("View/Flip"));
+    EXPECT_EQ(keys_of("View/Flip"), "T");
+}
+
+TEST_F(EditorCommands, KeysOfOtherThingsAreNoShortcuts) {
+    add("Box");
+    session_.front = "Commands";
+    frames(3);
+    ASSERT_NO_FATAL_FAILURE(click("commands/search"));
+    ASSERT_NO_FATAL_FAILURE(key("Delete"));
+    EXPECT_EQ(document().entity_count(), 1u) << "a text is being typed";
+    ASSERT_NO_FATAL_FAILURE(key("Escape"));
+    frames(2);
+    session_.dialog = Dialog::open;
+    frames(3);
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+D"));
+    EXPECT_EQ(document().entity_count(), 1u) << "a question is open";
+    session_.dialog = Dialog::none;
+    frames(3);
+    ASSERT_NO_FATAL_FAILURE(key("Delete"));
+    EXPECT_EQ(document().entity_count(), 0u);
+}
+
+TEST(EditorShortcut, ItsTextIsReadAsItWasWritten) {
+    for (app::Key key = app::no_key; key < app::first_mouse_button; ++key)
+        for (int held = 0; held < 8; ++held) {
+            const bool none = key == app::no_key;
+            const Shortcut shortcut{key, !none && (held & 1) != 0, !none && (held & 2) != 0, !none && (held & 4) != 0};
+            EXPECT_EQ(shortcut_from_text(shortcut_text(shortcut)), shortcut) << shortcut_text(shortcut);
+        }
+    EXPECT_EQ(shortcut_text({'Z', true, true, true}), "Ctrl+Shift+Alt+Z");
+    for (const char* bad : {"Ctrl+", "Hyper+Z", "Ctrl+nothing", "none"})
+        EXPECT_EQ(shortcut_from_text(bad).key, app::no_key) << bad;
+}
+
+// Keys that are swapped, passed on and taken away, in a file between two runs.
+TEST(EditorShortcut, ChangedKeysAreKeptFromRunToRun) {
+    const tests::Folder folder{"editor_keys"};
+    Commands before;
+    EXPECT_TRUE(before.changed_keys().empty());
+    const auto give = [&](const char* command, const Shortcut& keys) { before.bind(*before.find(command), keys); };
+    const Shortcut copies = before.find("Edit/Duplicate")->shortcut, saves = before.find("File/Save")->shortcut,
+                   grid{'Y', true, false, true};
+    give("Edit/Duplicate", saves);
+    give("File/Save", copies);
+    give("View/Grid", before.find("Edit/Undo")->shortcut);
+    give("Edit/Undo", before.find("File/Quit")->shortcut);
+    give("Show/Lock", grid);
+    give("View/Grid", grid);
+    EXPECT_EQ(before.find("File/Save")->shortcut, copies);
+    EXPECT_EQ(before.find("Show/Lock")->shortcut, Shortcut());
+    EXPECT_EQ(before.find("File/Quit")->shortcut, Shortcut());
+
+    EditorState state;
+    state.keys = before.changed_keys();
+    EXPECT_EQ(state.keys.size(), 6u);
+    ASSERT_TRUE(save_state(folder / "settings.json", state));
+    std::string problem;
+    bool may_save = false;
+    Commands after;
+    after.change_keys(load_state(folder / "settings.json", problem, may_save).keys);
+    EXPECT_EQ(problem, "");
+    ASSERT_EQ(after.all().size(), before.all().size());
+    for (std::size_t i = 0; i < before.all().size(); ++i)
+        EXPECT_EQ(after.all()[i].shortcut, before.all()[i].shortcut) << before.all()[i].path();
+    EXPECT_EQ(after.changed_keys(), state.keys);
+}
+
+} // namespace
+} // namespace sunfleck::editor
