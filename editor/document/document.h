@@ -28,6 +28,9 @@ struct Update {
     ecs::Value value;
 };
 
+// What a save may take the place of: the document's own file, or another one, too.
+enum class Replace { own, any };
+
 class Document {
 public:
     // An empty scene.
@@ -42,7 +45,9 @@ public:
                                                   bool allow_outside = false);
     // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace geometry
     // that belongs to another scene, and, once, a file that file_changed(): the next save replaces it.
-    Status save(const std::filesystem::path& path);
+    Status save(const std::filesystem::path& path, Replace replace = Replace::own);
+    // Whether there is a file of that name which is not the document's.
+    bool is_another_file(const std::filesystem::path& path) const;
 
     // To read; writing goes through set().
     ecs::Registry& registry() { return registry_; }

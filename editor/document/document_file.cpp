@@ -21,12 +21,20 @@ bool Document::file_changed() const {
     return stamp_ && now && *now != *stamp_;
 }
 
-Status Document::save(const std::filesystem::path& path) {
+bool Document::is_another_file(const std::filesystem::path& path) const {
+    std::error_code code;
+    return path != path_ && std::filesystem::exists(path, code) && !std::filesystem::equivalent(path, path_, code);
+}
+
+Status Document::save(const std::filesystem::path& path, Replace replace) {
     commit();
     const std::string file = path.filename().string();
     if (!file.ends_with(scene_ending) || file.size() == scene_ending.size())
         return Error{"cannot save '" + path.string() + "': the name of a scene file ends in .scene.json"};
-    if (path == path_ && file_changed() && stamp_of(path_)) {
+    const bool is_another = is_another_file(path);
+    if (is_another && replace == Replace::own)
+        return Error{"cannot save '" + path.string() + "': there is a file of that name, of another scene"};
+    if (!is_another && file_changed() && stamp_of(path)) {
         stamp_ = stamp_of(path_);
         return Error{"'" + path.string() +
                      "' was changed by another program since it was opened; save once more to replace that, or under "

@@ -2,6 +2,7 @@
 #include "editor/panels/panel.h"
 #include "editor/window/commands.h"
 #include "editor/window/opening.h"
+#include "engine/core/file.h"
 
 #include <algorithm>
 #include <imgui_stdlib.h>
@@ -13,11 +14,11 @@ namespace fs = std::filesystem;
 
 // Folder and name that are being chosen.
 struct FileChoice {
-    Dialog of = Dialog::none;
     fs::path folder;
     std::string name;
     std::vector<fs::path> folders, files;
     std::string problem;
+    fs::path replaces; // another scene's file: it has been said that the next press replaces it
 };
 
 FileChoice& choice() {
@@ -37,13 +38,14 @@ void list_folder(const fs::path& folder) {
     now.folders.clear();
     now.files.clear();
     now.problem.clear();
-    for (const auto& entry : fs::directory_iterator(folder, fs::directory_options::skip_permission_denied, code)) {
-        if (entry.path().filename().string().front() == '.')
+    for (const fs::path& path : folder_content(folder, code)) {
+        std::error_code gone;
+        if (path.filename().string().front() == '.')
             continue;
-        if (entry.is_directory(code))
-            now.folders.push_back(entry.path());
-        else if (is_scene(entry.path()))
-            now.files.push_back(entry.path());
+        if (fs::is_directory(path, gone))
+            now.folders.push_back(path);
+        else if (is_scene(path))
+            now.files.push_back(path);
     }
     if (code)
         now.problem = code.message();
@@ -57,7 +59,7 @@ std::string stem_of(const fs::path& path) {
 }
 
 void begin_choice(Session& session) {
-    choice().of = session.dialog;
+    choice().replaces.clear();
     std::error_code code;
     const fs::path& path = session.document->path();
     list_folder(path.empty() || is_built_in(path) ? fs::current_path(code) : fs::absolute(path, code).parent_path());
@@ -97,7 +99,14 @@ void choose(Session& session) {
         session.dialog = Dialog::none;
         return session.open(path);
     }
-    if (!session.save(path)) {
+    const bool is_asked = session.document->is_another_file(path) && now.replaces != path;
+    now.replaces = is_asked ? path : fs::path();
+    if (is_asked) {
+        now.problem = "'" + path.filename().string() +
+                      "' exists; pressing Save once more replaces it, with its geometry, by this scene";
+        return;
+    }
+    if (!session.save(path, Replace::any)) {
         now.problem = session.messages.all().back().text;
         return;
     }

@@ -54,7 +54,7 @@ private:
     Status loop();
     Status take_new_device();
     bool something_new();
-    void finish_opening();
+    void replace_document(const Loaded& loaded);
     void keep_edits();
     void take_dropped(const app::InputState& input);
     void tell_scene();
@@ -174,7 +174,7 @@ Status Program::loop() {
             ++figures_.wake_ups;
         }
         const app::InputState& input = quiet ? (still_input_ = window().input().still()) : window().poll();
-        finish_opening();
+        session_->finish_opening([this](const Loaded& loaded) { replace_document(loaded); });
         take_dropped(input);
         ask_before_closing();
         if (!something_new() && !quiet)
@@ -187,27 +187,18 @@ Status Program::loop() {
     return {};
 }
 
-void Program::finish_opening() {
-    if (session_->opening == nullptr || !session_->opening->finished())
-        return;
-    const auto path = session_->opening->path();
-    auto opened = session_->opening->take();
-    session_->opening.reset();
-    if (!session_->messages.check(opened ? Status() : Status(opened.error())))
-        return;
+void Program::replace_document(const Loaded& loaded) {
     keep_camera();
-    if (const std::optional<Recovered> recovered = std::exchange(session_->recovering, {})) {
-        (*opened)->forget_file();
-        session_->take(std::move(*opened));
-        recovered_from_ = recovered;
+    session_->take(loaded.document);
+    if (loaded.recovered) {
+        recovered_from_ = loaded.recovered;
         writes_before_ = recovery_->writes();
-        return session_->messages.say("Recovered " + std::to_string(recovered->count) +
+        return session_->messages.say("Recovered " + std::to_string(loaded.recovered->count) +
                                       " unsaved edits; save them under a name of your choice");
     }
-    session_->take(std::move(*opened));
-    if (const auto known = state_.cameras.find(full_name(path)); known != state_.cameras.end())
+    if (const auto known = state_.cameras.find(full_name(loaded.path)); known != state_.cameras.end())
         session_->camera.set(known->second);
-    session_->say_what_was_opened(path);
+    session_->say_what_was_opened(loaded.path);
 }
 
 void Program::keep_camera() {

@@ -58,6 +58,9 @@ Session::~Session() = default;
 
 void Session::take(std::shared_ptr<Document> opened) {
     document = std::move(opened);
+    size_revision_ = 0; // of another document
+    opening.reset();    // what still loads is not wanted any more
+    recovering.reset();
     view.playing = view.paused = false;
     hidden.clear();
     locked.clear();
@@ -72,12 +75,8 @@ void Session::take(std::shared_ptr<Document> opened) {
         camera.set(*seen);
     for (const std::string& note : document->notes())
         messages.say(note, Message::Kind::warning);
-    if (!document->path().empty()) {
-        const std::string path = full_name(document->path());
-        std::erase(recent_files, path);
-        recent_files.insert(recent_files.begin(), path);
-        recent_files.resize(std::min(recent_files.size(), most_recent));
-    }
+    if (!document->path().empty())
+        note_recent(document->path());
 }
 
 void Session::open(const std::filesystem::path& path) {
@@ -86,7 +85,30 @@ void Session::open(const std::filesystem::path& path) {
 
 void Session::open_now(const std::filesystem::path& path) {
     recovering.reset();
-    opening = std::make_unique<Opening>(path, allow_outside, wake);
+    begin_opening(std::make_unique<Opening>(path, allow_outside, wake));
+}
+
+void Session::begin_opening(std::unique_ptr<Opening> loads) {
+    opening = std::move(loads);
+    given_up_ = edits();
+}
+
+void Session::finish_opening(const std::function<void(const Loaded&)>& replace) {
+    if (opening == nullptr || !opening->finished())
+        return;
+    const bool has_edits = document->unsaved() && given_up_ != edits();
+    if (document->in_gesture() || (has_edits && dialog != Dialog::none))
+        return; // when the hand has let go, and one question after the other
+    Loaded loaded{opening->path(), nullptr, std::exchange(recovering, {})};
+    auto result = opening->take();
+    opening.reset();
+    if (!messages.check(result ? Status() : Status(result.error())))
+        return;
+    loaded.document = std::move(*result);
+    if (has_edits)
+        unless_unsaved([replace, loaded] { replace(loaded); });
+    else
+        replace(loaded);
 }
 
 void Session::inspect(vec2 place) {
@@ -126,27 +148,31 @@ void Session::measure_cost(const std::string& setting, const std::string& old_va
 
 void Session::recover(const Recovered& one) {
     recovering = one;
-    opening = std::make_unique<Opening>(
+    begin_opening(std::make_unique<Opening>(
         one.scene,
         [one, outside = allow_outside](const std::function<bool(float)>& progress) {
             return Recovery::load(one, progress, outside);
         },
-        wake);
+        wake));
 }
 
-bool Session::save(const std::filesystem::path& path) {
-    const bool same_file = path == document->path();
-    if (!messages.check(document->save(path)))
+// The newest first.
+void Session::note_recent(const std::filesystem::path& path) {
+    const std::string name = full_name(path);
+    std::erase(recent_files, name);
+    recent_files.insert(recent_files.begin(), name);
+    recent_files.resize(std::min(recent_files.size(), most_recent));
+}
+
+bool Session::save(const std::filesystem::path& path, Replace replace) {
+    if (!messages.check(document->save(path, replace)))
         return false;
     messages.say("Saved " + path.string());
     if (!is_gltf(source_)) {
         source_ = path;
         source_content_ = FileContent::of(*document);
     }
-    if (!same_file) {
-        recent_files.insert(recent_files.begin(), full_name(path));
-        recent_files.resize(std::min(recent_files.size(), most_recent));
-    }
+    note_recent(path);
     return true;
 }
 

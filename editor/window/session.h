@@ -95,6 +95,13 @@ struct Budgets {
 // Questions that stand in the way of everything else until they are answered.
 enum class Dialog { none, open, save_as, unsaved, recover };
 
+// What has been loaded, before it takes the document's place.
+struct Loaded {
+    std::filesystem::path path;
+    std::shared_ptr<Document> document;
+    std::optional<Recovered> recovered; // whose edits it has; none: it is the file
+};
+
 // Of a file, for lists that last; the name as it is where the current folder is gone.
 std::string full_name(const std::filesystem::path& path);
 
@@ -147,6 +154,8 @@ public:
     // Begins to load; asks first if there is something to lose.
     void open(const std::filesystem::path& path);
     void open_now(const std::filesystem::path& path);
+    // Once all is loaded it goes to `replace`; who has made edits meanwhile is asked first.
+    void finish_opening(const std::function<void(const Loaded&)>& replace);
     // How much, and whether something was left out.
     void say_what_was_opened(const std::filesystem::path& path);
     // Begins to measure what the setting's value costs over an old one.
@@ -160,7 +169,7 @@ public:
     // The unsaved edits of a run that is gone.
     void recover(const Recovered& recovered);
     // False: it was not saved, which has been said.
-    bool save(const std::filesystem::path& path);
+    bool save(const std::filesystem::path& path, Replace replace = Replace::own);
     // Of files that other programs write: the document's, and shaders that are watched.
     void take_news();
     // Runs `action` now, or when the user has dealt with unsaved edits.
@@ -175,8 +184,15 @@ public:
     Entities selected_tops() { return topmost(*document, document->selection()); }
 
 private:
+    // A state of the document.
+    using Edits = std::pair<const Document*, std::uint64_t>;
+    Edits edits() const { return {document.get(), document->history().serial()}; }
+    void begin_opening(std::unique_ptr<Opening> loads);
+    void note_recent(const std::filesystem::path& path);
     void watch_file();
     void finish_reload();
+
+    Edits given_up_; // what was there when loading began: all that it has may be lost
 
     // Where the scene came from, and what was there: a glTF file, or the scene file that was read or written last.
     std::filesystem::path source_;
