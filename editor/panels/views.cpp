@@ -78,6 +78,7 @@ void look(Session& session) {
         source.objects = {&session.view.look};
         source.defaults = &usual;
         source.gesture = "Set " + readable_name(field.name);
+        source.in_document = false;
         source.set = [&](std::size_t, const std::string& text) {
             return field_from_text(field, &session.view.look, text);
         };

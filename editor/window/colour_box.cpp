@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <imgui_internal.h>
 
 namespace sunfleck::editor {
 namespace {
@@ -26,36 +27,93 @@ float intensity_of(const Field& field, vec3 value) {
     return field.unit.empty() ? 1.0f : std::max({value.x, value.y, value.z});
 }
 
-// The photometric unit of a radiometric one; none: "".
-std::string photometric(std::string_view unit) {
-    if (unit == "W/sr")
-        return "cd";
-    if (unit == "W/m2")
-        return "lx";
-    if (unit == "W/(sr m2)")
-        return "cd/m\xc2\xb2";
-    return "";
+// CIE 1960.
+glm::dvec2 chromaticity(vec3 colour) {
+    const glm::dvec3 rgb(colour);
+    const double x = 0.4124564 * rgb.x + 0.3575761 * rgb.y + 0.1804375 * rgb.z;
+    const double y = 0.2126729 * rgb.x + 0.7151522 * rgb.y + 0.0721750 * rgb.z;
+    const double z = 0.0193339 * rgb.x + 0.1191920 * rgb.y + 0.9503041 * rgb.z;
+    return glm::dvec2(4.0 * x, 6.0 * y) / (x + 15.0 * y + 3.0 * z);
 }
 
-void set_colour(Session& session, const FieldSource& source, vec3 value) {
-    apply_field_text(session, source, [&](const void*) { return colour_text(value); });
-}
+using Phase = ui::NumberEdit::Phase;
 
-// A gesture that lasts as long as the pointer is held.
-void set_while_dragged(Session& session, const FieldSource& source, vec3 value) {
-    Document& document = *session.document;
-    if (!document.in_gesture())
-        document.begin(source.gesture);
-    for (std::size_t i = 0; i < source.objects.size(); ++i)
-        if (const Status status = source.set(i, colour_text(value)); !status) {
-            session.messages.check(status);
-            document.cancel();
+// The box whose drag is the gesture that is open; 0: none is.
+ImGuiID dragged_box = 0;
+
+struct ColourBox {
+    Session& session;
+    const FieldSource& source;
+    vec3 value;
+    float intensity;
+    ImGuiID id;
+
+    bool is_dragged() const { return dragged_box == id; }
+    void type(vec3 colour) const {
+        apply_field_text(session, source, [&](const void*) { return colour_text(colour); });
+    }
+    void begin() const {
+        dragged_box = id;
+        session.document->begin(source.gesture);
+    }
+    void drag(vec3 colour) const {
+        Document& document = *session.document;
+        if (!document.in_gesture()) // ended by something else: loss of focus, a value that cannot be
+            return;
+        for (std::size_t i = 0; i < source.objects.size(); ++i)
+            if (const Status status = source.set(i, colour_text(colour)); !status) {
+                session.messages.check(status);
+                return document.cancel();
+            }
+    }
+    void end(bool keep) const {
+        if (!is_dragged())
+            return;
+        dragged_box = 0;
+        if (keep)
+            session.document->commit();
+        else
+            session.document->cancel();
+    }
+    // `colour_at`: what a number stands for.
+    void number(const std::string& name, const ui::NumberLook& look,
+                const std::function<vec3(double number)>& colour_at) const {
+        const ui::NumberEdit edit = ui::number_box(name, look);
+        ImGui::SameLine();
+        ImGui::TextUnformatted(name.c_str());
+        switch (edit.phase) {
+        case Phase::began:
+            return begin();
+        case Phase::dragged:
+            return drag(colour_at(edit.value));
+        case Phase::ended:
+            return end(true);
+        case Phase::cancelled:
+            return end(false);
+        case Phase::typed:
+            return type_number(name, edit.text, look, colour_at);
+        case Phase::none:
             return;
         }
-}
+    }
 
-void hue_picker(Session& session, const FieldSource& source, vec3 value, float intensity) {
-    vec3 shown = encoded(glm::clamp(value / std::max(intensity, 1e-12f), 0.0f, 1.0f));
+private:
+    void type_number(const std::string& name, const std::string& text, const ui::NumberLook& look,
+                     const std::function<vec3(double number)>& colour_at) const {
+        const std::optional<double> number = typed_number(text);
+        if (number && *number >= look.minimum && *number <= look.maximum)
+            return type(colour_at(*number));
+        const std::string most =
+            look.maximum < unbounded ? " to " + ui::number_text(look.maximum, look.whole) : std::string(" or more");
+        session.messages.say("'" + text + "' is not a value of '" + name +
+                                 "': " + ui::number_text(look.minimum, look.whole) + most + " " + look.unit,
+                             Message::Kind::error);
+    }
+};
+
+void hue_picker(const ColourBox& box) {
+    const bool is_light = !box.source.field->unit.empty();
+    vec3 shown = encoded(glm::clamp(box.value / std::max(box.intensity, 1e-12f), 0.0f, 1.0f));
     const bool changed = ImGui::ColorPicker3("##picker", &shown.x,
                                              ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview |
                                                  ImGuiColorEditFlags_DisplayRGB | ImGuiColorEditFlags_InputRGB);
@@ -63,69 +121,59 @@ void hue_picker(Session& session, const FieldSource& source, vec3 value, float i
     if (changed) {
         vec3 chosen = decoded(shown);
         const float brightest = std::max({chosen.x, chosen.y, chosen.z});
-        if (!source.field->unit.empty() && brightest > 0.0f)
+        if (is_light && brightest > 0.0f)
             chosen /= brightest;
-        set_while_dragged(session, source, chosen * (source.field->unit.empty() ? 1.0f : intensity));
+        if (!box.is_dragged())
+            box.begin();
+        box.drag(chosen * (is_light ? box.intensity : 1.0f));
     }
-    if (session.document->in_gesture() && !ImGui::IsAnyItemActive())
-        session.document->commit();
+    if (!ImGui::IsAnyItemActive()) // a number says itself that its drag has ended
+        box.end(true);
 }
 
-void amount_row(Session& session, const FieldSource& source, vec3 value, float intensity) {
-    const double lumens = double(io::luminous_efficacy);
-    const vec3 colour = intensity > 0.0f ? value / intensity : vec3(1.0f);
-    const auto row = [&](const char* name, const std::string& unit, double factor) {
-        ui::NumberLook look;
-        look.value = double(intensity) * factor;
-        look.maximum = source.field->maximum * factor;
-        look.unit = unit;
-        look.width = 9.0f * ui::unit();
-        const ui::NumberEdit edit = ui::number_box(name, look);
-        ImGui::SameLine();
-        ImGui::TextUnformatted(name);
-        ui::tooltip("The brightest component; colours keep their ratios");
-        const double given = edit.phase == ui::NumberEdit::Phase::typed ? std::atof(edit.text.c_str()) : edit.value;
-        if (edit.phase == ui::NumberEdit::Phase::typed)
-            set_colour(session, source, colour * float(given / factor));
-        if (edit.phase == ui::NumberEdit::Phase::dragged)
-            set_while_dragged(session, source, colour * float(given / factor));
-    };
-    row("Intensity", std::string(source.field->unit), 1.0);
-    if (const std::string unit = photometric(source.field->unit); !unit.empty())
-        row("Photometric", unit, lumens);
-    if (const double flux = flux_per_unit(*source.field, source.objects[0]); flux > 0.0 && source.objects.size() == 1)
-        row("Flux", "lm", lumens * flux);
-}
-
-void temperature_row(Session& session, const FieldSource& source, float intensity) {
-    static float kelvin = 3000.0f;
+void amount_row(const ColourBox& box, const std::string& name, const std::string& unit, double factor) {
+    const vec3 colour = box.intensity > 0.0f ? box.value / box.intensity : vec3(1.0f);
     ui::NumberLook look;
-    look.value = double(kelvin);
-    look.minimum = 1667.0;
-    look.maximum = 25000.0;
+    look.value = double(box.intensity) * factor;
+    look.maximum = box.source.field->maximum * factor;
+    look.unit = unit;
+    look.width = 9.0f * ui::unit();
+    box.number(name, look, [&](double number) { return colour * float(number / factor); });
+    ui::tooltip("The brightest component; colours keep their ratios");
+}
+
+void amount_rows(const ColourBox& box) {
+    const Field& field = *box.source.field;
+    const double lumens = double(io::luminous_efficacy);
+    amount_row(box, "Intensity", std::string(field.unit), 1.0);
+    if (const std::string unit = photometric_unit(field.unit); !unit.empty())
+        amount_row(box, "Photometric", unit, lumens);
+    if (const double flux = flux_per_unit(field, box.source.objects[0]); flux > 0.0 && box.source.objects.size() == 1)
+        amount_row(box, "Flux", "lm", lumens * flux);
+}
+
+void temperature_row(const ColourBox& box) {
+    constexpr double usual = 6500.0; // where a drag begins that begins at no temperature
+    const std::optional<float> kelvin = colour_temperature(box.value);
+    ui::NumberLook look;
+    look.value = kelvin ? double(*kelvin) : usual;
+    look.mixed = !kelvin;
+    look.instead = "none";
+    look.enabled = box.intensity > 0.0f;
+    look.minimum = double(coldest_body);
+    look.maximum = double(hottest_body);
     look.unit = "K";
     look.whole = true;
     look.width = 9.0f * ui::unit();
-    const ui::NumberEdit edit = ui::number_box("Temperature", look);
-    ImGui::SameLine();
-    ImGui::TextUnformatted("Temperature");
-    ui::tooltip("Colour of a black body: candle 1,900 K, bulb 2,700 K, noon 5,500 K, blue sky 10,000 K");
-    const bool typed = edit.phase == ui::NumberEdit::Phase::typed;
-    if (!typed && edit.phase != ui::NumberEdit::Phase::dragged)
-        return;
-    const double given = typed ? std::atof(edit.text.c_str()) : edit.value;
-    kelvin = std::clamp(float(given), 1667.0f, 25000.0f);
-    const vec3 value = intensity * black_body_colour(kelvin);
-    if (typed)
-        set_colour(session, source, value);
-    else
-        set_while_dragged(session, source, value);
+    box.number("Temperature", look, [&](double number) { return box.intensity * black_body_colour(float(number)); });
+    ui::tooltip("Of the black body whose colour comes closest: candle 1,900 K, bulb 2,700 K, noon 5,500 K, blue sky "
+                "10,000 K");
 }
 
 } // namespace
 
 vec3 black_body_colour(float kelvin) {
-    const double t = std::clamp(double(kelvin), 1667.0, 25000.0), u = 1e3 / t;
+    const double t = std::clamp(double(kelvin), double(coldest_body), double(hottest_body)), u = 1e3 / t;
     const double x = t <= 4000.0 ? ((-0.2661239 * u - 0.2343589) * u + 0.8776956) * u + 0.179910
                                  : ((-3.0258469 * u + 2.1070379) * u + 0.2226347) * u + 0.240390;
     const double y = t <= 2222.0   ? ((-1.1063814 * x - 1.34811020) * x + 2.18555832) * x - 0.20219683
@@ -139,24 +187,72 @@ vec3 black_body_colour(float kelvin) {
     return seen / std::max({seen.x, seen.y, seen.z});
 }
 
+std::optional<float> colour_temperature(vec3 colour) {
+    if (std::max({colour.x, colour.y, colour.z}) <= 0.0f)
+        return std::nullopt;
+    constexpr double most = 0.05, at_an_end = 1e-4; // at an end of the range, the closest one may lie beyond
+    constexpr int steps = 128;
+    // In reciprocal temperatures, 1/MK, along which the locus goes about evenly.
+    const double coldest = 1e6 / double(coldest_body), hottest = 1e6 / double(hottest_body);
+    const glm::dvec2 seen = chromaticity(colour);
+    const auto away = [&](double reciprocal) {
+        return glm::length(chromaticity(black_body_colour(float(1e6 / reciprocal))) - seen);
+    };
+    const auto at = [&](int step) { return hottest + (coldest - hottest) * double(step) / steps; };
+    int best = 0;
+    for (int step = 1; step <= steps; ++step)
+        if (away(at(step)) < away(at(best)))
+            best = step;
+    double low = at(std::max(best - 1, 0)), high = at(std::min(best + 1, steps));
+    while (high - low > 1e-4) {
+        const double third = (high - low) / 3.0;
+        if (away(low + third) < away(high - third))
+            high -= third;
+        else
+            low += third;
+    }
+    const double found = 0.5 * (low + high);
+    const bool is_end = found - hottest < 1e-3 || coldest - found < 1e-3;
+    if (away(found) > (is_end ? at_an_end : most))
+        return std::nullopt;
+    return float(1e6 / found);
+}
+
+std::string photometric_unit(std::string_view unit) {
+    if (unit == "W/sr")
+        return "cd";
+    if (unit == "W/m2")
+        return "lx";
+    if (unit == "W/(sr m2)")
+        return "cd/m\xc2\xb2";
+    return "";
+}
+
 void colour_cell(Session& session, const FieldSource& source) {
     const vec3 value = colour_of(*source.field, source.objects[0]);
     const float intensity = intensity_of(*source.field, value);
     const vec3 shown = encoded(glm::clamp(value / std::max(intensity, 1e-12f), 0.0f, 1.0f));
     const float side = ImGui::GetFrameHeight();
+    const ColourBox box{session, source, value, intensity, ImGui::GetID("colour")};
     if (ImGui::ColorButton("colour", ImVec4(shown.x, shown.y, shown.z, 1.0f), ImGuiColorEditFlags_NoTooltip,
                            ImVec2(side, side)))
         ImGui::OpenPopup("colour");
     ui::note("colour");
     ui::tooltip("Choose a colour");
     if (!ImGui::BeginPopup("colour"))
-        return;
-    ui::close_by_escape();
+        return box.end(false); // it was closed in the middle of a drag
+    const bool escape = ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false);
+    if (box.is_dragged() && escape && !ui::editing_number()) { // a number takes it itself
+        ImGui::ClearActiveID();
+        box.end(false);
+    } else {
+        ui::close_by_escape();
+    }
     ImGui::SetNextItemWidth(13.0f * ui::unit());
-    hue_picker(session, source, value, intensity);
+    hue_picker(box);
     if (!source.field->unit.empty()) {
-        amount_row(session, source, value, intensity);
-        temperature_row(session, source, intensity);
+        amount_rows(box);
+        temperature_row(box);
     }
     ImGui::EndPopup();
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 namespace sunfleck::editor {
@@ -97,6 +98,12 @@ std::string text_with_part(const Field& field, const void* object, int part, con
     for (int i = 0; i < 3; ++i)
         whole += (i > 0 ? "," : "") + (i == part ? text : number(double(before[i])));
     return whole;
+}
+
+std::optional<double> typed_number(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return end != text.c_str() && *end == '\0' && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 bool is_colour(const Field& field) {

@@ -3,6 +3,8 @@
 
 #include "engine/core/description.h"
 
+#include <optional>
+
 namespace sunfleck::editor {
 
 // 0: it is not made of numbers.
@@ -16,6 +18,8 @@ double read_part(const Field& field, const void* object, int part);
 std::string text_with_part(const Field& field, const void* object, int part, double value);
 // The same with what is no number; a text with commas is the whole value.
 std::string text_with_part(const Field& field, const void* object, int part, const std::string& text);
+// What somebody has typed as a number; none where it is not one, all of it, or not finite.
+std::optional<double> typed_number(const std::string& text);
 // Values of light or colour, which have a colour picker.
 bool is_colour(const Field& field);
 vec3 colour_of(const Field& field, const void* object);

@@ -5,8 +5,6 @@
 #include "editor/window/widgets.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
@@ -48,8 +46,19 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
     const auto put = [&](double value) {
         return set_all(source, [&](const void* object) { return text_with_part(*source.field, object, part, value); });
     };
+    // Of what no gesture takes back, when a drag began. There is one pointer.
+    static std::vector<std::string> before;
+    const auto put_back = [&] {
+        for (std::size_t i = 0; i < before.size() && i < source.objects.size(); ++i)
+            static_cast<void>(source.set(i, before[i]));
+        before.clear();
+    };
     switch (edit.phase) {
     case Phase::began:
+        before.clear();
+        if (!source.in_document)
+            for (const void* object : source.objects)
+                before.push_back(field_to_text(*source.field, object));
         return document.begin(source.gesture);
     case Phase::dragged:
         // A value that the field does not take (a multiple is needed, say) leaves the one before.
@@ -57,22 +66,23 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
             static_cast<void>(put(edit.value));
         return;
     case Phase::ended:
+        if (!document.in_gesture()) // given up already: loss of focus
+            put_back();
         document.commit();
         return;
     case Phase::cancelled:
+        put_back();
         return document.cancel();
     case Phase::typed: {
-        char* end = nullptr;
-        const double value = std::strtod(edit.text.c_str(), &end);
+        const std::optional<double> value = typed_number(edit.text);
         // What the box shows of a rotation are angles, whatever it is stored as.
-        if (source.field->kind == FieldKind::quaternion && *end != '\0' && edit.text.find(',') == std::string::npos) {
+        if (source.field->kind == FieldKind::quaternion && !value && edit.text.find(',') == std::string::npos) {
             session.messages.say("'" + edit.text + "' is not an angle in degrees", Message::Kind::error);
             return;
         }
-        const bool is_number = end != edit.text.c_str() && *end == '\0' && std::isfinite(value);
         return apply_field_text(session, source, [&](const void* object) {
-            return is_number ? text_with_part(*source.field, object, part, value)
-                             : text_with_part(*source.field, object, part, edit.text);
+            return value ? text_with_part(*source.field, object, part, *value)
+                         : text_with_part(*source.field, object, part, edit.text);
         });
     }
     case Phase::none:

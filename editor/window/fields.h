@@ -14,6 +14,7 @@ struct FieldSource {
     std::string gesture;              // name of the history's entry
     // Sets it in an object, within a gesture.
     std::function<Status(std::size_t object, const std::string& text)> set;
+    bool in_document = true; // whose gestures take it back; else a drag that is given up does it here
 };
 
 // One gesture that gives every object a text; what is wrong with it is said, and nothing changes then.

@@ -155,6 +155,8 @@ void Layout::draw(Session& session, const ScenePicture* picture) {
     restore_front_ = false;
     draw_dialogs(session);
     ImGui::End();
+    if (!ImGui::IsMouseDown(0) && !ImGui::IsAnyItemActive())
+        session.document->cancel(); // of what was dragged nothing is there any more that could end it
 }
 
 } // namespace sunfleck::editor

@@ -144,7 +144,7 @@ NumberEdit number_box(const std::string& name, const NumberLook& look) {
     const ImVec2 high(low.x + look.width, low.y + ImGui::GetFrameHeight());
     ImGui::BeginDisabled(!look.enabled);
     ImGui::InvisibleButton(name.c_str(), ImVec2(std::max(look.width, 1.0f), ImGui::GetFrameHeight()));
-    const std::string text = look.mixed ? "mixed" : number_text(look.value, look.whole);
+    const std::string text = look.mixed ? look.instead : number_text(look.value, look.whole);
     paint(look, text, low, high);
     ImGui::EndDisabled();
     note(name, text);

@@ -71,6 +71,7 @@ struct NumberLook {
     double value = 0.0, minimum = 0.0, maximum = 0.0; // in the unit that is shown
     bool whole = false, mixed = false, enabled = true;
     std::string unit;
+    const char* instead = "mixed"; // of a number, where it is mixed
     float width = 0.0f;
 };
 struct NumberEdit {
