@@ -167,12 +167,14 @@ void recover_dialog(Session& session) {
     const Recovered recovered = session.recovered.back();
     const std::string file = recovered.file.empty() ? "a scene without a file" : recovered.file;
     ImGui::PushTextWrapPos(36.0f * ui::unit());
-    ImGui::Text("The program ended while %s had unsaved edits (%llu). The last ones:", file.c_str(),
-                static_cast<unsigned long long>(recovered.count));
+    ui::text("question", "The program ended while " + file + " had unsaved edits (" + std::to_string(recovered.count) +
+                             "). The last ones:");
     ImGui::PopTextWrapPos();
     ImGui::BeginChild("edits", ImVec2(36.0f * ui::unit(), 9.0f * ui::unit()), true);
-    for (const std::string& edit : recovered.edits)
-        ImGui::BulletText("%s", edit.c_str());
+    for (std::size_t i = 0; i < recovered.edits.size(); ++i) {
+        ImGui::BulletText("%s", recovered.edits[i].c_str());
+        ui::note("edit " + std::to_string(i + 1), recovered.edits[i]);
+    }
     ImGui::EndChild();
     ImGui::TextDisabled("They open as a scene of their own; no file is changed.");
     const auto next = [&] {

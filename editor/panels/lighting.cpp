@@ -64,9 +64,11 @@ std::string Lighting::old_value(const Session& session, const std::string& setti
 // What the value costs over the old one: asked for, or found.
 void Lighting::cost_row(Session& session, const Field& field, const std::string& value, const std::string& usual) {
     const Cost cost = session.cost != nullptr ? session.cost->cost() : Cost();
-    const bool is_measured = cost.setting == field.name;
     const std::string old = old_value(session, std::string(field.name), usual);
+    const bool is_measured = cost.is_of(field.name, value, old);
     const bool changed = value != old;
+    if (cost.setting == field.name && !is_measured && !cost.finished)
+        session.cost->stop(); // nobody asks about that value any more
     if (!changed && !is_measured)
         return;
     const ui::Scope scope(field.name);

@@ -56,11 +56,11 @@ std::string table_of(const std::deque<ProfiledFrame>& frames) {
     return text;
 }
 
-// In the folder that the program was started in.
+// In the folder that the program was started in, beside those that were saved before.
 void Profile::save(Session& session, bool trace) const {
     std::error_code code;
     const std::filesystem::path path =
-        std::filesystem::current_path(code) / (trace ? "sunfleck_trace.json" : "sunfleck_frames.csv");
+        free_path(std::filesystem::current_path(code) / (trace ? "sunfleck_trace.json" : "sunfleck_frames.csv"));
     Status written;
     if (trace) {
         viewer::Trace frames;
@@ -96,11 +96,12 @@ void Profile::controls(Session& session) {
         chosen_ = 0;
     step(session.frames);
     ImGui::SameLine();
-    if (ui::button("Save trace", "sunfleck_trace.json here, for chrome://tracing or ui.perfetto.dev",
+    if (ui::button("Save trace",
+                   "A new file sunfleck_trace.json in the current folder, for chrome://tracing or ui.perfetto.dev",
                    !session.frames.empty()))
         save(session, true);
     ImGui::SameLine();
-    if (ui::button("Save CSV", "sunfleck_frames.csv here", !session.frames.empty()))
+    if (ui::button("Save CSV", "A new file sunfleck_frames.csv in the current folder", !session.frames.empty()))
         save(session, false);
     const float width = 7.0f * ui::unit();
     ImGui::SameLine();

@@ -47,8 +47,7 @@ void outline(const Session& session, const Placed& placed) {
 }
 
 void grid(Session& session) {
-    const float size = session.scene_size();
-    const float step = std::pow(10.0f, std::floor(std::log10(std::max(size, 1e-6f))) - 1.0f) * 5.0f;
+    const float step = session.grid_step();
     const int half = 20;
     for (int i = -half; i <= half; ++i) {
         const float place = float(i) * step, end = float(half) * step;

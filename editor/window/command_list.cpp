@@ -5,6 +5,7 @@
 #include "editor/window/comparison.h"
 #include "editor/window/fields.h"
 #include "editor/window/opening.h"
+#include "editor/window/widgets.h"
 #include "engine/scene/entity_templates.h"
 #include "viewer/overlays.h"
 
@@ -76,18 +77,32 @@ void look_at_selection(Session& session) {
     session.camera.set(view);
 }
 
-// All lamps but the selected ones are hidden; once more: all are shown.
+bool is_solo(const Session& session) {
+    return session.solo && session.solo->hidden == session.hidden;
+}
+
+// All lamps but the selected ones are hidden, and whatever was; once more: what was hidden before.
 void solo(Session& session) {
     Document& document = *session.document;
-    std::unordered_set<Entity> others;
+    Solo next;
+    next.before = next.hidden = is_solo(session) ? session.solo->before : session.hidden;
     for (const Entity root : document.roots())
-        for (const Entity entity : document.family(root))
-            if (emits(document, entity) && !document.selected(entity))
-                others.insert(entity);
-    if (session.hidden == others)
-        session.hidden.clear();
-    else
-        session.hidden = std::move(others);
+        for (const Entity entity : document.family(root)) {
+            if (!emits(document, entity))
+                continue;
+            if (!document.selected(entity)) {
+                next.hidden.insert(entity);
+                continue;
+            }
+            next.lamps.insert(entity);
+            next.hidden.erase(entity);
+        }
+    if (is_solo(session) && (next.lamps.empty() || next.lamps == session.solo->lamps)) {
+        session.hidden = std::exchange(session.solo, std::nullopt)->before;
+        return;
+    }
+    session.hidden = next.hidden;
+    session.solo = std::move(next);
 }
 
 void hide_selection(Session& session) {
@@ -164,10 +179,11 @@ void add_show_commands(std::vector<Command>& list) {
                     [](Session& session) { return !session.hidden.empty(); }});
     list.push_back({"Show",
                     "Solo lamps",
-                    "Light from the selection alone; once more: from all",
+                    "Light from the selection alone; once more: as before",
                     {'L'},
                     solo,
-                    [](Session& session) { return has_selection(session) || !session.hidden.empty(); }});
+                    [](Session& session) { return has_selection(session) || is_solo(session); },
+                    is_solo});
     list.push_back({"Show", "Lock", "Clicks in the picture leave locked entities alone; once more: not", control('L'),
                     lock_selection, has_selection});
 }
@@ -233,13 +249,15 @@ void add_view_commands(std::vector<Command>& list) {
     list.push_back({"View", "Look at everything", "", {app::key_home}, [](Session& session) {
                         session.camera.frame(bounds_of_all(*session.document));
                     }});
-    list.push_back({"View",
-                    "Grid",
-                    "Metres on the ground",
-                    {},
-                    [](Session& session) { session.view.show_grid = !session.view.show_grid; },
-                    {},
-                    [](Session& session) { return session.view.show_grid; }});
+    list.push_back(
+        {"View",
+         "Grid",
+         "Squares on the ground, as large as the scene asks for",
+         {},
+         [](Session& session) { session.view.show_grid = !session.view.show_grid; },
+         {},
+         [](Session& session) { return session.view.show_grid; },
+         [](Session& session) { return "Grid, " + ui::number_text(double(session.grid_step()), false) + " m"; }});
     list.push_back({"View",
                     "Icons",
                     "Of lamps, cameras and groups, which have no geometry",

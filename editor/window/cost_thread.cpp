@@ -117,6 +117,7 @@ void CostThread::measure(SceneChange scene, const std::string& setting, const gi
 void CostThread::stop() {
     const std::scoped_lock lock(mutex_);
     next_.reset();
+    cost_ = {};
     abandoned_ = true;
 }
 
@@ -156,7 +157,7 @@ Status CostThread::block(SceneCopy& copy, const ViewRequest& view, std::map<std:
 
 void CostThread::publish(const Work& work, bool finished) {
     const std::scoped_lock lock(mutex_);
-    if (next_ != nullptr) // something else is asked for already
+    if (abandoned_) // something else is asked for already, or nothing
         return;
     cost_.pairs = work.log_ratios.size();
     cost_.seconds = seconds_of(CostClock::now() - work.began);
@@ -245,9 +246,10 @@ void CostThread::run() {
             abandoned_ = false;
         }
         const Status status = caught([&] { return measure(*work); });
-        if (!status && !abandoned_) {
+        {
             const std::scoped_lock lock(mutex_);
-            cost_.error = status.error().message;
+            if (!status && !abandoned_)
+                cost_.error = status.error().message;
         }
         wake_();
     }

@@ -22,6 +22,11 @@ struct Cost {
     double seconds = 0.0;                                     // that they took
     bool finished = false;
     std::string error;
+
+    // Whether it is what a setting's value costs over an old one.
+    bool is_of(std::string_view name, std::string_view value, std::string_view old_value) const {
+        return setting == name && to == value && from == old_value;
+    }
 };
 
 // The difference of pairs: centre and interval.
@@ -47,6 +52,7 @@ public:
 
     // Begins to measure, in place of what is being measured. `scene`: everything; its settings are the second ones.
     void measure(SceneChange scene, const std::string& setting, const gi::Settings& from, const ViewRequest& view);
+    // Gives up what is being measured, and forgets what was found.
     void stop();
     Cost cost() const;
 

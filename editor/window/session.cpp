@@ -63,8 +63,11 @@ void Session::take(std::shared_ptr<Document> opened) {
     recovering.reset();
     view.playing = view.paused = false;
     hidden.clear();
+    solo.reset();
     locked.clear();
     reloading_.reset();
+    if (cost != nullptr)
+        cost->stop();
     source_ = document->path();
     source_content_ = FileContent::of(*document);
     if (inspecting)
@@ -241,6 +244,10 @@ float Session::scene_size() {
             size_ = 5.0f;
     }
     return size_;
+}
+
+float Session::grid_step() {
+    return 5.0f * std::pow(10.0f, std::floor(std::log10(std::max(scene_size(), 1e-6f))) - 1.0f);
 }
 
 void Session::note_frame(const ScenePicture* picture) {

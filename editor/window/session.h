@@ -92,6 +92,11 @@ struct Budgets {
     std::map<std::string, double> counters; // by name
 };
 
+// While only some lamps shine: which they are, what is hidden for it, and what was hidden before.
+struct Solo {
+    std::unordered_set<Entity> lamps, hidden, before;
+};
+
 // Questions that stand in the way of everything else until they are answered.
 enum class Dialog { none, open, save_as, unsaved, recover };
 
@@ -129,6 +134,7 @@ public:
     bool profiling = true;            // further frames are kept
     Budgets budgets;
     std::unordered_set<Entity> hidden; // not shown, and not lit by; of no concern to the document
+    std::optional<Solo> solo;          // no longer on where something else was hidden or shown meanwhile
     std::unordered_set<Entity> locked; // not selected by clicks in the picture
 
     Dialog dialog = Dialog::none;
@@ -176,6 +182,8 @@ public:
     void unless_unsaved(std::function<void()> action);
     // Side of a cube that the scene would fit in, m; for things whose size nothing else says.
     float scene_size();
+    // Side of the grid's squares, m: 5 times a power of ten, a half to a twentieth of the scene's size.
+    float grid_step();
     // "room.scene.json", or "untitled".
     std::string file_name() const;
     // Keeps what the newest picture took.

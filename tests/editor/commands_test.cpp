@@ -132,5 +132,45 @@ TEST(EditorShortcut, ChangedKeysAreKeptFromRunToRun) {
     EXPECT_EQ(after.changed_keys(), state.keys);
 }
 
+TEST_F(EditorCommands, SoloEndsWithWhatWasHiddenBefore) {
+    const Entity box = add("Box"), point = add("Point light"), spot = add("Spot light"), sun = add("Sun");
+    const std::unordered_set<Entity> before{box, sun};
+    session_.hidden = before;
+    document().select({point});
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    EXPECT_EQ(session_.hidden, (std::unordered_set<Entity>{box, spot, sun}));
+    document().select({sun}); // from one to the other, also one that was hidden
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    EXPECT_EQ(session_.hidden, (std::unordered_set<Entity>{box, point, spot}));
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    EXPECT_EQ(session_.hidden, before);
+
+    document().select({spot});
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    document().select({});
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps")); // as before, without a selection, too
+    EXPECT_EQ(session_.hidden, before);
+    EXPECT_FALSE(session_.commands->find("Show/Solo lamps")->is_enabled(session_));
+
+    // Whoever shows everything meanwhile begins anew.
+    document().select({spot});
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    ASSERT_NO_FATAL_FAILURE(run("Show/Show all"));
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    EXPECT_EQ(session_.hidden, (std::unordered_set<Entity>{point, sun}));
+    ASSERT_NO_FATAL_FAILURE(run("Show/Solo lamps"));
+    EXPECT_TRUE(session_.hidden.empty());
+}
+
+TEST_F(EditorCommands, TheMenuSaysHowLargeTheGridsSquaresAre) {
+    for (const auto& [scale, title] : {std::pair(0.3f, "Grid, 0.05 m"), {4.0f, "Grid, 0.5 m"}, {30.0f, "Grid, 5 m"}}) {
+        session_.take(std::make_shared<Document>());
+        for (const scene::EntityTemplate& source : scene::entity_templates())
+            if (source.name == "Box")
+                add_from(document(), source, vec3(0.0f), scale);
+        EXPECT_EQ(session_.commands->find("View/Grid")->title(session_), title) << session_.scene_size();
+    }
+}
+
 } // namespace
 } // namespace sunfleck::editor

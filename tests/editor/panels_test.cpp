@@ -1,0 +1,167 @@
+// Panels, without a window: what they show belongs to what it stands beside, and what is given up leaves no trace.
+#include "tests/editor/panel_fixture.h"
+
+#include "engine/core/file.h"
+
+namespace sunfleck::editor {
+namespace {
+
+class EditorPanels : public PanelTest {
+protected:
+    void show(const std::string& panel) {
+        session_.front = panel;
+        frames(3);
+    }
+    void set_setting(const std::string& name, const std::string& text) {
+        document().begin("Set");
+        ASSERT_TRUE(document().set_setting(name, text));
+        document().commit();
+        frame();
+    }
+    // Measuring never begins, as while the scene is drawn all the time.
+    void make_cost_threads_that_wait() {
+        session_.make_cost_thread = [] {
+            return std::make_unique<CostThread>(
+                tests::device(), [] { return true; }, [] {});
+        };
+    }
+};
+
+// Of "bounces": "2" over "1" is no cost of "3" over "2", of "1" over "2" or of another scene's value.
+TEST_F(EditorPanels, ACostStandsBesideTheValueThatWasMeasured) {
+    make_cost_threads_that_wait();
+    show("Lighting");
+    ASSERT_NO_FATAL_FAILURE(click("lighting/search"));
+    type("bounces");
+    const std::string cost = "lighting/bounces/cost", button = "lighting/bounces/Measure";
+    ASSERT_NO_FATAL_FAILURE(set_setting("bounces", "1"));
+    ASSERT_NO_FATAL_FAILURE(set_setting("bounces", "2"));
+    ASSERT_NO_FATAL_FAILURE(click(button));
+    frame();
+    EXPECT_EQ(value(cost), "measuring ...");
+    EXPECT_TRUE(session_.cost->cost().is_of("bounces", "2", "1"));
+
+    ASSERT_NO_FATAL_FAILURE(set_setting("bounces", "3"));
+    frame();
+    EXPECT_EQ(find(cost), nullptr) << value(cost);
+    EXPECT_EQ(session_.cost->cost().setting, "") << "nobody asks about it any more";
+    EXPECT_NE(find(button), nullptr);
+    document().undo();
+    frames(2);
+    EXPECT_EQ(find(cost), nullptr);
+
+    ASSERT_NO_FATAL_FAILURE(click(button));
+    EXPECT_EQ(value(cost), "measuring ...");
+    auto other = std::make_shared<Document>();
+    for (const char* bounces : {"1", "2"}) { // the same values over the same ones
+        other->begin("Set");
+        ASSERT_TRUE(other->set_setting("bounces", bounces));
+        other->commit();
+    }
+    session_.take(other);
+    frames(2);
+    EXPECT_EQ(find(cost), nullptr) << "it was another scene's";
+    EXPECT_EQ(session_.cost->cost().setting, "");
+}
+
+TEST(EditorCostOf, AValueAndTheOneBefore) {
+    Cost cost;
+    cost.setting = "lights";
+    cost.from = "300";
+    cost.to = "600";
+    EXPECT_TRUE(cost.is_of("lights", "600", "300"));
+    EXPECT_FALSE(cost.is_of("bounces", "600", "300"));
+    EXPECT_FALSE(cost.is_of("lights", "700", "300"));
+    EXPECT_FALSE(cost.is_of("lights", "600", "200"));
+    EXPECT_FALSE(cost.is_of("lights", "300", "600"));
+}
+
+// What the viewport shows is of no document, whose gestures take the rest back.
+TEST_F(EditorPanels, EscapeTakesADragOfTheLookBack) {
+    show("Views");
+    const std::string glare = "views/glare/value";
+    const float usual = session_.view.look.glare;
+    const auto drag = [&] {
+        ASSERT_NO_FATAL_FAILURE(point_at(glare));
+        press();
+        move(vec2(30.0f, 0.0f));
+        move(vec2(30.0f, 0.0f));
+        ASSERT_NE(session_.view.look.glare, usual);
+    };
+    ASSERT_NO_FATAL_FAILURE(drag());
+    ASSERT_NO_FATAL_FAILURE(key("Escape"));
+    let_go();
+    frames(2);
+    EXPECT_EQ(session_.view.look.glare, usual);
+
+    ASSERT_NO_FATAL_FAILURE(drag());
+    input_.focused = false;
+    input_.mouse_buttons[0] = false;
+    frames(2);
+    input_.focused = true;
+    frames(2);
+    EXPECT_EQ(session_.view.look.glare, usual) << "nor does a drag that another window interrupts stay";
+
+    ASSERT_NO_FATAL_FAILURE(drag());
+    let_go();
+    frames(2);
+    EXPECT_NE(session_.view.look.glare, usual);
+    EXPECT_TRUE(document().history().entries().empty());
+}
+
+TEST_F(EditorPanels, WhatIsDraggedWhileItsEntityGoesLeavesNoGesture) {
+    const Entity box = add("Box");
+    frames(3);
+    ASSERT_NO_FATAL_FAILURE(point_at("inspector/Transform/position/x"));
+    press();
+    move(vec2(30.0f, 0.0f));
+    move(vec2(30.0f, 0.0f));
+    ASSERT_TRUE(document().in_gesture());
+    document().select({});
+    frames(2);
+    let_go();
+    frames(2);
+    EXPECT_FALSE(document().in_gesture());
+    EXPECT_EQ(document().registry().get<scene::Transform>(box).position, vec3(0.0f));
+}
+
+TEST_F(EditorPanels, TheProfileIsSavedBesideWhatWasSavedBefore) {
+    const std::filesystem::path before = std::filesystem::current_path();
+    std::filesystem::current_path(folder_.path);
+    for (std::uint64_t number : {1, 2})
+        session_.frames.push_back({number, {}});
+    show("Profile");
+    for (const auto& [button, name, second] : {std::tuple("Save CSV", "sunfleck_frames.csv", "sunfleck_frames 2.csv"),
+                                               {"Save trace", "sunfleck_trace.json", "sunfleck_trace 2.json"}}) {
+        ASSERT_TRUE(write_file(folder_ / name, "of yesterday"));
+        click(std::string("profile/") + button);
+        EXPECT_EQ(read_file(folder_ / name).value(), "of yesterday");
+        EXPECT_TRUE(std::filesystem::exists(folder_ / second));
+        EXPECT_EQ(newest_message(), "Wrote " + (folder_ / second).string());
+    }
+    std::filesystem::current_path(before);
+}
+
+// Before anything is restored.
+TEST_F(EditorPanels, RecoverySaysWhatItWouldRestore) {
+    Recovered lost;
+    lost.folder = folder_ / "1.0";
+    lost.file = "/home/me/hall.scene.json";
+    lost.edits = {"Move lamp", "Set intensity of lamp"};
+    lost.count = 7;
+    std::filesystem::create_directories(lost.folder);
+    session_.recovered = {lost};
+    session_.dialog = Dialog::recover;
+    frames(3);
+    const std::string question = value("dialog/question");
+    EXPECT_NE(question.find("/home/me/hall.scene.json"), std::string::npos) << question;
+    EXPECT_NE(question.find("(7)"), std::string::npos) << question;
+    EXPECT_EQ(value("dialog/edit 1"), "Move lamp");
+    EXPECT_EQ(value("dialog/edit 2"), "Set intensity of lamp");
+    ASSERT_NO_FATAL_FAILURE(click("dialog/Later"));
+    EXPECT_EQ(session_.dialog, Dialog::none);
+    EXPECT_TRUE(std::filesystem::exists(lost.folder)) << "they are offered again";
+}
+
+} // namespace
+} // namespace sunfleck::editor
