@@ -87,9 +87,10 @@ Status parse_boolean(const Field& field, void* object, std::string_view text) {
     return {};
 }
 
+// A bound itself is allowed, also where its nearest float lies beyond it.
 Status validate_numbers(const Field& field, const float* values, int count) {
     for (int i = 0; i < count; ++i)
-        if (!std::isfinite(values[i]) || values[i] < field.minimum || values[i] > field.maximum)
+        if (!std::isfinite(values[i]) || values[i] < float(field.minimum) || values[i] > float(field.maximum))
             return range_error(field, fmt::format("{}", values[i]));
     return {};
 }

@@ -2,6 +2,7 @@
 #include "gi_module/settings.h"
 #include "gi_module/technique.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -163,6 +164,16 @@ TEST(LightPlan, SettingsAreDistinctDescribedAndReadTheirOwnText) {
     EXPECT_FALSE(settings.set("lights", "65537"));
     settings.plan = "direct=none,direct=none";
     EXPECT_FALSE(settings.validate());
+}
+
+// As the text that says the range names it: 0.01 is nearest to a float below it.
+TEST(LightPlan, BoundsOfSettingsAreAllowed) {
+    for (const std::string_view name : Settings::names())
+        if (const Field& field = *Settings::find(name); field.kind == FieldKind::real)
+            for (const double bound : {field.minimum, field.maximum}) {
+                const Status set = Settings().set(name, fmt::format("{}", bound));
+                EXPECT_TRUE(set) << set.error().message;
+            }
 }
 
 // Whichever techniques the build has.
