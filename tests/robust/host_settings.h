@@ -22,7 +22,7 @@ inline constexpr SettingValues host_settings[] = {
     {"indirect", {"light_samples", "brute_force", "none"}},
     {"specular", {"none", "gloss", "none"}},
     {"movers", {"per_pixel", "static", "prt"}},
-    {"plan", {"", "first_bounce.dynamic=none", "direct.static=brute_force"}},
+    {"plan", {"", "first_bounce.dynamic=none", "direct.fixed=brute_force"}},
     {"source", {"random_walk", "random_walk", "random_walk"}},
     {"lights", {"16", "8", "1"}},
     {"direct_share", {"0.25", "0", "1"}},
