@@ -48,6 +48,7 @@ public:
                                      file("settings.json")};
         all.insert(all.end(), arguments.begin(), arguments.end());
         editor_ = display_.launch(all, folder_ / "log");
+        answers_ = true;
         wait_until([&] { return find("viewport/picture").has_value(); });
         window_ = display_.window("Sunfleck");
         run("xdotool windowfocus --sync " + window_);
@@ -85,14 +86,15 @@ public:
     // Until the program has taken all events that were sent before, and widgets() tells what came of them, however slow
     // the machine is. The pointer moves by a pixel or two: events come in order, so that all is taken once the program
     // says that it is there. Where it is lost it moves once more, each time to another place: when a camera has flown,
-    // GLFW takes the pointer for unmoved at two places, where it has put it back and where it was before.
-    bool catch_up() {
+    // GLFW takes the pointer for unmoved at two places, where it has put it back and where it was before. False: it has
+    // ended, or takes no events for two minutes, after which it is not waited for again.
+    [[nodiscard]] bool catch_up() {
         constexpr Place steps[] = {{1, 1}, {-1, -1}, {2, -1}, {-2, 1}, {0, 2}, {1, -2}, {-1, 2}};
         constexpr int count = int(std::size(steps));
         const int x = std::clamp(pointer_.first, 2, std::max(window_size_.first - 3, 2));
         const int y = std::clamp(pointer_.second, 2, std::max(window_size_.second - 3, 2));
         first_step_ = 1 - first_step_; // to and fro
-        for (int tries = 0; tries < count && runs(); ++tries) {
+        for (int tries = 0; tries < count && answers_ && runs(); ++tries) {
             const Place step = steps[(tries + first_step_) % count], place(x + step.first, y + step.second);
             if (place == shown_pointer())
                 continue;
@@ -100,13 +102,10 @@ public:
             if (wait_until([&] { return shown_pointer() == place || !runs(); }, std::exp2(tries)))
                 return runs();
         }
-        return false;
+        return answers_ = false;
     }
     // The scene is drawn as it will stay.
-    bool settles() {
-        catch_up();
-        return wait_for("status/settled", "yes", 240.0);
-    }
+    bool settles() { return catch_up() && wait_for("status/settled", "yes", 240.0); }
 
     // Points at a widget, and again where it has moved meanwhile: lists that are searched grow shorter with each
     // letter.
@@ -115,7 +114,8 @@ public:
             const std::optional<Widget> before = find(name);
             if (before)
                 point_at(*before);
-            catch_up();
+            if (!catch_up())
+                return false;
             const std::optional<Widget> now = find(name);
             if (before && now && std::abs(now->x - before->x) < 2.0 && std::abs(now->y - before->y) < 2.0)
                 return true;
@@ -162,9 +162,8 @@ public:
     }
     // A number into a box, by clicking and typing.
     bool enter(const std::string& name, const std::string& text) {
-        if (!click(name))
+        if (!click(name) || !catch_up()) // it takes letters a frame or two after the click
             return false;
-        catch_up(); // it takes letters a frame or two after the click
         type(text);
         key("Return");
         return true;
@@ -209,6 +208,7 @@ private:
     int first_step_ = 1;
     DrivenDisplay display_;
     pid_t editor_ = -1;
+    bool answers_ = true;
 };
 
 } // namespace sunfleck::tests

@@ -36,19 +36,15 @@ public:
 
     // From now on in the scene that is open.
     void stay_in_scene() { stays_ = true; }
-    // As fast as a hand, but never far ahead of what the program has taken.
-    void act() {
-        act_once();
-        if (++acts_ % 4 == 0)
-            editor_.catch_up();
-    }
+    // As fast as a hand, but never far ahead of what the program has taken. False: it takes nothing any more.
+    bool act() { return act_once() && (++acts_ % 4 != 0 || editor_.catch_up()); }
 
 private:
-    void act_once() {
+    bool act_once() {
         const std::uint32_t kind = below(24);
         if (kind >= 20)
-            menu();
-        else if (kind < 9)
+            return menu();
+        if (kind < 9)
             click();
         else if (kind < 12)
             drag();
@@ -60,6 +56,7 @@ private:
             editor_.run("xdotool click " + std::to_string(4 + below(2))); // the wheel
         else
             editor_.resize(400 + int(below(900)), 300 + int(below(500)));
+        return true;
     }
     std::uint32_t below(std::size_t limit) { return std::uint32_t(random_() % limit); }
     bool leaves_out(const std::string& name) const { return is_left_out(name) || (stays_ && replaces_scene(name)); }
@@ -77,14 +74,16 @@ private:
         }
     }
     // Lets one fall, and chooses.
-    void menu() {
+    bool menu() {
         choose([](const std::string& name) {
             return name.starts_with("menu/") && name != "menu/title" && name.find('/', 5) == std::string::npos;
         });
-        editor_.catch_up();
+        if (!editor_.catch_up())
+            return false;
         choose([](const std::string& name) { return name.starts_with("menu/") && name.find('/', 5) != name.npos; });
         if (below(3) == 0)
             editor_.key("Escape");
+        return true;
     }
     void choose(const std::function<bool(const std::string&)>& wanted) {
         widgets_ = editor_.widgets();
@@ -179,21 +178,6 @@ protected:
         }
         ASSERT_TRUE(editor->wait_for("menu/title", "fresh.scene.json")) << message();
     }
-    // Under the same name each time, into a folder of its own.
-    std::string saved(const std::string& name) const {
-        fs::create_directories(folder / name);
-        menu("File", "Save as...");
-        name_file(editor->file(name + "/room.scene.json"));
-        EXPECT_TRUE(editor->wait_until([&] { return message() == "Saved " + editor->file(name + "/room.scene.json"); }))
-            << message();
-        std::string bytes;
-        for (const char* file : {"room.scene.json", "room.glb"})
-            if (const auto text = read_file(folder / name / file))
-                bytes += *text;
-            else
-                ADD_FAILURE() << text.error().message;
-        return bytes;
-    }
     void undo_all() const {
         for (int rounds = 0; rounds < 200; ++rounds) {
             ASSERT_TRUE(editor->click("menu/Edit"));
@@ -244,8 +228,12 @@ TEST_F(EditorWindowUse, RandomUseDoesNoHarmAndIsUndone) {
     int events = 0;
     const auto use = [&] {
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(500 * seconds);
-        for (; std::chrono::steady_clock::now() < end && editor->runs(); ++events)
-            user.act();
+        while (std::chrono::steady_clock::now() < end) {
+            ++events;
+            ASSERT_TRUE(user.act()) << (editor->runs() ? "takes no events" : "ended") << " after " << events
+                                    << " events\n"
+                                    << editor->log();
+        }
         ASSERT_TRUE(editor->runs()) << "ended after " << events << " events\n" << editor->log();
         ASSERT_NO_FATAL_FAILURE(come_to_rest());
     };

@@ -76,7 +76,6 @@ TEST_F(EditorWindowStuck, TheWindowAnswersWhileAWallIsDragged) {
     before.end = now();
     ASSERT_TRUE(editor->settles());
     editor->key("f");
-    editor->catch_up();
     ASSERT_TRUE(editor->settles());
 
     const auto drag = [&] {

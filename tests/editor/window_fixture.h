@@ -34,7 +34,7 @@ protected:
     }
     // Types a path into the file dialog that is open, or is about to open.
     void name_file(const std::string& path) const {
-        editor->catch_up(); // and no other dialog is meant
+        ASSERT_TRUE(editor->catch_up()); // and no other dialog is meant
         ASSERT_TRUE(editor->click("dialog/name"));
         editor->key("ctrl+a");
         editor->type(path);
@@ -47,6 +47,22 @@ protected:
         editor->key("ctrl+a");
         editor->type(text);
         ASSERT_TRUE(editor->wait_for(box, text));
+    }
+    // The bytes of the scene as it is saved: under the same name each time, into a folder of its own.
+    std::string saved(const std::string& name) const {
+        std::filesystem::create_directories(folder / name);
+        const std::string scene = editor->file(name + "/room.scene.json");
+        menu("File", "Save as...");
+        name_file(scene);
+        EXPECT_TRUE(editor->wait_for("status/message", "Saved " + scene)) << message();
+        EXPECT_TRUE(editor->wait_for("menu/title", "room.scene.json"));
+        std::string bytes;
+        for (const char* file : {"room.scene.json", "room.glb"})
+            if (const auto text = read_file(folder / name / file))
+                bytes += *text;
+            else
+                ADD_FAILURE() << text.error().message;
+        return bytes;
     }
     std::string message() const { return editor->value("status/message"); }
 
