@@ -110,10 +110,12 @@ void Document::name_everything() {
             continue;
         std::string name = free_name(stored != nullptr ? stored->name : std::string(first->name));
         by_name_[name] = entity;
+        handles_ = std::max(handles_, entity.index + 1);
         if (stored == nullptr || stored->name != name)
             registry_.emplace_or_replace<scene::Name>(entity, {std::move(name)});
     }
     ++structure_revision_;
+    find_all_children();
 }
 
 void Document::begin(std::string name) {
@@ -288,6 +290,8 @@ bool Document::redo() {
 void Document::apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value) {
     if (&pool == name_pool_ || &pool == parent_pool_) {
         ++structure_revision_;
+        if (moved_.size() <= by_name_.size()) // else all are found anew anyhow
+            moved_.push_back(entity);
         if (&pool == name_pool_)
             name_changed(entity, registry_.try_get<scene::Name>(entity), value.get());
     }

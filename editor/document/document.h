@@ -130,7 +130,7 @@ public:
     // Everything.
     std::vector<Update> all_updates();
     // Handles of the document are below this.
-    std::uint32_t handle_count() const;
+    std::uint32_t handle_count() const { return handles_; }
 
 private:
     void apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value);
@@ -141,6 +141,11 @@ private:
     void name_changed(Entity entity, const void* before, const void* after);
     void name_everything();
     void find_children();
+    void find_all_children();
+    void list_again(Entity entity);
+    void take_off(Entity entity);
+    Entity stored_parent(Entity entity) const;
+    bool is_at_top(Entity entity) const { return parent(entity).is_null(); }
     HistoryEntry end_gesture();
     void tidy_updates();
 
@@ -169,8 +174,16 @@ private:
     std::vector<std::uint32_t> newest_change_, change_before_;
 
     std::unordered_map<std::string, Entity> by_name_;
+    // As found last, all in order of creation. Children are those of the parent that is stored, whether that is there
+    // or not; where it is not, they are at the top, too.
     std::vector<Entity> roots_;
     std::unordered_map<Entity, std::vector<Entity>> children_;
+    struct Listed {
+        Entity entity, below; // null: there is none of this index; it has no parent
+        bool at_top = false;
+    };
+    std::vector<Listed> listed_; // by index
+    std::vector<Entity> moved_;  // whose names or parents have changed since
     std::uint64_t structure_revision_ = 1, children_revision_ = 0, revision_ = 1, settings_revision_ = 1;
     std::vector<Entity> selection_;
     std::vector<bool> selected_; // by index

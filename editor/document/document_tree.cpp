@@ -5,6 +5,23 @@
 #include <utility>
 
 namespace sunfleck::editor {
+namespace {
+
+bool is_before(Entity a, Entity b) {
+    return a.index < b.index;
+}
+
+void put_in(std::vector<Entity>& list, Entity entity) {
+    list.insert(std::lower_bound(list.begin(), list.end(), entity, is_before), entity);
+}
+
+void take_out(std::vector<Entity>& list, Entity entity) {
+    const auto found = std::lower_bound(list.begin(), list.end(), entity, is_before);
+    if (found != list.end() && *found == entity)
+        list.erase(found);
+}
+
+} // namespace
 
 bool Document::exists(Entity entity) const {
     return registry_.alive(entity) && registry_.has<scene::Name>(entity);
@@ -26,19 +43,84 @@ Entity Document::parent(Entity entity) const {
     return stored != nullptr && exists(stored->parent) ? stored->parent : ecs::null_entity;
 }
 
-void Document::find_children() {
-    if (children_revision_ == structure_revision_)
-        return;
-    children_revision_ = structure_revision_;
+Entity Document::stored_parent(Entity entity) const {
+    const scene::Parent* stored = registry_.try_get<scene::Parent>(entity);
+    return stored != nullptr ? stored->parent : ecs::null_entity;
+}
+
+void Document::find_all_children() {
     roots_.clear();
     for (auto& [parent, list] : children_)
         list.clear();
+    listed_.assign(handles_, {});
     for (const Entity entity : registry_.entities()) {
         if (!exists(entity))
             continue;
-        const Entity above = parent(entity);
-        (above.is_null() ? roots_ : children_[above]).push_back(entity);
+        const Listed now{entity, stored_parent(entity), is_at_top(entity)};
+        listed_[entity.index] = now;
+        if (!now.below.is_null())
+            children_[now.below].push_back(entity);
+        if (now.at_top)
+            roots_.push_back(entity);
     }
+    moved_.clear();
+    children_revision_ = structure_revision_;
+}
+
+// Where few have moved, only they are listed anew: after an edit of one, a large scene takes no longer than a small
+// one.
+void Document::find_children() {
+    constexpr std::size_t many = 64; // there may be for each that has moved
+    if (children_revision_ == structure_revision_)
+        return;
+    if (many * moved_.size() > by_name_.size())
+        return find_all_children();
+    for (const Entity entity : moved_)
+        list_again(entity);
+    moved_.clear();
+    children_revision_ = structure_revision_;
+}
+
+void Document::list_again(Entity entity) {
+    listed_.resize(std::max<std::size_t>(listed_.size(), handles_));
+    const Listed& before = listed_[entity.index];
+    const bool there = exists(entity);
+    const Entity below = there ? stored_parent(entity) : ecs::null_entity;
+    if (!there && before.entity != entity) // another has its index
+        return;
+    if (there && before.entity == entity && before.below == below)
+        return;
+    if (!before.entity.is_null())
+        take_off(before.entity);
+    if (!there)
+        return;
+    listed_[entity.index] = {entity, below, is_at_top(entity)};
+    if (!below.is_null())
+        put_in(children_[below], entity);
+    if (listed_[entity.index].at_top)
+        put_in(roots_, entity);
+    // Those that waited for it are not at the top any more.
+    const auto waiting = children_.find(entity);
+    if (waiting == children_.end())
+        return;
+    for (const Entity child : waiting->second)
+        if (std::exchange(listed_[child.index].at_top, false))
+            take_out(roots_, child);
+}
+
+// Those below it are at the top from now on, unless they have been listed already.
+void Document::take_off(Entity entity) {
+    const Listed before = std::exchange(listed_[entity.index], {});
+    if (!before.below.is_null())
+        take_out(children_[before.below], entity);
+    if (before.at_top)
+        take_out(roots_, entity);
+    const auto left = children_.find(entity);
+    if (left == children_.end() || exists(entity))
+        return;
+    for (const Entity child : left->second)
+        if (!std::exchange(listed_[child.index].at_top, true))
+            put_in(roots_, child);
 }
 
 const std::vector<Entity>& Document::roots() {
@@ -50,7 +132,7 @@ const std::vector<Entity>& Document::children(Entity parent) {
     static const std::vector<Entity> none;
     find_children();
     const auto found = children_.find(parent);
-    return found == children_.end() ? none : found->second;
+    return found == children_.end() || !exists(parent) ? none : found->second;
 }
 
 bool Document::is_below(Entity entity, Entity ancestor) const {
@@ -120,13 +202,6 @@ std::vector<Update> Document::all_updates() {
                 result.push_back({entity, pool, registry_.value(*pool, entity)});
     }
     return result;
-}
-
-std::uint32_t Document::handle_count() const {
-    std::uint32_t count = handles_;
-    for (const auto& [name, entity] : by_name_)
-        count = std::max(count, entity.index + 1);
-    return count;
 }
 
 } // namespace sunfleck::editor
