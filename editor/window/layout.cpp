@@ -42,8 +42,6 @@ void Layout::take_keys(Session& session) const {
     const bool asked_for = std::exchange(session.keys_are_asked_for, false);
     const bool typing = asked_for || ImGui::GetIO().WantTextInput || ui::editing_number() || flying() ||
                         session.dialog != Dialog::none || ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
-    if (!session.input->focused && session.document->in_gesture())
-        session.document->cancel();
     if (!typing)
         session.commands->take_keys(*session.input, session);
 }

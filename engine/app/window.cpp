@@ -132,6 +132,7 @@ void Window::move_pointer(vec2 place) {
 
 void Window::change_focus(bool focused) {
     pending_.focused = focused;
+    pending_.lost_focus = pending_.lost_focus || !focused;
     skip_motion_ = true;
     if (!focused) { // key releases outside the window are not reported
         pending_.keys.fill(false);
@@ -251,6 +252,7 @@ const InputState& Window::poll() {
     pending_.text.clear();
     pending_.mouse_motion = vec2(0.0f);
     pending_.scroll = 0.0f;
+    pending_.lost_focus = false;
     return input_;
 }
 

@@ -48,7 +48,8 @@ struct InputState {
     float scroll = 0.0f;
     std::vector<std::filesystem::path> dropped; // files dropped on the window since the last poll
     bool focused = true;
-    bool captured = false; // the pointer is hidden and controls the view
+    bool lost_focus = false; // since the last poll, whether it is back or not
+    bool captured = false;   // the pointer is hidden and controls the view
     Gamepad gamepad;
 
     bool down(Key key) const { return key >= 0 && key < key_count && keys[std::size_t(key)]; }
