@@ -97,6 +97,8 @@ public:
     // Whether a request has not taken effect yet, and how far it is, 0 to 1.
     bool pending() const { return wanted_.has_value() || (change_ && !handed_over_ && !cancelled_); }
     float share() const { return change_ && !cancelled_ ? change_->share() : 0.0f; }
+    // A change is on its way, and not only waited for.
+    bool prepares() const { return change_ && !handed_over_ && !cancelled_; }
 
     static constexpr std::chrono::milliseconds quiet_time{150}, long_quiet_time{1000};
 

@@ -231,6 +231,10 @@ void SceneThread::follow_light() {
 
 // What is being prepared is of the scene before.
 void SceneThread::put_light_off() {
+    if (light_->prepares()) {
+        const std::scoped_lock lock(mutex_);
+        ++status_.cancelled;
+    }
     const gi::Settings& settings = copy_->renderer().lighting().settings();
     if (light_->renews())
         light_->renew(settings);

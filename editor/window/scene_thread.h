@@ -90,6 +90,7 @@ struct SceneStatus {
     float share = 0.0f;     // of that, done
     std::string error;      // why there is no picture; empty: there is
     std::string bad_shader; // why the shader that came last is not in use; empty: it is
+    // Pictures; lighting that took long, done; such that was under way when an edit made it useless.
     std::uint64_t frames = 0, builds = 0, cancelled = 0;
     double longest_frame_ms = 0.0;
 };

@@ -115,6 +115,38 @@ TEST_F(EditorScene, LightFollowsBehindTheFrames) {
     EXPECT_GT(differing(*after->pixels, *before->pixels), width * height / 100u);
 }
 
+// While light is under way, an edit cancels it; where it was ready sooner, it is tried again.
+TEST_F(EditorScene, ANewEditCancelsLightThatIsOnItsWay) {
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    SceneThread scene(tests::device(), [] {});
+    ChangeCollector collector;
+    scene.change(*collector.collect(document));
+    scene.show(view(*document));
+    ASSERT_NE(settled(scene, *document), nullptr);
+    EXPECT_EQ(scene.status().cancelled, 0u);
+    ecs::PoolBase& transforms = pool_of<scene::Transform>(*document);
+    const Entity block = document->find("short block");
+    ASSERT_TRUE(document->exists(block));
+    const auto move = [&](int step) {
+        const std::string place = std::to_string(2.5 + 0.1 * step) + ",0.825,4";
+        ASSERT_TRUE(edit_field(*document, {block}, transforms, transforms.description()->fields[0], place));
+        scene.change(*collector.collect(document));
+    };
+    for (int tries = 0; tries < 6 && scene.status().cancelled == 0; ++tries) {
+        move(2 * tries);
+        for (const auto end = Clock::now() + std::chrono::seconds(20); Clock::now() < end;)
+            if (const SceneStatus status = scene.status(); status.building && status.share > 0.0f)
+                break;
+        move(2 * tries + 1);
+        ASSERT_NE(settled(scene, *document), nullptr);
+    }
+    EXPECT_GT(scene.status().cancelled, 0u);
+    const Picture after = settled(scene, *document), fresh = from_nothing(document);
+    ASSERT_TRUE(after && fresh);
+    EXPECT_EQ(differing(*after->pixels, *fresh->pixels), 0u) << "nothing of it is left";
+}
+
 // Light follows edits of a lamp in its samples as they are; once it is left alone, it has those of a start.
 TEST_F(EditorScene, LampsThatWereEditedAreAsAStartShowsThem) {
     const std::shared_ptr<Document> document = open_scene();
