@@ -126,6 +126,26 @@ TEST_F(EditorComparison, KeptSettingsAgainstTheReference) {
     EXPECT_EQ(comparison_->one(now_), now_);
 }
 
+// Paths of the scene before count for nothing.
+TEST_F(EditorComparison, AnEditRestartsTheReference) {
+    comparison_->with = CompareWith::reference;
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= 32 && comparison_->other() != nullptr; }));
+    const std::shared_ptr<ScenePicture> before = comparison_->other();
+    const std::uint32_t most = comparison_->samples();
+    ecs::PoolBase& transforms = pool_of<scene::Transform>(*document_);
+    const Entity block = document_->find("short block");
+    ASSERT_TRUE(document_->exists(block));
+    ASSERT_TRUE(edit_field(*document_, {block}, transforms, transforms.description()->fields[0], "2,2.5,4"));
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() < most; }));
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= 32 && comparison_->other() != before; }));
+    EXPECT_GT(differing(*comparison_->other()->pixels, *before->pixels), width * height / 2u) << "all paths are new";
+    // Another view likewise.
+    const std::uint32_t now = comparison_->samples();
+    document_->undo();
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() < now; }));
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= most; }));
+}
+
 TEST_F(EditorComparison, HeatGrowsWithTheError) {
     float brightness = -1.0f;
     for (int i = 0; i <= 64; ++i) {
