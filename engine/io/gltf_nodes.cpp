@@ -353,6 +353,10 @@ void NodeImport::add_camera(const tinygltf::Camera& camera, ecs::Entity entity, 
     constexpr float angle = 0.035f;
     scene::Transform back;
     back.position.z = std::max(float(camera.orthographic.ymag), 1e-3f) / std::tan(0.5f * angle);
+    if (!is_finite(back.position)) {
+        notes.push_back("camera of node '" + name + "' is so high that no distance shows all of it: it is left out");
+        return;
+    }
     registry_->emplace<scene::Camera>(child_of(entity, name + " orthographic", back), {angle});
     notes.push_back("camera of node '" + name +
                     "' is orthographic; it is approximated by a distant camera with a narrow field of view");

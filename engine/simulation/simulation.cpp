@@ -154,6 +154,8 @@ Character Simulation::find_start(ecs::Registry& registry, const Bounds& bounds) 
         foot = vec3(world[3]) - vec3(0.0f, marked ? 0.0f : height - 0.12f, 0.0f);
         ahead = -vec3(world[2]);
     }
+    if (!is_finite(foot) || !is_finite(ahead)) // of a file whose numbers are too large for what they are multiplied by
+        return {vec3(0.0f), 0.0f, height};
     return {foot, std::atan2(-ahead.x, -ahead.z), height};
 }
 

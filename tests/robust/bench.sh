@@ -4,7 +4,8 @@
 #   1 host      random sequences of calls of sunfleck/host.h, by seed                                    (1-20000)
 #   2 faults    every call of Vulkan's that can fail, by its number, with each code that Vulkan allows   (all)
 #   3 memory    failing allocations of the calling thread, and of others, by seed                       (1-1000)
-#   4 files     damaged glTF files: import, patches, Embree, a sample of the path tracer, by seed        (1-20000)
+#   4 files     damaged glTF files, and odd numbers in each field of glTF and scene files: import, patches,
+#               Embree, a sample of the path tracer, steps of the simulation, by seed                    (1-20000)
 #   5 kills     of whatever writes, by seed (kills.py)                                                   (1-300)
 #   6 scale     large levels, by the rows of scale.py's table                                            (1-9)
 #   7 steady    memory over 20,000 frames (memory.py)                                                    (1)
@@ -15,7 +16,7 @@ set -euo pipefail
 build=$(cd "$1" && pwd); shift
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 part='' seeds='' files='' frames='' first=1 last=''
-usage() { sed -n '3,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
+usage() { sed -n '3,13s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 2; }
 while (($#)); do
     case $1 in
     --part) part=${2:-}; shift ;;
@@ -32,7 +33,7 @@ case $part in
 1) run=("$tests" "--gtest_filter=RobustHostCalls.AreRightOrRefused") last=20000 piece=100 ;;
 2) run=("$tests" "--gtest_filter=RobustHostFaults.EveryCallOfVulkanMayFail") last=1000000 piece=50 ;;
 3) run=("$tests" "--gtest_filter=RobustHostFaults.*Allocation*") last=1000 piece=50 ;;
-4) run=("$tests" "--gtest_filter=RobustDamagedFiles.MutationsAreRefusedOrTraced") last=20000 piece=500 ;;
+4) run=("$tests" "--gtest_filter=RobustDamagedFiles.*:RobustSceneNumbers.*") last=20000 piece=500 ;;
 5) run=(python3 "$here/kills.py" "$build") last=300 piece=25 ;;
 6) run=(python3 "$here/scale.py" "$build") last=9 piece=3 ;;
 7) run=(python3 "$here/memory.py" "$build" "${frames:-20000}") last=1 piece=1 ;;

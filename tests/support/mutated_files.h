@@ -44,7 +44,8 @@ inline std::vector<std::string> sample_files() {
         std::vector<fs::path> paths;
         for (const auto& entry : fs::recursive_directory_iterator(folder, code))
             if (entry.is_regular_file() && entry.file_size() < 3000000 &&
-                (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf"))
+                (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf") &&
+                entry.path().filename() != "numbers.gltf") // odd_numbers_test.cpp has it; seeds name the same files on
                 paths.push_back(entry.path());
         std::sort(paths.begin(), paths.end());
         for (const fs::path& path : paths)
