@@ -1,14 +1,11 @@
-// What else there is on a machine: other programs at the same files, a clock that was set back, no home, a decimal
-// comma, and names of files that nobody would choose.
+// What else there is on a machine: other programs at the same files, a clock that was set back, no home, and names of
+// files that nobody would choose.
 #include "editor/command_line/program.h"
 #include "engine/core/file.h"
 #include "engine/io/scene_file.h"
-#include "gi_module/settings.h"
 #include "test_places.h"
 #include "tests/support/gltf_files.h"
 #include "tests/support/run_tool.h"
-
-#include <clocale>
 
 namespace sunfleck {
 namespace {
@@ -136,44 +133,6 @@ TEST_F(RobustNeighbours, OddNamesOfSavedScenes) {
             EXPECT_FALSE(scene::find_by_name(after.registry, "square").is_null());
         }
     }
-}
-
-// A host may have set the user's language: numbers in files and settings stay as they are.
-TEST_F(RobustNeighbours, ADecimalComma) {
-    // Made for the test where the system has none.
-    const std::string made = folder.path.string();
-    shell("localedef -i de_DE -f UTF-8 '" + made + "/de_DE.UTF-8'");
-    ::setenv("LOCPATH", made.c_str(), 1);
-    if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr || *std::localeconv()->decimal_point != ',')
-        GTEST_SKIP() << "no language with a decimal comma is here";
-    gi::Settings settings;
-    EXPECT_TRUE(settings.set("direct_share", "0.5"));
-    EXPECT_FALSE(settings.set("direct_share", "0,5"));
-    EXPECT_EQ(settings.direct_share, 0.5f);
-    const std::string at = (folder.path / "p").string();
-    const auto picture = [&](const std::string& ending) {
-        const std::string name = at + ending;
-        EXPECT_EQ(run({"reference", "cornell", "-o", name + ".exr", "--size", "12x9", "--spp", "2", "--stats",
-                       name + ".json", "--camera", "0.25,1.5,2.5,0,1,0,45.5"}),
-                  0);
-        EXPECT_TRUE(nlohmann::json::accept(content_of(name + ".json")));
-        return content_of(name + ".exr");
-    };
-    const std::string with_comma = picture("1");
-    tests::World world, after;
-    tests::GltfBuilder square;
-    square.add_square();
-    square.file["nodes"][0]["translation"] = {0.25, 1.5, -0.125};
-    ASSERT_TRUE(world.import(square.glb()));
-    EXPECT_TRUE(io::save_scene(at + ".scene.json", world.registry, world.meshes, world.textures,
-                               {{}, {{"direct_share", "0.5"}}}));
-    const auto report = io::load_scene(at + ".scene.json", after.registry, after.meshes, after.textures);
-    std::setlocale(LC_ALL, "C");
-    ASSERT_TRUE(report) << report.error().message;
-    EXPECT_EQ(report->settings.at("direct_share"), "0.5");
-    EXPECT_EQ(after.registry.get<scene::Transform>(scene::find_by_name(after.registry, "square")).position,
-              vec3(0.25f, 1.5f, -0.125f));
-    EXPECT_EQ(with_comma, picture("2"));
 }
 
 } // namespace
