@@ -3,6 +3,7 @@
 
 Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool, and of
 32x32 of a host
+       memory.py BUILD_FOLDER share        600 frames of demo and tool in a small scene: part of every test run
 Resident memory may grow by less than 1 MiB in the last half: the least of the run's last tenth is compared with the
 least of the first tenth of that half, since what frames in flight hold comes and goes.
 Allocated bytes, as counted by count_allocations.c, may grow by none. The demo's balls never lie as before, so that the
@@ -15,6 +16,7 @@ which go up and down by megabytes). In runs of less than 10,000 frames 64 kB mor
 removals and of the times of 4,096 frames fill until their last half. Before anything is run, the measure itself is
 tried on made-up series.
 """
+import concurrent.futures
 import mmap
 import os
 import pathlib
@@ -39,9 +41,9 @@ def least_allocated(counter):
         return min(now, least)
 
 
-def watch(command, counter, environment):
+def watch(command, counter, environment, folder):
     """(resident, least allocated) of the process, some 20 times a second, and its exit status."""
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    process = subprocess.Popen(command, env=environment, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     samples = []
     while process.poll() is None:
         try:
@@ -104,40 +106,56 @@ def check_the_measure():
                                           (0, 100e3, "can't tell")):
         results = [found(bytes_a_frame, spread) for _ in range(40)]
         assert results.count(wanted) >= 35, (bytes_a_frame, spread, results)
+    frames = SHARE_FRAMES
+    for bytes_a_frame, spread, wanted in ((0, 20e3, ""), (500, 20e3, "grows")):
+        results = [found(bytes_a_frame, spread) for _ in range(40)]
+        assert results.count(wanted) >= 35, (bytes_a_frame, spread, results)
+
+
+SHARE_FRAMES = 600
+
+
+def run(build, library, frames, name, command):
+    """A row of the table, and what is wrong with it."""
+    with tempfile.TemporaryDirectory() as folder:
+        counter = pathlib.Path(folder) / "allocated"
+        environment = dict(os.environ, LD_PRELOAD=str(library), SUNFLECK_ALLOCATED=str(counter), SUNFLECK_FRAMES=frames)
+        begin = time.time()
+        samples, status, output = watch([str(build / "bin" / command[0]), *command[1:]], counter, environment, folder)
+    pages, allocated = ([s[i] for s in before_end(samples)] for i in range(2))
+    least = leasts(allocated)
+    slope, half_width = rise(least)
+    problems = [text for text, is_so in (
+        (f"exit status {status}", status != 0), ("resident grows", grown(pages) >= 1 << 20),
+        (f"allocated {problem_of_allocated(least, int(frames))}", problem_of_allocated(least, int(frames)))) if is_so]
+    row = (f"| {name} | {frames} | {time.time() - begin:.0f} | {pages[-1] / 1e6:.1f} | {grown(pages) / 1e3:.0f} | "
+           f"{allocated[-1] / 1e6:.1f} | {slope / 1e3:.1f} +- {half_width / 1e3:.1f} |"
+           + "".join(f" {problem}" for problem in problems))
+    return (row if status == 0 else f"{row}\n{output[-500:]}"), len(problems)
 
 
 def main():
     build, frames = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2] if len(sys.argv) > 2 else "20000"
+    is_share = frames == "share"
+    if is_share:
+        frames = str(SHARE_FRAMES)
+    lights = "8" if is_share else "64"
     runs = {"demo": ["sunfleck_demo", "--headless", "--size", "64x36", "--pictures", "0", "--frames", frames, "-o", "out"],
-            "tool": ["sunfleck", "render", "four_pillars", "--size", "64x36", "--lights", "64", "--warmup", frames,
+            "tool": ["sunfleck", "render", "four_pillars", "--size", "64x36", "--lights", lights, "--warmup", frames,
                      "--frames", "1", "--orbit", "1.8", "-o", "out.png"],
             "host": ["robust_tests", "--gtest_filter=RobustHostMemory.*"]}
+    if is_share:
+        del runs["host"]
+        runs["demo"] += ["--scene", "four_pillars"]
     wrong, library = 0, build / "lib/libsunfleck_count_allocations.so"
     if not library.exists():
         sys.exit(f"{library} is missing: build the target sunfleck_count_allocations")
     check_the_measure()
     print("| program | frames | s | resident, MB | grows, kB | allocated, MB | rises, kB |\n|---|---|---|---|---|---|---|")
-    for name, (program, *rest) in runs.items():
-        with tempfile.TemporaryDirectory() as folder:
-            counter = pathlib.Path(folder) / "allocated"
-            environment = dict(os.environ, LD_PRELOAD=str(library),
-                               SUNFLECK_ALLOCATED=str(counter), SUNFLECK_FRAMES=frames)
-            begin = time.time()
-            os.chdir(folder)
-            samples, status, output = watch([str(build / "bin" / program), *rest], counter, environment)
-            pages, allocated = ([s[i] for s in before_end(samples)] for i in range(2))
-            least = leasts(allocated)
-            slope, half_width = rise(least)
-            problems = [text for text, is_so in (
-                (f"exit status {status}", status != 0), ("resident grows", grown(pages) >= 1 << 20),
-                (f"allocated {problem_of_allocated(least, int(frames))}",
-                 problem_of_allocated(least, int(frames)))) if is_so]
-            wrong += len(problems)
-            print(f"| {name} | {frames} | {time.time() - begin:.0f} | {pages[-1] / 1e6:.1f} | {grown(pages) / 1e3:.0f} | "
-                  f"{allocated[-1] / 1e6:.1f} | {slope / 1e3:.1f} +- {half_width / 1e3:.1f} |"
-                  + "".join(f" {problem}" for problem in problems), flush=True)
-            if status != 0:
-                print(output[-500:])
+    with concurrent.futures.ThreadPoolExecutor(2 if is_share else 1) as threads:
+        for row, problems in threads.map(lambda one: run(build, library, frames, *one), runs.items()):
+            print(row, flush=True)
+            wrong += problems
     print(f"{len(runs)} tried, {wrong} wrong")
     return 1 if wrong else 0
 

@@ -2,11 +2,13 @@
 """Large levels: the time to their first picture, memory, and whether an interrupt ends them at once.
 
 Usage: scale.py BUILD_FOLDER [FIRST LAST]     numbers of the rows below; default: all
+       scale.py BUILD_FOLDER share            1,000 objects against 2,000, and one interrupt: part of every test run
 The first picture has 64x36 pixels and all of its light. Interrupts come at eight moments of that time; for two of the
 levels, the path tracer and the demo are interrupted, too. A level of more
 objects may take no more than n^1.2, 10,000 objects no more than 12 s (a tenth of what they took before they were counted
 on), and nobody waits longer than 0.3 s for an interrupt. Memory: what a level takes beyond a level of 10 objects grows by
 no more than n^1.2, either, and no level takes more than --memory promises by default: three quarters of what is free.
+The share counts seconds of processors, which other work on the machine lengthens little, and lets an interrupt take 2 s.
 """
 import math
 import os
@@ -48,11 +50,11 @@ def start_endless(folder, program, level):
 
 
 def finish(process):
-    """Its exit status, what it printed, and the most memory that it had, in MB."""
+    """Its exit status, what it printed, the most memory that it had, in MB, and the seconds of processors that it took."""
     output = process.stdout.read()
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
-    return process.returncode, output, usage.ru_maxrss / 1024
+    return process.returncode, output, usage.ru_maxrss / 1024, usage.ru_utime + usage.ru_stime
 
 
 def interrupt(process, seconds):
@@ -60,7 +62,7 @@ def interrupt(process, seconds):
     time.sleep(seconds)
     sent = time.time()
     os.kill(process.pid, signal.SIGINT)  # send_signal would take the status of one that is done, and finish finds none
-    status, output, _ = finish(process)
+    status, output, *_ = finish(process)
     if status == 0:
         return None
     assert status == 128 + signal.SIGINT, (status, output[-300:])
@@ -81,9 +83,46 @@ def grown(row, values, fixed=0.0):
     return math.log(max(values[row] - 0.9 * fixed, 1e-9) / max(values[before] - 0.9 * fixed, 1e-9)) / math.log(factor)
 
 
+SHARE = 1000, 2000  # objects
+LATEST_BESIDE_OTHERS = 2.0  # s
+
+
+def power_of(few, many):
+    return math.log(max(many, 1e-9) / max(few, 1e-9)) / math.log(SHARE[1] / SHARE[0])
+
+
+def share(tool):
+    """Exit status of the share."""
+    took, problems = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        for objects in (10, 10, *SHARE):  # the first compiles the shaders
+            level = pathlib.Path(folder) / f"{objects}.glb"
+            make_level.make(level, objects=objects)
+            began = time.time()
+            status, output, memory, seconds = finish(start(tool, level, ["--lights", "64"]))
+            lasted = time.time() - began
+            assert status == 0, output[-300:]
+            took.append((seconds, memory))
+        waited = interrupt(start(tool, level, ["--lights", "64"]), lasted / 2)
+    _, (_, fixed), *large = took
+    powers = power_of(*(seconds for seconds, _ in large)), power_of(*(memory - 0.9 * fixed for _, memory in large))
+    for name, power in zip(("time", "memory"), powers):
+        if power > POWER:
+            problems.append(f"{name} grows as n^{power:.2f}")
+    if waited is None or waited > LATEST_BESIDE_OTHERS:
+        problems.append(f"an interrupt after {lasted / 2:.1f} s took {waited} s")
+    for objects, (seconds, memory) in zip((10, *SHARE), took[1:]):
+        print(f"{objects} objects: {seconds:.1f} s of processors, {memory:.0f} MB")
+    print(f"time grows as n^{powers[0]:.2f}, memory as n^{powers[1]:.2f}; {waited or 0:.2f} s to an interrupt")
+    print("\n".join(problems))
+    return 1 if problems else 0
+
+
 def main():
     folder_of_programs = pathlib.Path(sys.argv[1]) / "bin"
     tool, wrong, times, memory = str(folder_of_programs / "sunfleck"), 0, {}, {}
+    if sys.argv[2:] == ["share"]:
+        return share(tool)
     first, last = (int(a) for a in sys.argv[2:4]) if len(sys.argv) > 3 else (1, len(LEVELS))
     print("| level | to the first picture, s | grows as | MB | grows as | an interrupt takes, s |\n|---|---|---|---|---|---|",
           flush=True)
@@ -97,7 +136,7 @@ def main():
             level = pathlib.Path(folder) / f"{row}.glb"
             make_level.make(level, **what)
             begin, most = time.time(), 0.75 * free_megabytes() + fixed + UNCOUNTED
-            status, output, memory[row] = finish(start(tool, level, more))
+            status, output, memory[row], _ = finish(start(tool, level, more))
             times[row] = time.time() - begin
             if status != 0:
                 wrong += 1
