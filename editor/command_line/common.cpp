@@ -48,6 +48,18 @@ Status apply_setting(gi::Settings& settings, const std::string& assignment) {
     return {};
 }
 
+std::string setting_problem(const std::string& assignment) {
+    gi::Settings settings;
+    const Status status = apply_setting(settings, assignment);
+    if (status)
+        return {};
+    const std::string message = status.error().message; // the parser has named the option
+    for (const std::string prefix : {"--set: ", "--set "})
+        if (message.compare(0, prefix.size(), prefix) == 0)
+            return message.substr(prefix.size());
+    return message;
+}
+
 std::string json_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }

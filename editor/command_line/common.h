@@ -60,6 +60,8 @@ inline std::uint64_t step_of_frame(const SceneOptions& options, std::uint32_t fr
 
 // --set name=value over the lighting settings.
 Status apply_setting(gi::Settings& settings, const std::string& assignment);
+// What is wrong with it, for checks of options; empty: nothing.
+std::string setting_problem(const std::string& assignment);
 // Indented. What is no UTF-8, as names of files may be, is replaced: JSON cannot hold it.
 std::string json_text(const Json& json);
 Json settings_json(const gi::Settings& settings);

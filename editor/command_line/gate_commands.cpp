@@ -1,12 +1,16 @@
 #include "editor/command_line/gate_commands.h"
 
 #include "editor/command_line/bench_compare.h"
+#include "editor/command_line/common.h"
+#include "editor/gate/picture_store.h"
 #include "engine/core/stop_signals.h"
 
 #include "viewer/options.h"
 
 namespace sunfleck::command_line {
 namespace {
+
+constexpr std::int64_t most_pairs = 1'000'000; // at a look of the gate
 
 void add_level_options(CLI::App& app, LevelOptions& options) {
     viewer::add_name(app, "--scene", options.scene, "A built-in scene, or a .scene.json, .gltf or .glb file")
@@ -22,7 +26,8 @@ void add_level_options(CLI::App& app, LevelOptions& options) {
     viewer::add_choice(app, "--preset", options.preset, {"software", "low", "medium", "high", "ultra"}, "Quality")
         ->capture_default_str();
     app.add_option("--set", options.settings, "Lighting setting as name=value; repeatable (see sunfleck info)")
-        ->type_name("NAME=VALUE");
+        ->type_name("NAME=VALUE")
+        ->check(setting_problem);
     viewer::add_whole(app, "--steps-per-frame", options.steps_per_frame, 1, 60, "Simulation steps of 1/60 s a frame");
     viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
 }
@@ -63,11 +68,17 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
     add_level_options(*app, options->level);
     viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures that head must draw, too", "FOLDER");
     viewer::add_name(*app, "--report", options->report, "Write a report as one HTML file", "FILE");
-    app->add_option("--accept-counters", options->accepted_counters, "Counter that was meant to change; repeatable");
+    app->add_option("--accept-counters", options->accepted_counters, "Counter that was meant to change; repeatable")
+        ->check([](const std::string& text) { return text.empty() ? std::string("a name is needed") : std::string(); });
     viewer::add_real(*app, "--time-limit", options->time_limit, 0.1, 1e6,
                      "Seconds that a program may take for an answer");
     app->add_option("--looks", options->looks, "Numbers of pairs at which a verdict is sought")
+        ->type_name("N,N,...")
         ->delimiter(',')
+        ->check([](const std::string& text) {
+            const auto count = viewer::whole_value(text, 1, most_pairs);
+            return count ? std::string() : count.error().message;
+        })
         ->capture_default_str();
     viewer::add_flag(*app, "--skip-work", options->skip_work, "Measure time alone: not all frames' counters");
     viewer::add_whole(*app, "--turns", options->pair.turns, 1, 10000, "Turns of each process in a pair");
@@ -104,7 +115,12 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
     app->add_option("PROGRAM", options->program, "As HEAD of `bench compare` (default: this one)");
     viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures", "FOLDER")->required();
     viewer::add_flag(*app, "--accept", options->accept, "Store what is drawn now, and list what was written");
-    app->add_option("--frame", options->frames, "Frame to store or compare, NAME=NUMBER; repeatable");
+    app->add_option("--frame", options->frames, "Frame to store or compare; repeatable")
+        ->type_name("NAME=NUMBER")
+        ->check([](const std::string& text) {
+            const auto frame = gate::parse_named_frame(text);
+            return frame ? std::string() : frame.error().message;
+        });
     viewer::add_name(*app, "--differences", options->differences, "Folder for pictures of the differences, times eight",
                      "FOLDER");
     viewer::add_real(*app, "--time-limit", options->time_limit, 0.1, 1e6,

@@ -70,12 +70,6 @@ std::string picture_problem(const std::string& text) {
     return kind ? std::string() : kind.error().message;
 }
 
-std::string setting_problem(const std::string& text) {
-    gi::Settings settings;
-    const Status status = apply_setting(settings, text);
-    return status ? std::string() : status.error().message;
-}
-
 // Options that name a scene, a camera and a time, on `render` and `reference` alike.
 void add_scene_options(CLI::App& app, SceneOptions& options) {
     viewer::add_name(app, "SCENE", options.scene, "A .gltf, .glb or .scene.json file, or the name of a built-in scene")

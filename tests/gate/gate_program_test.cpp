@@ -141,7 +141,7 @@ TEST_F(GateProgram, WrongOptionsAreNamedBeforeARevisionIsLookedFor) {
     for (const auto& [options, named] : tries) {
         const Outcome outcome = shell("cd " + folder.string() + " && TMPDIR=" + (folder / "temporary").string() +
                                       " " SUNFLECK_TOOL " bench compare --base no_such_revision " + options);
-        expect(outcome, exit_usage, {"error: ", named});
+        expect(outcome, exit_usage, {named});
         EXPECT_EQ(outcome.output.find("git") == std::string::npos, !options.empty()) << outcome.output;
     }
     EXPECT_TRUE(fs::is_empty(folder / "temporary"));

@@ -5,19 +5,51 @@
 #include "tests/support/option_values.h"
 #include "viewer/lost_devices.h"
 
+#include <iterator>
+#include <map>
+#include <set>
+
 namespace sunfleck::tests {
 namespace {
 
-const std::vector<Command>& commands() {
-    static const std::vector<Command> list = {{{"render"}, {"cornell", "-o", "x.png"}},
-                                              {{"reference"}, {"cornell", "-o", "x.png"}},
-                                              {{"compare"}, {"a.exr", "b.exr"}},
-                                              {{"bench"}, {"kernel"}},
-                                              {{"bench", "level"}, {}},
-                                              {{"bench", "compare"}, {"a"}},
-                                              {{"bench", "pictures"}, {"a", "--stored", "x"}},
-                                              {{"info"}, {}}};
+// What a command needs beside options, by its name in --help.
+const std::map<std::string, std::vector<std::string>>& needed_words() {
+    static const std::map<std::string, std::vector<std::string>> list = {{"render", {"cornell", "-o", "x.png"}},
+                                                                         {"reference", {"cornell", "-o", "x.png"}},
+                                                                         {"compare", {"a.exr", "b.exr"}},
+                                                                         {"bench", {"kernel"}},
+                                                                         {"bench level", {}},
+                                                                         {"bench compare", {"a"}},
+                                                                         {"bench pictures", {"a", "--stored", "x"}},
+                                                                         {"info", {}}};
     return list;
+}
+
+std::vector<Command> commands() {
+    std::vector<Command> list;
+    for (const std::string& name : tool_commands()) {
+        const auto needed = needed_words().find(name);
+        if (needed == needed_words().end())
+            continue; // TheTableHasEachCommand fails
+        std::istringstream words(name);
+        list.push_back({{std::istream_iterator<std::string>(words), {}}, needed->second});
+    }
+    return list;
+}
+
+TEST(RobustOptions, TheTableHasEachCommand) {
+    std::set<std::string> shown, known;
+    for (const std::string& name : tool_commands())
+        shown.insert(name);
+    for (const auto& [name, words] : needed_words())
+        known.insert(name);
+    EXPECT_EQ(shown, known) << "--help, and what this test says that a command needs";
+    for (const Command& command : commands()) {
+        std::vector<std::string> words = command.words;
+        words.insert(words.end(), command.rest.begin(), command.rest.end());
+        const Verdict verdict = parse(words);
+        EXPECT_EQ(verdict.status, exit_done) << verdict.message;
+    }
 }
 
 Verdict read_demo(const std::vector<std::string>& words, demo::Options& options) {

@@ -65,4 +65,34 @@ inline std::vector<Option> options_of(const Command& command) {
     return options_of(parse, command);
 }
 
+// Names after "Subcommands:", a line each.
+inline std::vector<std::string> subcommands_of(const std::string& help) {
+    std::vector<std::string> names;
+    std::istringstream lines(help);
+    std::string line;
+    while (std::getline(lines, line) && line != "Subcommands:") {
+    }
+    while (std::getline(lines, line) && !line.empty())
+        if (line.compare(0, 2, "  ") == 0 && line[2] != ' ')
+            names.push_back(line.substr(2, line.find(' ', 2) - 2));
+    return names;
+}
+
+// All of the tool's commands that --help shows, those of commands behind them: "bench", "bench level".
+inline std::vector<std::string> tool_commands(const std::vector<std::string>& before = {}) {
+    std::vector<std::string> words = before, commands;
+    words.emplace_back("--help");
+    for (const std::string& name : subcommands_of(parse(words).message)) {
+        std::vector<std::string> within = before;
+        within.push_back(name);
+        std::string command;
+        for (const std::string& word : within)
+            command += (command.empty() ? "" : " ") + word;
+        commands.push_back(command);
+        const std::vector<std::string> more = tool_commands(within);
+        commands.insert(commands.end(), more.begin(), more.end());
+    }
+    return commands;
+}
+
 } // namespace sunfleck::tests
