@@ -33,10 +33,15 @@ void add_options(CLI::App& program, Options& options, viewer::PictureSize& size)
     viewer::add_name(program, "--settings", options.state_file,
                      "Layout, recent files and keys (default: sunfleck/editor.json in the configuration folder)",
                      "FILE");
+    viewer::add_name(program, "--widgets", options.widgets,
+                     "For scripts: name, place and value of every visible widget, and where the pointer is, as JSON, "
+                     "written when all input has been shown",
+                     "FILE");
     viewer::add_name(
-        program, "--widgets", options.widgets,
-        "For scripts: name, place and value of every visible widget, written when all input has been shown", "FILE");
-    viewer::add_name(program, "--report", options.report, "For scripts: counters, written at the end", "FILE");
+        program, "--report", options.report,
+        "For scripts: frames and their times, edits, messages and uses of commands as JSON, written at the end "
+        "(editor/README.md has the fields)",
+        "FILE");
 }
 
 } // namespace

@@ -45,7 +45,8 @@ private:
 // Hides entities from copies that show the scene: they are told where those are, and nothing else.
 class HiddenFilter {
 public:
-    // Of what has changed in `document`, if anything has, and in what is hidden. `change`: from the collector.
+    // `change`: what the collector has found, if anything; then what a copy is to be told that does not show `hidden`.
+    // Whatever was hidden or shown again since the last call is told with it, also where nothing else has changed.
     void apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
                std::optional<SceneChange>& change);
     static void hide(const std::unordered_set<Entity>& hidden, SceneChange& change);

@@ -205,7 +205,6 @@ TEST_F(EditorJournal, KeepsEveryEditWhereverTheProgramIsKilled) {
     }
 }
 
-// What was kept is from the future then.
 // Whatever throws on the way out of the program, before anything was saved.
 TEST_F(EditorJournal, AnExceptionLosesNothing) {
     const std::shared_ptr<Document> document = open();
@@ -228,6 +227,7 @@ TEST_F(EditorJournal, AnExceptionLosesNothing) {
     Recovery::discard(left[0]);
 }
 
+// What was kept is from the future then.
 TEST_F(EditorJournal, AClockThatWasSetBack) {
     for (const int pause : {0, 9000}) {
         edit_and_die(5, 20, pause);
