@@ -53,7 +53,7 @@ std::string setting_problem(const std::string& assignment) {
     const Status status = apply_setting(settings, assignment);
     if (status)
         return {};
-    const std::string message = status.error().message; // the parser has named the option
+    std::string message = status.error().message; // the parser has named the option
     for (const std::string prefix : {"--set: ", "--set "})
         if (message.compare(0, prefix.size(), prefix) == 0)
             return message.substr(prefix.size());

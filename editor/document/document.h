@@ -43,8 +43,8 @@ public:
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const std::function<bool(float)>& progress = {},
                                                   bool allow_outside = false);
-    // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace geometry
-    // that belongs to another scene, and, once, a file that file_changed(): the next save replaces it.
+    // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace another
+    // scene's files unless `replace` says so, and, once, a file that file_changed(): the next save replaces it.
     Status save(const std::filesystem::path& path, Replace replace = Replace::own);
     // Whether there is a file of that name which is not the document's.
     bool is_another_file(const std::filesystem::path& path) const;

@@ -33,7 +33,8 @@ Status Document::save(const std::filesystem::path& path, Replace replace) {
         return Error{"cannot save '" + path.string() + "': the name of a scene file ends in .scene.json"};
     const bool is_another = is_another_file(path);
     if (is_another && replace == Replace::own)
-        return Error{"cannot save '" + path.string() + "': there is a file of that name, of another scene"};
+        return Error{"cannot save '" + path.string() +
+                     "': there is a file of that name, of another scene; choose another name"};
     if (!is_another && file_changed() && stamp_of(path)) {
         stamp_ = stamp_of(path_);
         return Error{"'" + path.string() +

@@ -99,14 +99,14 @@ void choose(Session& session) {
         session.dialog = Dialog::none;
         return session.open(path);
     }
-    const bool is_asked = session.document->is_another_file(path) && now.replaces != path;
+    const bool is_another = session.document->is_another_file(path), is_asked = is_another && now.replaces != path;
     now.replaces = is_asked ? path : fs::path();
     if (is_asked) {
         now.problem = "'" + path.filename().string() +
                       "' exists; pressing Save once more replaces it, with its geometry, by this scene";
         return;
     }
-    if (!session.save(path, Replace::any)) {
+    if (!session.save(path, is_another ? Replace::any : Replace::own)) {
         now.problem = session.messages.all().back().text;
         return;
     }

@@ -278,8 +278,7 @@ void Program::tell_scene() {
 }
 
 Status Program::draw(const app::InputState& input) {
-    if ((!input.focused || input.lost_focus) && session_->document->in_gesture())
-        session_->document->cancel();
+    session_->follow_focus(input);
     const Result<bool> visible = display_->acquire();
     if ((!visible || !*visible) && &input == &window().input())
         window().repeat(); // a letter that was typed meanwhile is not lost

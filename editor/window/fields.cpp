@@ -46,7 +46,8 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
     const auto put = [&](double value) {
         return set_all(source, [&](const void* object) { return text_with_part(*source.field, object, part, value); });
     };
-    // Of what no gesture takes back, when a drag began. There is one pointer.
+    // Values before the drag, of objects outside the document, whose gestures do not take them back. There is one
+    // pointer.
     static std::vector<std::string> before;
     const auto put_back = [&] {
         for (std::size_t i = 0; i < before.size() && i < source.objects.size(); ++i)

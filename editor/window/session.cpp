@@ -82,6 +82,11 @@ void Session::take(std::shared_ptr<Document> opened) {
         note_recent(document->path());
 }
 
+void Session::follow_focus(const app::InputState& now) {
+    if ((!now.focused || now.lost_focus) && document->in_gesture())
+        document->cancel();
+}
+
 void Session::open(const std::filesystem::path& path) {
     unless_unsaved([this, path] { open_now(path); });
 }
@@ -100,7 +105,9 @@ void Session::finish_opening(const std::function<void(const Loaded&)>& replace) 
     if (opening == nullptr || !opening->finished())
         return;
     const bool has_edits = document->unsaved() && given_up_ != edits();
-    if (document->in_gesture() || (has_edits && dialog != Dialog::none))
+    // A scene is being saved, or whoever is asked may still want to save it.
+    const bool is_asked = dialog == Dialog::save_as || dialog == Dialog::unsaved;
+    if (document->in_gesture() || is_asked || (has_edits && dialog != Dialog::none))
         return; // when the hand has let go, and one question after the other
     Loaded loaded{opening->path(), nullptr, std::exchange(recovering, {})};
     auto result = opening->take();

@@ -157,6 +157,8 @@ public:
 
     // Replaces the document, as it is when it has been opened.
     void take(std::shared_ptr<Document> opened);
+    // Before a frame is drawn: no gesture goes on while another window has the focus.
+    void follow_focus(const app::InputState& now);
     // Begins to load; asks first if there is something to lose.
     void open(const std::filesystem::path& path);
     void open_now(const std::filesystem::path& path);

@@ -135,6 +135,7 @@ private:
         ui::begin_notes(true);
         ui::begin_number_boxes();
         gui_->begin_frame(input_, 1440, 900, 1.0 / 60.0, 1.0f);
+        session_.follow_focus(input_);
         layout_.take_keys(session_);
         layout_.draw(session_, nullptr);
         gui_->end_frame();
