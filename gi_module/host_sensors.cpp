@@ -1,8 +1,6 @@
 // Light sensors of a foreign host, mirrored into the registry.
 #include "gi_module/host_context.h"
 
-#include <algorithm>
-
 namespace sunfleck::host {
 namespace {
 
@@ -89,7 +87,7 @@ Status Context::step_sensors() {
 }
 
 Status Context::Implementation::step_sensors() {
-    if (description.sensors.empty() && (follower == nullptr || follower->sensors == nullptr))
+    if (description.sensors.empty() && (damaged || follower == nullptr || follower->sensors == nullptr))
         return {};
     if (damaged || follower == nullptr)
         SUNFLECK_TRY(restart());

@@ -2,14 +2,20 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <stdexcept>
+#include <utility>
 
 namespace sunfleck {
 
 template <typename T>
 class Numbered {
 public:
+    // 2^32 - 1 of them in all: more are an exception.
     std::uint32_t add(T thing) {
+        if (next_ == std::numeric_limits<std::uint32_t>::max())
+            throw std::length_error("all numbers have been given; clear() begins anew");
         things_.emplace_hint(things_.end(), next_, std::move(thing));
         return next_++;
     }
@@ -21,7 +27,7 @@ public:
         return found == things_.end() ? nullptr : &found->second;
     }
     const T* find(std::uint32_t number) const { return const_cast<Numbered&>(*this).find(number); }
-    // That is there.
+    // `number` must be there.
     T& operator[](std::uint32_t number) { return things_.find(number)->second; }
     const T& operator[](std::uint32_t number) const { return things_.find(number)->second; }
     void remove(std::uint32_t number) { things_.erase(number); }

@@ -13,4 +13,6 @@ inline std::function<bool(float)> progress_part(const std::function<bool(float)>
     return [&whole, begin, end](float share) { return whole(begin + (end - begin) * share); };
 }
 
+std::function<bool(float)> progress_part(std::function<bool(float)>&&, float, float) = delete;
+
 } // namespace sunfleck

@@ -20,7 +20,7 @@ constexpr float min_extent = 0.3f;    // m: so that flux counts even in a cluste
 // share of the flux, and the others together have it, too.
 constexpr double small_cluster = 6.0, least_share = 0.25;
 
-constexpr std::size_t clusters_between_reports = 64;
+constexpr std::size_t clusters_between_reports = 64; // the first few, which are large, report each
 
 // Position and scaled normal, m.
 using Features = std::array<float, 6>;
@@ -224,7 +224,9 @@ std::vector<LightSample> cluster_samples(const std::vector<LightSample>& samples
     std::priority_queue<Cluster, std::vector<Cluster>, decltype(less)> clusters(less);
     clusters.push(subdivision.measure(0, std::uint32_t(samples.size())));
     while (clusters.size() < count && clusters.top().error > 0) {
-        if (progress && clusters.size() % clusters_between_reports == 0 && !progress(share_divided(clusters.size())))
+        const bool reports =
+            clusters.size() < clusters_between_reports || clusters.size() % clusters_between_reports == 0;
+        if (progress && reports && !progress(share_divided(clusters.size())))
             return {};
         const Cluster worst = clusters.top();
         clusters.pop();

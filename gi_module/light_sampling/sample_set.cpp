@@ -100,8 +100,9 @@ Status SampleSet::update(const SceneView& scene, const SampleRequest& request, c
     const bool fits = is_cause(now), others = !fits && !keep;
     outdated_ = !fits && keep;
     if (others) {
+        cause_ = {}; // should it end before its end
+        SUNFLECK_TRY(make_samples(request, scene, now, options.progress));
         cause_ = now;
-        SUNFLECK_TRY(make_samples(request, scene, options.progress));
     } else if (options.previous_lost) {
         followed_ = followed_before_;
     }

@@ -40,8 +40,8 @@ public:
         // Nobody saw what the update before this one made, so dynamic samples go on from where they were before it.
         bool previous_lost = false;
         bool keep = false; // FrameInput::keep_samples
-        // Called with the share that is done while all samples are made anew, by the calling thread. If it returns
-        // false, the update ends with an error, and the next one begins again.
+        // Called with the share that is done while samples of emitters that stand still are made anew, by the calling
+        // thread. If it returns false, the update ends with an error, and the next one begins again.
         std::function<bool(float)> progress = {};
     };
     // Generates or moves samples. Call once a frame, then update_rows.
@@ -103,7 +103,7 @@ private:
     bool is_cause(const Cause& now) const;
     void keep_emitters(const std::vector<Emitter>& fixed, const std::vector<Emitter>& dynamic);
     bool find_varying(ecs::Registry& registry);
-    Status make_samples(const SampleRequest& request, const SceneView& scene,
+    Status make_samples(const SampleRequest& request, const SceneView& scene, const Cause& cause,
                         const std::function<bool(float)>& progress);
     void sort_samples();
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);

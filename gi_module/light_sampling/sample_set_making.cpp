@@ -28,11 +28,11 @@ std::uint32_t dynamic_share(const SampleRequest& request, std::size_t dynamic_em
 
 } // namespace
 
-Status SampleSet::make_samples(const SampleRequest& request, const SceneView& scene,
+Status SampleSet::make_samples(const SampleRequest& request, const SceneView& scene, const Cause& cause,
                                const std::function<bool(float)>& progress) {
     const raytrace::RayScene& rays = scene.rays;
     const std::uint32_t on_movers =
-        cause_.movers_reflect ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
+        cause.movers_reflect ? std::uint32_t(float(request.lights) * request.mover_share) : 0;
     followed_.movers.reset(scene.changes, scene.meshes, rays, on_movers, request);
     followed_.let_through.clear();
     SampleRequest fixed = request; // for static emitters: what the others leave
@@ -47,10 +47,8 @@ Status SampleSet::make_samples(const SampleRequest& request, const SceneView& sc
     };
     std::vector<LightSample> made = sample_sources()[request.source].make(
         emitters_, fixed, rays, progress ? watched : std::function<bool(float)>());
-    if (stopped) {
-        cause_ = {}; // the next update begins again
+    if (stopped)
         return Error{"preparing the light samples was stopped", ErrorCode::stopped};
-    }
     samples_ = std::move(made);
     for (const auto* dynamic : {&followed_.lights.samples(), &followed_.movers.samples()})
         samples_.insert(samples_.end(), dynamic->begin(), dynamic->end());

@@ -217,6 +217,7 @@ TEST_F(Systems, HostsSeeAndEndWhatComesBeforeTheLight) {
         const Status status = update(*stopped, until);
         ASSERT_FALSE(status) << until;
         EXPECT_EQ(status.error().code, ErrorCode::stopped) << status.error().message;
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end())) << until;
         EXPECT_GE(shares.back(), until);
         EXPECT_LT(shares.back(), until + 0.2f) << "it goes on for long";
     }

@@ -64,6 +64,7 @@ TEST_F(RobustHost, MissingFeaturesAreNamed) {
         claimed_version = version;
         EXPECT_EQ(missing(), lacks) << VK_API_VERSION_MINOR(version);
     }
+    claimed_version = VK_API_VERSION_1_3;
     claimed_missing = &VkPhysicalDeviceVulkan13Features::synchronization2;
     EXPECT_EQ(missing(), Names{"synchronization2"});
     claimed_missing = nullptr;

@@ -85,7 +85,7 @@ inline constexpr SettingValues host_settings[] = {
     {"splat_map_side", {"32", "4", "8"}},
     {"splat_map_filter", {"true", "false", "true"}},
     {"splat_ambient_reach", {"1", "0.01", "1000"}},
-    {"gather_lights", {"none", "none", "none"}},
+    {"gather_lights", {"none", "moving", "all"}},
     {"gather_samples", {"256", "1", "16"}},
     {"gather_rays", {"4096", "16", "256"}},
     {"gather_radius", {"0.7072", "0.01", "0.1"}},
