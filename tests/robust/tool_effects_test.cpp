@@ -39,7 +39,7 @@ ToolCases compare_cases() {
 ToolCases info_cases() {
     return {{"--allow-outside", "in/out.scene.json", ""},
             {"--device", "", "nothing"},
-            {"--json", "two.glb", "", Shows::text, "\"triangles\""},
+            {"--json", "two.glb", "", Shows::text, "\"counts\""},
             {"--schema", "", "", Shows::text, "\"$schema\""},
             {"--reference", "", "", Shows::text, "# Settings, counters and views"}};
 }
