@@ -19,7 +19,7 @@ TEST_F(EditorScene, ShowsWhatRenderDraws) {
         for (std::uint32_t left = edits.below(12); left > 0; --left)
             edits.once();
         const fs::path file = folder_ / "edited.scene.json", drawn = folder_ / "drawn.png";
-        ASSERT_TRUE(document->save(file));
+        ASSERT_TRUE(document->save(file, Replace::any));
         const Picture shown = from_nothing(document);
         ASSERT_NE(shown, nullptr);
         const tests::Outcome outcome = tests::shell(std::string(SUNFLECK_TOOL) + " render " + file.string() + " -o " +
