@@ -290,7 +290,7 @@ bool Document::redo() {
 void Document::apply(Entity entity, ecs::PoolBase& pool, const ecs::Value& value) {
     if (&pool == name_pool_ || &pool == parent_pool_) {
         ++structure_revision_;
-        if (moved_.size() <= by_name_.size()) // else all are found anew anyhow
+        if (moved_.size() <= by_name_.size()) // with more, find_children looks at all entities in any case
             moved_.push_back(entity);
         if (&pool == name_pool_)
             name_changed(entity, registry_.try_get<scene::Name>(entity), value.get());

@@ -121,7 +121,7 @@ public:
     // --- Selection, in the order in which it was made ------------------------------------------------------------
     const std::vector<Entity>& selection() const { return selection_; }
     bool selected(Entity entity) const { return entity.index < selected_.size() && selected_[entity.index]; }
-    void select(std::vector<Entity> entities);
+    void select(const std::vector<Entity>& entities);
     void toggle(Entity entity);
 
     // --- For copies of the document ------------------------------------------------------------------------------

@@ -67,8 +67,8 @@ void Document::find_all_children() {
     children_revision_ = structure_revision_;
 }
 
-// Where few have moved, only they are listed anew: after an edit of one, a large scene takes no longer than a small
-// one.
+// Where few have moved, only they are put in other lists: after an edit of one, a large scene takes no longer than a
+// small one.
 void Document::find_children() {
     constexpr std::size_t many = 64; // there may be for each that has moved
     if (children_revision_ == structure_revision_)
@@ -152,18 +152,20 @@ std::vector<Entity> Document::family(Entity entity) {
     return result;
 }
 
-void Document::select(std::vector<Entity> entities) {
+// `entities` may be the selection itself.
+void Document::select(const std::vector<Entity>& entities) {
     for (const Entity entity : selection_)
         selected_[entity.index] = false;
-    selection_.clear();
+    std::vector<Entity> chosen;
     for (const Entity entity : entities) {
         if (!exists(entity) || selected(entity))
             continue;
         if (entity.index >= selected_.size())
             selected_.resize(entity.index + 1);
         selected_[entity.index] = true;
-        selection_.push_back(entity);
+        chosen.push_back(entity);
     }
+    selection_ = std::move(chosen);
 }
 
 void Document::toggle(Entity entity) {
@@ -172,7 +174,7 @@ void Document::toggle(Entity entity) {
         std::erase(now, entity);
     else
         now.push_back(entity);
-    select(std::move(now));
+    select(now);
 }
 
 // By entity, then component, one of each.
