@@ -58,6 +58,15 @@ protected:
             return picture.settled && picture.pixels != nullptr && picture.revision == document.revision();
         });
     }
+    // The room, of which `scene` shows all of its light by the time this returns. Null: a failure that has been said.
+    static std::shared_ptr<Document> show_room(SceneThread& scene, ChangeCollector& collector) {
+        const std::shared_ptr<Document> document = open_scene();
+        if (document == nullptr)
+            return nullptr;
+        scene.change(*collector.collect(document));
+        scene.show(view(*document));
+        return settled(scene, *document) != nullptr ? document : nullptr;
+    }
     static Picture from_nothing(const std::shared_ptr<Document>& document) {
         return alone(document, document->settings(), view(*document));
     }

@@ -84,12 +84,10 @@ TEST_F(EditorScene, PlayLeavesThePictureAsItWas) {
 
 // Light is made behind the frames wherever frames that make it take half as long again as those that do not.
 TEST_F(EditorScene, LightFollowsBehindTheFrames) {
-    const std::shared_ptr<Document> document = open_scene();
-    ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
     ChangeCollector collector;
-    scene.change(*collector.collect(document));
-    scene.show(view(*document));
+    const std::shared_ptr<Document> document = show_room(scene, collector);
+    ASSERT_NE(document, nullptr);
     const Picture before = settled(scene, *document);
     ASSERT_NE(before, nullptr);
     const std::uint64_t builds = scene.status().builds;
@@ -117,13 +115,10 @@ TEST_F(EditorScene, LightFollowsBehindTheFrames) {
 
 // While light is under way, an edit cancels it; where it was ready sooner, it is tried again.
 TEST_F(EditorScene, ANewEditCancelsLightThatIsOnItsWay) {
-    const std::shared_ptr<Document> document = open_scene();
-    ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
     ChangeCollector collector;
-    scene.change(*collector.collect(document));
-    scene.show(view(*document));
-    ASSERT_NE(settled(scene, *document), nullptr);
+    const std::shared_ptr<Document> document = show_room(scene, collector);
+    ASSERT_NE(document, nullptr);
     EXPECT_EQ(scene.status().cancelled, 0u);
     ecs::PoolBase& transforms = pool_of<scene::Transform>(*document);
     const Entity block = document->find("short block");
@@ -149,13 +144,10 @@ TEST_F(EditorScene, ANewEditCancelsLightThatIsOnItsWay) {
 
 // Light follows edits of a lamp in its samples as they are; once it is left alone, it has those of a start.
 TEST_F(EditorScene, LampsThatWereEditedAreAsAStartShowsThem) {
-    const std::shared_ptr<Document> document = open_scene();
-    ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
     ChangeCollector collector;
-    scene.change(*collector.collect(document));
-    scene.show(view(*document));
-    ASSERT_NE(settled(scene, *document), nullptr);
+    const std::shared_ptr<Document> document = show_room(scene, collector);
+    ASSERT_NE(document, nullptr);
     const Entity lamp = document->find("lamp");
     ASSERT_TRUE(document->exists(lamp));
     ecs::PoolBase& lamps = pool_of<scene::AreaLight>(*document);
@@ -233,13 +225,10 @@ TEST_F(EditorScene, DraggingLeavesNoTrace) {
 
 // A hand that rests without letting go gets shadows and light, too.
 TEST_F(EditorScene, LightFollowsAHandThatRests) {
-    const std::shared_ptr<Document> document = open_scene();
-    ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});
     ChangeCollector collector;
-    scene.change(*collector.collect(document));
-    scene.show(view(*document));
-    ASSERT_NE(settled(scene, *document), nullptr);
+    const std::shared_ptr<Document> document = show_room(scene, collector);
+    ASSERT_NE(document, nullptr);
     const Entity block = document->find("short block");
     ASSERT_TRUE(document->exists(block));
     document->begin("Move block");
