@@ -15,7 +15,7 @@ public:
     // 2^32 - 1 of them in all: more are an exception.
     std::uint32_t add(T thing) {
         if (next_ == std::numeric_limits<std::uint32_t>::max())
-            throw std::length_error("all numbers have been given; clear() begins anew");
+            throw std::length_error("all 2^32 - 1 numbers are used up; clear() starts from 0 again");
         things_.emplace_hint(things_.end(), next_, std::move(thing));
         return next_++;
     }

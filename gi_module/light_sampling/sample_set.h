@@ -40,7 +40,7 @@ public:
         // Nobody saw what the update before this one made, so dynamic samples go on from where they were before it.
         bool previous_lost = false;
         bool keep = false; // FrameInput::keep_samples
-        // Called with the share that is done while samples of emitters that stand still are made anew, by the calling
+        // Called with the share that is done while samples of static emitters are generated, by the calling
         // thread. If it returns false, the update ends with an error, and the next one begins again.
         std::function<bool(float)> progress = {};
     };

@@ -1,4 +1,4 @@
-// How a SampleSet makes all its samples anew.
+// How a SampleSet generates all of its samples.
 #include "gi_module/light_sampling/sample_set.h"
 
 #include "gi_module/light_sampling/sample_source.h"
