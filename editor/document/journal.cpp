@@ -66,24 +66,26 @@ Json json_of(const ecs::PoolBase& pool, const void* value) {
     return json;
 }
 
-// The lines beyond the base, until `visit` says no, or one cannot be read: the last one may have been cut off.
+// The lines beyond the base, until `visit` says no, or one cannot be read: false then. The last one may have been cut
+// off by the end of the program, before its edit was made.
 template <typename Visit>
-void for_each_edit(const std::string& text, const JournalBase& base, const Visit& visit) {
+bool for_each_edit(const std::string& text, const JournalBase& base, const Visit& visit) {
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = text.find('\n', begin);
         if (end == std::string::npos)
-            return;
+            return true;
         const Json json =
             Json::parse(text.begin() + std::ptrdiff_t(begin), text.begin() + std::ptrdiff_t(end), nullptr, false);
         begin = end + 1;
         if (!json.is_object())
-            return;
+            return false;
         if (json.value("epoch", std::uint64_t(0)) != base.epoch ||
             json.value("revision", std::uint64_t(0)) <= base.revision)
             continue;
         if (!visit(json))
-            return;
+            return false;
     }
+    return true;
 }
 
 // Makes the edits of a journal in a document with other handles and numbers.
@@ -220,6 +222,8 @@ JournalWriter::~JournalWriter() {
 Status JournalWriter::create(const std::filesystem::path& path) {
     file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC | O_NOFOLLOW, 0600);
     path_ = path;
+    bytes_ = 0;
+    has_remains_ = false;
     return file_ >= 0 ? Status() : Status(Error{"cannot write '" + path.string() + "': " + std::strerror(errno)});
 }
 
@@ -276,25 +280,36 @@ Status JournalWriter::append(std::uint64_t epoch, std::uint64_t revision, const 
         return {};
     // A crash leaves all of it or a part without its end, which readers leave out. What an edit says is not flushed to
     // disk, which may take as long as a frame: should the machine itself stop, the edits since the last copy are lost.
-    const off_t before = ::lseek(file_, 0, SEEK_END);
-    const Status written = write_all(file_, line, path_);
+    Status written = cut_off_remains();
     if (written)
+        written = write_all(file_, line, path_);
+    if (written) {
+        bytes_ += off_t(line.size());
         return {};
-    // Else the next line would go on from what was written of this one, and be unreadable, too. This edit is missing
-    // then: readers have to stop here.
-    const bool cut = before >= 0 && ::ftruncate(file_, before) == 0;
+    }
+    // This edit is missing then: readers have to stop here.
     complete_ = false;
-    return Error{"an edit could not be kept for a crash: " + written.error().message +
-                 (cut ? "" : "; nor can further ones")};
+    has_remains_ = true;
+    static_cast<void>(cut_off_remains()); // else before the next edit
+    return Error{"an edit could not be kept for a crash: " + written.error().message};
+}
+
+Status JournalWriter::cut_off_remains() {
+    if (!has_remains_)
+        return {};
+    if (::ftruncate(file_, bytes_) != 0)
+        return Error{"cannot write '" + path_.string() + "': " + std::strerror(errno)};
+    has_remains_ = false;
+    return {};
 }
 
 Replayed edits_of_journal(const std::string& text, const JournalBase& base) {
     Replayed result;
-    for_each_edit(text, base, [&](const Json& edit) {
-        result.complete = edit.value("complete", false);
-        if (result.complete)
+    result.complete = for_each_edit(text, base, [&](const Json& edit) {
+        const bool complete = edit.value("complete", false);
+        if (complete)
             result.names.push_back(edit.value("name", std::string()));
-        return result.complete;
+        return complete;
     });
     return result;
 }
@@ -302,16 +317,16 @@ Replayed edits_of_journal(const std::string& text, const JournalBase& base) {
 Replayed replay(Document& document, const std::string& text, const JournalBase& base) {
     Replayed result;
     Player player(document, base);
-    for_each_edit(text, base, [&](const Json& edit) {
+    result.complete = for_each_edit(text, base, [&](const Json& edit) {
         try {
-            result.complete = edit.at("complete").get<bool>() && player.play(edit);
+            if (!edit.at("complete").get<bool>() || !player.play(edit))
+                return false;
+            result.names.push_back(edit.at("name").get<std::string>());
+            return true;
         } catch (const Json::exception&) {
             document.cancel();
-            result.complete = false;
+            return false;
         }
-        if (result.complete)
-            result.names.push_back(edit.at("name").get<std::string>());
-        return result.complete;
     });
     document.select({});
     return result;

@@ -11,6 +11,7 @@
 #include "editor/document/document.h"
 
 #include <span>
+#include <sys/types.h>
 
 namespace sunfleck::editor {
 
@@ -52,7 +53,12 @@ public:
     Status append(std::uint64_t epoch, std::uint64_t revision, const std::string& name);
 
 private:
+    // What a write that failed left of its line: the next line would go on from it, and be unreadable, too.
+    Status cut_off_remains();
+
     int file_ = -1;
+    off_t bytes_ = 0; // of whole lines
+    bool has_remains_ = false;
     std::filesystem::path path_;  // for messages
     std::vector<Update> updates_; // one for each component
     std::map<std::pair<Entity, std::size_t>, std::size_t> places_;

@@ -1,5 +1,6 @@
 // The writer of files, with each of its system calls failing in turn: old or new content, one error, nothing left over.
-// The calls are this program's own, which hand on to the C library's.
+#include "tests/robust/failing_calls.h"
+
 #include "engine/core/file.h"
 #include "engine/core/output.h"
 #include "tests/support/gltf_files.h"
@@ -7,88 +8,15 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdarg>
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <functional>
 #include <gtest/gtest.h>
 #include <map>
 #include <poll.h>
 #include <set>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
-
-namespace {
-
-// Which call fails, and how.
-struct Fault {
-    int at = 0;                 // of the calls
-    int error = 0;              // 0: a write is cut short
-    int count = 0;              // calls so far
-    const char* name = nullptr; // of the call that failed; null: it has not come yet
-};
-thread_local Fault* injected = nullptr; // of this thread
-
-bool strikes(const char* name) {
-    if (injected == nullptr || injected->count++ != injected->at)
-        return false;
-    injected->name = name;
-    errno = injected->error;
-    return injected->error != 0 || std::string_view(name) == "write"; // nothing else can be cut short
-}
-
-template <typename Function>
-Function* next(const char* name) {
-    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
-}
-
-} // namespace
-
-extern "C" {
-
-int open(const char* path, int flags, ...) {
-    va_list arguments;
-    va_start(arguments, flags);
-    const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0;
-    va_end(arguments);
-    static auto* const real = next<int(const char*, int, ...)>("open");
-    return strikes("open") ? -1 : real(path, flags, mode);
-}
-
-ssize_t write(int file, const void* data, size_t bytes) {
-    static auto* const real = next<ssize_t(int, const void*, size_t)>("write");
-    if (!strikes("write"))
-        return real(file, data, bytes);
-    return injected->error != 0 ? -1 : real(file, data, (bytes + 1) / 2);
-}
-
-int fsync(int file) {
-    static auto* const real = next<int(int)>("fsync");
-    return strikes("fsync") ? -1 : real(file);
-}
-
-int rename(const char* from, const char* to) noexcept {
-    static auto* const real = next<int(const char*, const char*)>("rename");
-    return strikes("rename") ? -1 : real(from, to);
-}
-
-int flock(int file, int operation) noexcept {
-    static auto* const real = next<int(int, int)>("flock");
-    return strikes("flock") ? -1 : real(file, operation);
-}
-
-int fchown(int file, uid_t user, gid_t group) noexcept {
-    static auto* const real = next<int(int, uid_t, gid_t)>("fchown");
-    return strikes("fchown") ? -1 : real(file, user, group);
-}
-
-int fchmod(int file, mode_t mode) noexcept {
-    static auto* const real = next<int(int, mode_t)>("fchmod");
-    return strikes("fchmod") ? -1 : real(file, mode);
-}
-}
 
 namespace sunfleck {
 namespace {
@@ -106,13 +34,13 @@ protected:
     // `act` with the call of that number failing.
     Status with_fault(int at, int error, const std::function<Status()>& act) {
         fault = {at, error};
-        injected = &fault;
+        tests::fail_calls_of_this_thread(&fault);
         Status status = act();
-        injected = nullptr;
+        tests::fail_calls_of_this_thread(nullptr);
         return status;
     }
     tests::Folder folder;
-    Fault fault;
+    tests::CallFault fault;
 };
 
 // What a call that fails means for the write: others are done without.
