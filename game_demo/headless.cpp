@@ -54,7 +54,7 @@ Status write_numbered(const std::string& folder, std::uint32_t frame, const io::
 }
 
 Error stopped() {
-    return Error{std::string("stopped by ") + signal_name(stop_signal()), ErrorCode::stopped};
+    return Error{"stopped by " + signal_name(stop_signal()), ErrorCode::stopped};
 }
 
 // Plays a level from a recording, or else from the built-in walk.

@@ -90,7 +90,8 @@ Status load(const ReferenceOptions& options, const std::filesystem::path& path, 
     simulation::set_movers_to_step(scene.registry, step_of_frame(options.scene, scene.last_frame));
     SUNFLECK_ASSIGN(scene.rays, raytrace::RayScene::create());
     scene::deform_meshes(scene.registry, scene.meshes);
-    SUNFLECK_TRY(scene.rays->update(scene.registry, scene.meshes, &scene.textures));
+    SUNFLECK_TRY(scene.rays->update(scene.registry, scene.meshes, &scene.textures,
+                                    viewer::progress_until_stopped("preparing rays")));
     scene.bounds = viewer::scene_bounds(scene.registry, scene.meshes);
     SUNFLECK_ASSIGN(const scene::CameraView start,
                     viewer::find_camera(scene.registry, scene.bounds, options.scene.camera));
@@ -170,7 +171,7 @@ public:
         if (traced && accumulation_.samples >= goal_)
             return {};
         // Sums and counts are whole: nothing fails while samples are added to them.
-        const Error why = traced ? Error{std::string("stopped by ") + signal_name(stop_signal())} : traced.error();
+        const Error why = traced ? Error{"stopped by " + signal_name(stop_signal())} : traced.error();
         if (const Status saved = save(); !saved)
             return Error{why.message + "; " + saved.error().message, why.code};
         return Error{why.message + "; the same command goes on from '" + state_.newest().string() + "'", why.code};

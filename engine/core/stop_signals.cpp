@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <ctime>
 #include <initializer_list>
 #include <sys/resource.h>
@@ -87,7 +88,8 @@ void end_soon() {
 void watch_stop_signals() {
     has_grace = 0;
     watch_interrupts();
-    for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU, SIGHUP})
+    // The last five end a program that does not know them; batch systems send some before they take a machine away.
+    for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF})
         if (signal != SIGHUP || !is_ignored(signal))
             watch(signal);
 }
@@ -96,21 +98,9 @@ int stop_signal() {
     return int(first_signal);
 }
 
-const char* signal_name(int signal) {
-    switch (signal) {
-    case SIGINT:
-        return "SIGINT";
-    case SIGTERM:
-        return "SIGTERM";
-    case SIGQUIT:
-        return "SIGQUIT";
-    case SIGXCPU:
-        return "SIGXCPU";
-    case SIGHUP:
-        return "SIGHUP";
-    default:
-        return "a signal";
-    }
+std::string signal_name(int signal) {
+    const char* const name = ::sigabbrev_np(signal);
+    return name == nullptr ? "signal " + std::to_string(signal) : std::string("SIG") + name;
 }
 
 } // namespace sunfleck

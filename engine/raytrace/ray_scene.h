@@ -79,7 +79,7 @@ public:
                   const scene::TextureStore* textures = nullptr, const std::function<bool(float)>& progress = {});
     // The same for whoever has no ChangeTracker; world transforms must be up to date.
     Status update(ecs::Registry& registry, const scene::MeshStore& meshes,
-                  const scene::TextureStore* textures = nullptr);
+                  const scene::TextureStore* textures = nullptr, const std::function<bool(float)>& progress = {});
 
     // From now on meshes and textures are those of other stores, which hold the same: nothing is built again.
     void continue_with(const scene::MeshStore& meshes, const scene::TextureStore* textures);

@@ -387,8 +387,9 @@ void RayScene::continue_with(const scene::MeshStore& meshes, const scene::Textur
         }
 }
 
-Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures) {
-    return update(implementation_->tracker.collect(registry, meshes), meshes, textures);
+Status RayScene::update(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures,
+                        const std::function<bool(float)>& progress) {
+    return update(implementation_->tracker.collect(registry, meshes), meshes, textures, progress);
 }
 
 } // namespace sunfleck::raytrace

@@ -51,7 +51,7 @@ Status take_step(Run& run, const simulation::StepInput& input) {
     run.recording.save_if_due();
     run.milliseconds.push_back(run.world->sensors().milliseconds());
     note_open(run);
-    return stop_requested() ? Status(Error{std::string("stopped by ") + signal_name(stop_signal())}) : Status();
+    return stop_requested() ? Status(Error{"stopped by " + signal_name(stop_signal())}) : Status();
 }
 
 Status play_all(Run& run, const SolutionRun& options, std::string& problem) {

@@ -83,7 +83,8 @@ TEST_F(RobustReference, PartsOfAPassAreSaved) {
 }
 
 TEST_F(RobustReference, EverySignalThatCanBeCaughtSaves) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU}) {
+    for (const int signal :
+         {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF}) {
         const std::string options = "reference cornell --size 64x48 --spp 100000 -o a.exr";
         const Outcome outcome = stopped(options, until_samples, signal);
         EXPECT_EQ(outcome.status, 128 + signal) << outcome.output;
