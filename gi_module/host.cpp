@@ -1,6 +1,8 @@
 // The plain interface for foreign hosts: a context, from the host's device to settings.
 #include "gi_module/host_context.h"
 
+#include <thread>
+
 namespace sunfleck::host {
 
 namespace {
@@ -31,17 +33,20 @@ Status check_handles(const VulkanHandles& handles) {
 
 Result<std::vector<std::string>> missing_features(VkInstance instance, VkPhysicalDevice physical_device,
                                                   PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
-    return guarded({}, [&]() -> Result<std::vector<std::string>> {
-        SUNFLECK_TRY(check_handle(instance, "instance"));
-        SUNFLECK_TRY(check_handle(physical_device, "physical_device"));
-        if (get_instance_proc_addr == nullptr)
-            get_instance_proc_addr = gpu::loader_functions();
-        if (get_instance_proc_addr == nullptr)
-            return Error{"the Vulkan loader (libvulkan.so.1) was not found", ErrorCode::unsupported};
-        SUNFLECK_ASSIGN(const gpu::InstanceFunctions vk,
-                        gpu::InstanceFunctions::load(instance, get_instance_proc_addr));
-        return gpu::missing_features(vk, physical_device);
-    });
+    return guarded(
+        {},
+        [&]() -> Result<std::vector<std::string>> {
+            SUNFLECK_TRY(check_handle(instance, "instance"));
+            SUNFLECK_TRY(check_handle(physical_device, "physical_device"));
+            if (get_instance_proc_addr == nullptr)
+                get_instance_proc_addr = gpu::loader_functions();
+            if (get_instance_proc_addr == nullptr)
+                return Error{"the Vulkan loader (libvulkan.so.1) was not found", ErrorCode::unsupported};
+            SUNFLECK_ASSIGN(const gpu::InstanceFunctions vk,
+                            gpu::InstanceFunctions::load(instance, get_instance_proc_addr));
+            return gpu::missing_features(vk, physical_device);
+        },
+        __func__);
 }
 
 void enable_features(VkPhysicalDeviceFeatures* features, VkPhysicalDeviceVulkan12Features* features12,
@@ -70,17 +75,26 @@ Context::~Context() {
     implementation_->let_go_if_wanted();
 }
 
-Context::Implementation::Turn::Turn(Implementation& of)
-    : context(of), taken(!of.busy.exchange(true, std::memory_order_acquire)) {
-    if (taken)
-        context.let_go_if_wanted();
+Context::Implementation::Turn::Turn(Implementation& of) : context(of), taken(!of.busy.exchange(true)) {
+    if (!taken)
+        return;
+    while (context.readers > 0) // new ones find it busy
+        std::this_thread::yield();
+    context.let_go_if_wanted();
 }
 
 Context::Implementation::Turn::~Turn() {
     if (!taken)
         return;
     context.let_go_if_wanted();
-    context.busy.store(false, std::memory_order_release);
+    context.busy = false;
+}
+
+// Counted before it looks, so that either it sees the call under way, or that call sees it.
+Context::Implementation::Reading::Reading(const Implementation& of) : context(of), allowed((++of.readers, !of.busy)) {}
+
+Context::Implementation::Reading::~Reading() {
+    --context.readers;
 }
 
 void Context::Implementation::let_go_if_wanted() {
@@ -98,30 +112,33 @@ void Context::abandon() {
 
 Result<std::unique_ptr<Context>> Context::create(const VulkanHandles& handles, LogSink log) {
     const sunfleck::LogSink engine_log = engine_sink(log);
-    return guarded(engine_log, [&]() -> Result<std::unique_ptr<Context>> {
-        SUNFLECK_TRY(check_handles(handles));
-        std::unique_ptr<Context> context(new Context());
-        Implementation& self = *context->implementation_;
-        gpu::HostDevice host;
-        host.instance = handles.instance;
-        host.physical_device = handles.physical_device;
-        host.device = handles.device;
-        host.queue = handles.queue;
-        host.queue_family = handles.queue_family;
-        host.get_instance_proc_addr = handles.get_instance_proc_addr;
-        host.enabled_features = handles.enabled_features;
-        SUNFLECK_ASSIGN(self.device, gpu::Device::adopt(host));
-        self.shaders.add(gi::shaders());
-        self.pipelines = std::make_unique<gpu::PipelineStore>(*self.device, self.shaders);
-        self.resources = std::make_unique<gpu::FrameResources>(*self.device);
-        self.timers = std::make_unique<gpu::Timers>(*self.device);
-        // Here, so that a device that will not do is found at once.
-        SUNFLECK_ASSIGN(self.follower,
-                        Follower::create(*self.device, *self.pipelines, self.description, self.settings));
-        self.log = std::move(log);
-        self.engine_log = engine_sink(self.log);
-        return context;
-    });
+    return guarded(
+        engine_log,
+        [&]() -> Result<std::unique_ptr<Context>> {
+            SUNFLECK_TRY(check_handles(handles));
+            std::unique_ptr<Context> context(new Context());
+            Implementation& self = *context->implementation_;
+            gpu::HostDevice host;
+            host.instance = handles.instance;
+            host.physical_device = handles.physical_device;
+            host.device = handles.device;
+            host.queue = handles.queue;
+            host.queue_family = handles.queue_family;
+            host.get_instance_proc_addr = handles.get_instance_proc_addr;
+            host.enabled_features = handles.enabled_features;
+            SUNFLECK_ASSIGN(self.device, gpu::Device::adopt(host));
+            self.shaders.add(gi::shaders());
+            self.pipelines = std::make_unique<gpu::PipelineStore>(*self.device, self.shaders);
+            self.resources = std::make_unique<gpu::FrameResources>(*self.device);
+            self.timers = std::make_unique<gpu::Timers>(*self.device);
+            // Here, so that a device that will not do is found at once.
+            SUNFLECK_ASSIGN(self.follower,
+                            Follower::create(*self.device, *self.pipelines, self.description, self.settings));
+            self.log = std::move(log);
+            self.engine_log = engine_sink(self.log);
+            return context;
+        },
+        __func__);
 }
 
 Status Context::Implementation::check_ready() const {

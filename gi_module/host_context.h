@@ -115,8 +115,10 @@ struct Context::Implementation {
     Description description;
     std::unique_ptr<Follower> follower;
     Serials serials;
-    // A call is under way. Calls from callbacks of its, and from other threads meanwhile, are refused.
+    // A call that may change the context is under way. Calls from callbacks of its, and from other threads meanwhile,
+    // are refused.
     std::atomic<bool> busy{false};
+    mutable std::atomic<int> readers{0};     // those that only look something up
     std::atomic<bool> abandon_wanted{false}; // seen to by whichever call has the turn, or the next one
     // The follower may be half of this and half of that, because a step failed: the next update makes another.
     bool damaged = false;
@@ -145,9 +147,19 @@ struct Context::Implementation {
         Implementation& context;
         const bool taken; // false: another call has it
     };
+    // Of calls that only look something up, and never wait or call back.
+    struct Reading {
+        explicit Reading(const Implementation& context);
+        ~Reading();
+        Reading(const Reading&) = delete;
+        Reading& operator=(const Reading&) = delete;
+        const Implementation& context;
+        const bool allowed; // false: what there is may be changing
+    };
     void let_go_if_wanted();
+    // `name`: of the host's call, for messages.
     template <typename Call>
-    auto run(const Call& call) noexcept -> decltype(call());
+    auto run(const Call& call, const char* name = __builtin_FUNCTION()) noexcept -> decltype(call());
 
     // Calls change(mirror). The description has the change already; where the mirror cannot follow, it is made again.
     template <typename Change>
@@ -162,14 +174,23 @@ struct Context::Implementation {
     }
 };
 
-// Runs a call of the host's; no exception leaves it.
+// There may be none for the message, either.
+inline Error out_of_memory(const char* call) noexcept {
+    try {
+        return Error{std::string(call) + ": out of memory", ErrorCode::memory};
+    } catch (const std::bad_alloc&) {
+        return Error{"out of memory", ErrorCode::memory};
+    }
+}
+
+// Runs a call of the host's, of that name; no exception leaves it.
 template <typename Call>
-auto guarded(const sunfleck::LogSink& log, const Call& call) noexcept -> decltype(call()) {
+auto guarded(const sunfleck::LogSink& log, const Call& call, const char* name) noexcept -> decltype(call()) {
     try {
         const ThreadLogSink scope(log);
         return call();
     } catch (const std::bad_alloc&) {
-        return Error{"out of memory", ErrorCode::memory};
+        return out_of_memory(name);
     } catch (const std::exception& exception) {
         return Error{exception.what()};
     } catch (...) {
@@ -179,13 +200,14 @@ auto guarded(const sunfleck::LogSink& log, const Call& call) noexcept -> decltyp
 
 // A call of the host's on its context.
 template <typename Call>
-auto Context::Implementation::run(const Call& call) noexcept -> decltype(call()) {
+auto Context::Implementation::run(const Call& call, const char* name) noexcept -> decltype(call()) {
     const Turn turn(*this);
-    return guarded(engine_log, [&]() -> decltype(call()) {
+    const auto taken = [&]() -> decltype(call()) {
         if (!turn.taken)
             return wrong("the context is within another call; callbacks and other threads must not call it meanwhile");
         return call();
-    });
+    };
+    return guarded(engine_log, taken, name);
 }
 
 template <typename T>

@@ -85,7 +85,8 @@ Status Context::update(const Frame& frame) {
         SUNFLECK_TRY(self.serials.check(frame));
         if (self.follower != nullptr)
             self.follower->updated = false;
-        Status status = guarded(self.engine_log, [&] { return self.update(frame); });
+        Status status = guarded(
+            self.engine_log, [&] { return self.update(frame); }, "update");
         // One that was stopped, or that lacks a choice of settings, is whole.
         if (!status && status.error().code != ErrorCode::stopped)
             self.damaged = true;
@@ -165,7 +166,8 @@ void Context::Implementation::drop_removed_meshes() {
 
 std::uint32_t Context::surface_id(std::uint32_t instance) const {
     const Implementation& self = *implementation_;
-    if (self.busy || self.damaged || self.follower == nullptr)
+    const Implementation::Reading reads(self);
+    if (!reads.allowed || self.damaged || self.follower == nullptr)
         return 0;
     const Mirror::Instance* known = self.follower->mirror.instances.find(instance);
     return known == nullptr ? 0 : known->surface;

@@ -79,7 +79,8 @@ Status Context::step_sensors() {
     Implementation& self = *implementation_;
     return self.run([&]() -> Status {
         SUNFLECK_TRY(self.check_ready());
-        Status status = guarded(self.engine_log, [&] { return self.step_sensors(); });
+        Status status = guarded(
+            self.engine_log, [&] { return self.step_sensors(); }, "step_sensors");
         if (!status && self.follower != nullptr)
             self.follower->sensors.reset(); // they begin again
         return status;
@@ -102,7 +103,8 @@ Status Context::Implementation::step_sensors() {
 SensorValue Context::read_sensor(std::uint32_t sensor) const {
     const Implementation& self = *implementation_;
     SensorValue value;
-    if (self.busy || self.damaged || self.follower == nullptr)
+    const Implementation::Reading reads(self);
+    if (!reads.allowed || self.damaged || self.follower == nullptr)
         return value;
     const Mirror& mirror = self.follower->mirror;
     const ecs::Entity* entity = mirror.sensors.find(sensor);

@@ -16,6 +16,8 @@ FrameResources::~FrameResources() {
 }
 
 void FrameResources::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
+    if (serial < serial_)
+        belong_to(serial);
     serial_ = serial;
     const auto recycle = [&](auto& active, auto& spare) {
         const auto done = std::stable_partition(active.begin(), active.end(),
@@ -28,6 +30,19 @@ void FrameResources::begin_frame(std::uint64_t serial, std::uint64_t completed_s
     recycle(active_pools_, spare_pools_);
     while (!retired_.empty() && retired_.front().first <= completed_serial)
         retired_.pop_front();
+}
+
+// Frames of greater serials were begun, but never submitted: the GPU is done with what they used, or retired, when it
+// is done with this one.
+void FrameResources::belong_to(std::uint64_t serial) {
+    const auto lower = [&](std::uint64_t& of) { of = std::min(of, serial); };
+    for (auto* blocks : {&active_blocks_, &spare_blocks_})
+        for (Block& block : *blocks)
+            lower(block.serial);
+    for (Pool& pool : active_pools_)
+        lower(pool.serial);
+    for (auto& entry : retired_)
+        lower(entry.first);
 }
 
 Result<UploadSlice> FrameResources::allocate(VkDeviceSize size) {

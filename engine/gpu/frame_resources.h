@@ -76,7 +76,8 @@ public:
     FrameResources(const FrameResources&) = delete;
     FrameResources& operator=(const FrameResources&) = delete;
 
-    // Starts the frame `serial`; whatever belongs to frames up to `completed_serial` is reused or destroyed.
+    // Starts the frame `serial`; whatever belongs to frames up to `completed_serial` is reused or destroyed. A lesser
+    // serial than before says that those from it on were never submitted.
     void begin_frame(std::uint64_t serial, std::uint64_t completed_serial);
     std::uint64_t serial() const { return serial_; }
 
@@ -125,6 +126,7 @@ private:
     };
     Result<VkDescriptorSet> allocate_set(const Pipeline& pipeline);
     Status next_pool();
+    void belong_to(std::uint64_t serial);
 
     Device& device_;
     std::uint64_t serial_ = 0;

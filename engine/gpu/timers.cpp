@@ -38,6 +38,8 @@ VkQueryPool Timers::take_pool() {
 
 Status Timers::begin_frame(std::uint64_t serial, std::uint64_t completed_serial) {
     SUNFLECK_TRY(collect(completed_serial));
+    for (Frame& frame : frames_) // greater ones were begun, but never submitted
+        frame.serial = std::min(frame.serial, serial);
     frames_.emplace_back();
     frames_.back().serial = serial;
     frames_.back().pool = take_pool();

@@ -149,5 +149,35 @@ TEST_F(RobustHostFrames, CallbacksMayAbandon) {
     EXPECT_EQ(update.error().code, ErrorCode::device_lost);
 }
 
+// Updates that were never recorded may have had any serial: what they held is given back all the same.
+TEST_F(RobustHostFrames, SerialsOfFramesThatWereNeverRecordedHoldNothing) {
+    HostProgram program(device());
+    faulty::state = {};
+    host::VulkanHandles handles = program.handles();
+    handles.get_instance_proc_addr = faulty::get_instance_proc_addr;
+    auto created = host::Context::create(handles);
+    ASSERT_TRUE(created) << created.error().message;
+    const OwnedContext context(created.value().release(), WaitThenDestroy{&device()});
+    describe_room(*context);
+    const HostPicture expected = picture_of_room(program, *context);
+    const auto jump_and_go_on = [&](int rounds) {
+        for (int round = 0; round < rounds; ++round) {
+            host::Frame far = program.next_frame();
+            far.serial += std::uint64_t(1) << (20 + round);
+            ASSERT_TRUE(context->update(far));
+            program.submit_empty();
+            // Maps and what follows from them are made again, and the old ones kept until frames are finished.
+            ASSERT_TRUE(context->set("shadow_map_resolution", round % 2 == 0 ? "64" : "32"));
+            for (int frame = 0; frame < 4; ++frame)
+                ASSERT_TRUE(program.frame(*context, 0));
+        }
+    };
+    jump_and_go_on(4);
+    const std::int64_t live = faulty::state.live;
+    jump_and_go_on(20);
+    EXPECT_LE(faulty::state.live, live) << "objects of Vulkan's";
+    EXPECT_EQ(picture_of_room(program, *context), expected);
+}
+
 } // namespace
 } // namespace sunfleck::tests

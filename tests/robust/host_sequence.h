@@ -5,6 +5,9 @@
 #include "tests/robust/host_frame_calls.h"
 #include "tests/robust/host_settings.h"
 
+#include <functional>
+#include <optional>
+
 namespace sunfleck::tests {
 
 using host::Mobility;
@@ -38,10 +41,39 @@ public:
         ++tally.calls["abandon"];
         log += " abandon";
     }
+    // The scene as the calls that succeeded describe it, told to a context that has none.
+    Status describe_again(host::Context& other) const {
+        for (const std::function<Status(host::Context&)>& call : accepted_)
+            SUNFLECK_TRY(call(other));
+        return {};
+    }
+
+    std::optional<std::uint32_t> an_instance() const {
+        const auto found = std::find(instances_.begin(), instances_.end(), true);
+        return found == instances_.end() ? std::nullopt : std::optional(std::uint32_t(found - instances_.begin()));
+    }
 
 private:
+    // Calls that change the scene, for describe_again.
+    void expect_change(const Status& status, const char* call, std::function<Status(host::Context&)> again,
+                       const std::string& why = "") {
+        if (status)
+            accepted_.push_back(std::move(again));
+        expect(status, call, why);
+    }
+    // The same of one that adds something, which has the same number again.
+    template <typename Add>
+    void expect_added(const Result<std::uint32_t>& made, const char* call, Add add, const std::string& why = "") {
+        const std::uint32_t wanted = made ? made.value() : 0;
+        const auto again = [add = std::move(add), wanted, call](host::Context& other) -> Status {
+            SUNFLECK_ASSIGN(const std::uint32_t number, add(other));
+            return number == wanted ? Status() : Status(Error{std::string(call) + " gives another number"});
+        };
+        expect_change(without_value(made), call, again, why);
+    }
     void clear() {
         wrong_ = false;
+        accepted_.clear();
         expect(context_.clear(), "clear");
         meshes_.clear(), instances_.clear(), lights_.clear(), sensors_.clear(), mesh_of_.clear();
         materials_ = live_ = 0;
@@ -76,7 +108,9 @@ private:
             meshes_.resize(made.value() + 1, false);
             meshes_[made.value()] = true;
         }
-        expect(without_value(made), "add_mesh");
+        expect_added(made, "add_mesh", [mesh](host::Context& other) {
+            return other.add_mesh({mesh.positions, mesh.normals, mesh.indices, mesh.texture_coordinates});
+        });
     }
     bool is_used(std::uint32_t mesh) const {
         for (std::uint32_t i = 0; i < instances_.size(); ++i)
@@ -93,19 +127,32 @@ private:
         const Status status = context_.remove_mesh(mesh);
         if (status)
             meshes_[mesh] = false;
-        expect(status, "remove_mesh");
+        expect_change(status, "remove_mesh", [mesh](host::Context& other) { return other.remove_mesh(mesh); });
     }
     void add_material() {
-        const auto made = context_.add_material(material());
+        const host::MaterialData data = material();
+        const auto made = context_.add_material(data);
         if (made)
             materials_ = made.value() + 1;
-        expect(without_value(made), "add_material");
+        expect_added(made, "add_material", [data, pixels = pixels_](host::Context& other) {
+            return other.add_material(with_pixels(data, pixels));
+        });
     }
     void set_material() {
         if (materials_ == 0)
             return;
         const host::MaterialData data = material();
-        expect(context_.set_material(pick(materials_), data), "set_material");
+        const std::uint32_t number = pick(materials_);
+        expect_change(context_.set_material(number, data), "set_material",
+                      [number, data, pixels = pixels_](host::Context& other) {
+                          return other.set_material(number, with_pixels(data, pixels));
+                      });
+    }
+    // The material's texture refers to pixels_, which the next material has of its own.
+    static host::MaterialData with_pixels(host::MaterialData data, const std::vector<std::uint8_t>& pixels) {
+        if (!data.albedo_texture.pixels.empty())
+            data.albedo_texture.pixels = pixels;
+        return data;
     }
     void add_instance() {
         if (std::count(meshes_.begin(), meshes_.end(), true) == 0 || live_ >= 12)
@@ -134,7 +181,8 @@ private:
             mesh_of_[made.value()] = data.mesh;
             ++live_;
         }
-        expect(without_value(made), "add_instance", why);
+        expect_added(
+            made, "add_instance", [data](host::Context& other) { return other.add_instance(data); }, why);
     }
     // An emitter without area, which is left out and said in the log.
     void add_speck() {
@@ -156,14 +204,19 @@ private:
     }
     void set_transform() {
         const std::uint32_t instance = one_of(instances_);
-        expect(context_.set_transform(instance, matrix()), "set_transform");
+        const host::Matrix4 to = matrix();
+        expect_change(context_.set_transform(instance, to), "set_transform",
+                      [instance, to](host::Context& other) { return other.set_transform(instance, to); });
     }
     void set_surface() {
         const std::uint32_t instance = one_of(instances_);
         host::Vector3 albedo = {real(0, 1), 0.5f, 0.5f}, emission = {0, 0, real(0, 2)};
         if (wrong_)
             spoil(chance() ? std::span<float>(albedo) : std::span<float>(emission));
-        expect(context_.set_surface(instance, albedo, emission), "set_surface");
+        expect_change(context_.set_surface(instance, albedo, emission), "set_surface",
+                      [instance, albedo, emission](host::Context& other) {
+                          return other.set_surface(instance, albedo, emission);
+                      });
     }
     void remove_instance() {
         std::uint32_t instance = one_of(instances_);
@@ -174,21 +227,25 @@ private:
             instances_[instance] = false;
             --live_;
         }
-        expect(status, "remove_instance");
+        expect_change(status, "remove_instance",
+                      [instance](host::Context& other) { return other.remove_instance(instance); });
     }
     void add_light() {
         if (lights_.size() > 8)
             return;
-        const auto made = context_.add_light(light());
+        const host::LightData data = light();
+        const auto made = context_.add_light(data);
         if (made) {
             lights_.resize(made.value() + 1, false);
             lights_[made.value()] = true;
         }
-        expect(without_value(made), "add_light");
+        expect_added(made, "add_light", [data](host::Context& other) { return other.add_light(data); });
     }
     void set_light() {
         const std::uint32_t number = one_of(lights_);
-        expect(context_.set_light(number, light()), "set_light");
+        const host::LightData data = light();
+        expect_change(context_.set_light(number, data), "set_light",
+                      [number, data](host::Context& other) { return other.set_light(number, data); });
     }
     void remove_light() {
         std::uint32_t number = one_of(lights_);
@@ -197,7 +254,7 @@ private:
         const Status status = context_.remove_light(number);
         if (status)
             lights_[number] = false;
-        expect(status, "remove_light");
+        expect_change(status, "remove_light", [number](host::Context& other) { return other.remove_light(number); });
     }
     host::SensorData sensor() {
         host::SensorData data;
@@ -234,20 +291,20 @@ private:
         wrong_ = false;
         expect(context_.step_sensors(), "step_sensors");
         const host::SensorValue value = context_.read_sensor(pick(9));
+        ++tally.calls["read_sensor"];
         for (const float colour : value.irradiance)
             EXPECT_TRUE(colour >= 0.0f && std::isfinite(colour)) << colour;
     }
     void set() {
-        struct Choice {
-            std::string_view name;
-            const char* value;
-        };
-        constexpr Choice bad[] = {{"lights", "-1"}, {"lights", "nan"}, {"lights", ""},          {"", "1"},
-                                  {"nothing", "1"}, {"lights", "1e9"}, {"baked_light", "maybe"}};
         const SettingValues& setting = host_settings[pick(std::size(host_settings))];
-        const Choice choice =
-            wrong_ ? bad[pick(std::size(bad))] : Choice{setting.name, setting.values[pick(setting.values.size())]};
-        expect(context_.set(choice.name, choice.value), "set");
+        if (!wrong_)
+            return expect(context_.set(setting.name, setting.values[pick(setting.values.size())]), "set");
+        if (pick(8) == 0)
+            return expect(context_.set(chance() ? "" : "nothing", "1"), "set", "no such setting");
+        // Of no setting's kind.
+        constexpr const char* bad[] = {"nan", "inf", "1e38", "-1", "maybe", "0x", "1 1"};
+        const std::string value = bad[pick(std::size(bad))];
+        expect(context_.set(setting.name, value), "set", std::string(setting.name) + " = " + value);
     }
     // What returns no status: any number will do.
     void look() {
@@ -259,12 +316,17 @@ private:
         VkPhysicalDeviceFeatures2 features{};
         VkPhysicalDeviceVulkan13Features features13{};
         host::enable_features(chance() ? nullptr : &features.features, nullptr, chance() ? nullptr : &features13);
+        const std::uint64_t free_of_limits = std::uint64_t(1) << 62;
+        host::set_memory_limit(chance() ? 0 : free_of_limits); // of the whole process
         static_cast<void>(context_.surface_id(pick(100)));
         static_cast<void>(host::view_projection({{bad_number(), 0, 0}}, pick(3), 7));
+        for (const char* name : {"enable_features", "set_memory_limit", "surface_id", "view_projection"})
+            ++tally.calls[name];
         expect(context_.statistics().counters.empty() ? Status(Error{"no counters", ErrorCode::device_lost}) : Status(),
                "statistics");
     }
 
+    std::vector<std::function<Status(host::Context&)>> accepted_;
     std::uint32_t materials_ = 0, live_ = 0;
     std::vector<bool> meshes_, instances_, lights_, sensors_; // by number: whether it is there
     std::vector<std::uint32_t> mesh_of_;                      // by instance

@@ -13,9 +13,9 @@
 // Threads. A context may be used from any thread, but by one at a time; update uses all cores. What calls a context
 // while it is within another call, from another thread or from a callback (progress, log), is refused (argument), or
 // returns nothing (surface_id, read_sensor, statistics); abandon() then takes effect when the other call ends. Only
-// destroying it there is undefined. Contexts share nothing: any number of them, on one device or on several, may be
-// used at the same time by threads of their own. None uses a queue or a command pool; those stay under the host's own
-// locks.
+// destroying it there is undefined. surface_id and read_sensor, which only look something up, may run on any number of
+// threads at once. Contexts share nothing: any number of them, on one device or on several, may be used at the same
+// time by threads of their own. None uses a queue or a command pool; those stay under the host's own locks.
 //
 // Ownership. Handles stay the host's. They must be valid (no library can tell a destroyed or foreign handle from a good
 // one; null ones are refused) and outlive the context. A context may be destroyed once the GPU has finished the frames
@@ -25,8 +25,9 @@
 // Errors. Functions that can fail return a Result or Status (engine/core/result.h): a message for people and an
 // ErrorCode for programs. None throws, whatever a callback of the host's does.
 //   argument     The message names the argument, its value and what is allowed. Nothing has changed.
-//   memory       The CPU's or the GPU's. What the call was to add or change is as before. An update or record that
-//                failed may be followed by the next update, which computes what follows from the scene again.
+//   memory       The CPU's or the GPU's; the message names the call or its step. What the call was to add or change is
+//                as before. An update or record that failed may be followed by the next update, which computes what
+//                follows from the scene again.
 //   device_lost  Only destroying or abandoning the context makes sense.
 //   unsupported  The driver, the instance or the device lacks what missing_features names.
 //   stopped      Frame::progress returned false; the next update begins again.
