@@ -12,6 +12,7 @@ The share counts seconds of processors, which other work on the machine lengthen
 How memory grows it can't tell: what 1,000 objects take, some 30 MB, is less than by how much runs of the same level differ.
 """
 import math
+import multiprocessing
 import os
 import pathlib
 import signal
@@ -36,6 +37,14 @@ LONGEST_OF = {1: 12.0}  # s, by row
 UNCOUNTED = 64  # MB: pieces under 64 MiB are let through until they add up to as much (engine/core/memory_limit.h)
 
 
+def make_in_a_process_of_its_own(level, **what):
+    """What it takes would count as memory of the programs that are started afterwards (wait4's ru_maxrss)."""
+    process = multiprocessing.Process(target=make_level.make, args=(level,), kwargs=what)
+    process.start()
+    process.join()
+    assert process.exitcode == 0, process.exitcode
+
+
 def start(tool, level, more):
     return subprocess.Popen([tool, "render", str(level), "-o", str(level.with_suffix(".png")), "--size", "64x36", "--warmup",
                              "0", "--frames", "1", *more], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
@@ -44,7 +53,7 @@ def start(tool, level, more):
 def start_endless(folder, program, level):
     """The path tracer or the demo, which go on until somebody ends them."""
     out, size = str(level.with_suffix("")), ["--size", "64x36"]
-    command = {"reference": ["sunfleck", "reference", str(level), "-o", out + ".pfm", "--spp", "1000000"],
+    command = {"reference": ["sunfleck", "reference", str(level), "-o", out + ".exr", "--spp", "1000000"],
                "demo": ["sunfleck_demo", "--headless", "--scene", str(level), "-o", out, "--frames", "1000000"]}[program]
     return subprocess.Popen([str(folder / command[0]), *command[1:], *size], stdout=subprocess.PIPE,
                             stderr=subprocess.STDOUT)
@@ -132,7 +141,7 @@ def main():
         for row in range(first - 1, last):
             name, what, more = LEVELS[row]
             level = pathlib.Path(folder) / f"{row}.glb"
-            make_level.make(level, **what)
+            make_in_a_process_of_its_own(level, **what)
             begin, most = time.time(), 0.75 * free_megabytes() + fixed + UNCOUNTED
             status, output, memory[row], _ = finish(start(tool, level, more))
             times[row] = time.time() - begin
