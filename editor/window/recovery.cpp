@@ -255,13 +255,16 @@ void Recovery::write(std::unique_ptr<Copy>& copy) {
     io::SaveOptions options;
     options.settings = viewer::unusual_lighting(copy->settings);
     options.exact = true;
-    slot_ = 1 - slot_;
+    // Whatever fails, about.json goes on naming what was whole before.
+    const int slot = 1 - slot_;
     const nlohmann::json json = {
-        {"file", about.file}, {"edits", about.edits}, {"count", about.count}, {"names", base.text()}, {"slot", slot_}};
-    Status status = io::save_scene(own_ / scene_names[slot_], copy->registry, copy->meshes, copy->textures, options);
+        {"file", about.file}, {"edits", about.edits}, {"count", about.count}, {"names", base.text()}, {"slot", slot}};
+    Status status = io::save_scene(own_ / scene_names[slot], copy->registry, copy->meshes, copy->textures, options);
     if (status)
         status = write_file(own_ / about_name, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
-    if (!status)
+    if (status)
+        slot_ = slot;
+    else
         log_warning("unsaved edits could not be kept: " + status.error().message);
     ++writes_;
 }

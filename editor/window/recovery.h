@@ -84,7 +84,7 @@ private:
     bool has_work_ = false, stop_ = false, leave_ = false;
 
     std::uint64_t copy_revision_ = 0; // of the thread's copy
-    int slot_ = 1;                    // that it was written to last
+    int slot_ = 1;                    // that about.json names, if there is one
     std::atomic<std::uint64_t> writes_{0};
     std::thread thread_;
 };

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <ctime>
 #include <fcntl.h>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <sys/file.h>
@@ -173,6 +174,22 @@ Status replace(const OutputTarget& target, std::string_view content, unsigned pe
     return status;
 }
 
+// What says that space can't be reserved here at all says nothing of whether there is any; all else (a full disk, an
+// exhausted quota) is what a write would meet.
+Status reserve(int file, std::uint64_t bytes, const fs::path& path) {
+    if (bytes == 0)
+        return {};
+    constexpr auto most = std::uint64_t(std::numeric_limits<off_t>::max());
+    int reserved = 0;
+    do
+        reserved = ::fallocate(file, 0, 0, off_t(std::min(bytes, most)));
+    while (reserved != 0 && errno == EINTR);
+    if (reserved == 0 || errno == EOPNOTSUPP || errno == ENOSYS || errno == EINVAL || errno == ENODEV)
+        return {};
+    return write_error(path, std::string(std::strerror(errno)) + "; it takes " +
+                                 std::to_string((bytes + 999'999) / 1'000'000) + " MB");
+}
+
 // Once for each name.
 void say_where(const fs::path& path, const fs::path& target) {
     static std::mutex mutex;
@@ -277,10 +294,7 @@ Status try_output(const fs::path& path, std::uint64_t bytes) {
         return {};
     fs::path temporary;
     SUNFLECK_ASSIGN(const Descriptor file, create_temporary(target.path, 0600, path, temporary));
-    Status status;
-    if (bytes > 0 && ::fallocate(file, 0, 0, off_t(bytes)) != 0 && (errno == ENOSPC || errno == EFBIG))
-        status = write_error(path, std::string(std::strerror(errno)) + "; it takes " +
-                                       std::to_string((bytes + 999'999) / 1'000'000) + " MB");
+    Status status = reserve(file, bytes, path);
     ::unlink(temporary.c_str());
     return status;
 }
@@ -314,7 +328,9 @@ Status flush_standard_output() {
     errno = 0;
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return {};
-    return Error{std::string("cannot write to standard output: ") + std::strerror(errno != 0 ? errno : EIO)};
+    // Why an earlier part was not taken is no longer known.
+    const std::string why = errno != 0 ? std::strerror(errno) : "a part of it was not taken, as by a full disk";
+    return Error{"cannot write to standard output: " + why};
 }
 
 void hold_standard_streams() {

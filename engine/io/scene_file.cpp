@@ -169,10 +169,14 @@ Status save_geometry(const std::filesystem::path& path, const std::string& previ
     return {};
 }
 
-// The .glb file that the scene file at `path` currently refers to, if any.
-std::string named_gltf(const std::filesystem::path& path) {
-    const auto text = read_file(path, std::size_t(64) << 20);
-    const json file = text && nesting_is_sane(*text) ? json::parse(*text, nullptr, false) : json();
+// The .glb file that the scene file at `path` currently refers to, if any. An error where that can't be read: it could
+// be any that lies there.
+Result<std::string> named_gltf(const std::filesystem::path& path) {
+    std::error_code code;
+    if (!std::filesystem::is_regular_file(path, code))
+        return std::string();
+    SUNFLECK_ASSIGN(const std::string text, read_file(path));
+    const json file = nesting_is_sane(text) ? json::parse(text, nullptr, false) : json();
     return file.is_object() && file.contains("gltf") && file["gltf"].is_string() ? file["gltf"].get<std::string>()
                                                                                  : std::string();
 }
@@ -199,7 +203,9 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
     const std::filesystem::path path = target.path; // the .glb file lies beside the scene file itself, not its link
     if (const Status status = check_names(registry); !status)
         return failure(status.error().message);
-    const std::string previous = named_gltf(path);
+    const auto previous = named_gltf(path);
+    if (!previous)
+        return failure(previous.error().message);
     json file = {{"sunfleck_scene", scene_file_version}};
     if (!options.gltf_reference.empty()) {
         const std::filesystem::path folder = real_folder(path);
@@ -209,7 +215,7 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
             return failure("the name of '" + options.gltf_reference + "' is not UTF-8, and JSON holds nothing else");
         file["gltf"] = options.gltf_reference;
     } else {
-        SUNFLECK_TRY(save_geometry(path, previous, registry, meshes, textures, file));
+        SUNFLECK_TRY(save_geometry(path, *previous, registry, meshes, textures, file));
     }
     file["entities"] = entities_json(registry, !options.gltf_reference.empty(), options.exact);
     for (const auto& [setting, value] : options.settings)
@@ -221,8 +227,8 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
     // What an earlier save has written, and nothing that someone else may have.
     std::error_code code;
     const std::string stem = stem_of(path);
-    if (previous != file["gltf"] && (previous == stem + ".glb" || previous == stem + ".2.glb"))
-        std::filesystem::remove(path.parent_path() / previous, code);
+    if (*previous != file["gltf"] && (*previous == stem + ".glb" || *previous == stem + ".2.glb"))
+        std::filesystem::remove(path.parent_path() / *previous, code);
     return {};
 }
 

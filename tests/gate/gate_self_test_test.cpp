@@ -1,6 +1,7 @@
 // The self-test's parts: triples of three programs, their file, and the rates that are drawn from them.
 #include "editor/gate/self_test.h"
 #include "engine/core/file.h"
+#include "test_places.h"
 #include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>

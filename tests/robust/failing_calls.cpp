@@ -1,5 +1,6 @@
 #include "tests/robust/failing_calls.h"
 
+#include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <dlfcn.h>
@@ -11,13 +12,19 @@
 
 namespace {
 
-thread_local sunfleck::tests::CallFault* injected = nullptr;
+thread_local sunfleck::tests::CallFault* injected_here = nullptr;
+std::atomic<sunfleck::tests::CallFault*> injected_everywhere = nullptr;
 
 // Whether the call fails now, with errno; a write with errno 0 is cut short.
 bool strikes(const char* name) {
+    sunfleck::tests::CallFault* const injected = injected_here != nullptr ? injected_here : injected_everywhere.load();
     if (injected == nullptr)
         return false;
     const int number = injected->count++;
+    if (number == injected->again) {
+        errno = injected->error;
+        return true;
+    }
     if (number > injected->at) {
         errno = injected->later;
         return injected->later != 0;
@@ -39,7 +46,11 @@ Function* next(const char* name) {
 namespace sunfleck::tests {
 
 void fail_calls_of_this_thread(CallFault* fault) {
-    injected = fault;
+    injected_here = fault;
+}
+
+void fail_calls_of_all_threads(CallFault* fault) {
+    injected_everywhere = fault;
 }
 
 } // namespace sunfleck::tests
@@ -70,6 +81,11 @@ int fsync(int file) {
 int ftruncate(int file, off_t bytes) noexcept {
     static auto* const real = next<int(int, off_t)>("ftruncate");
     return strikes("ftruncate") ? -1 : real(file, bytes);
+}
+
+int fallocate(int file, int mode, off_t offset, off_t bytes) {
+    static auto* const real = next<int(int, int, off_t, off_t)>("fallocate");
+    return strikes("fallocate") ? -1 : real(file, mode, offset, bytes);
 }
 
 int rename(const char* from, const char* to) noexcept {

@@ -1,5 +1,5 @@
 // The writer of files, with each of its system calls failing in turn: old or new content, one error, nothing left over.
-#include "tests/robust/failing_calls.h"
+#include "tests/robust/writers.h"
 
 #include "engine/core/file.h"
 #include "engine/core/output.h"
@@ -134,37 +134,60 @@ TEST_F(RobustWriteFaults, EachCallToAPipeMayFail) {
 
 // The same for a scene of two files: whatever fails, an old or a new scene is there.
 TEST_F(RobustWriteFaults, ASceneIsOldOrNew) {
-    const fs::path path = folder.path / "room.scene.json";
+    const fs::path place = folder / "files", path = place / "room.scene.json";
+    fs::create_directory(place);
     tests::GltfBuilder square;
     square.add_square();
-    const auto save = [&](const std::string& name) {
+    const auto save = [&](int which) {
         tests::World world;
         EXPECT_TRUE(world.import(square.glb()));
         const ecs::Entity entity = world.registry.create();
-        world.registry.emplace<scene::Name>(entity, {name});
+        world.registry.emplace<scene::Name>(entity, {which == 0 ? "old" : "new"});
         world.registry.emplace<scene::Transform>(entity, {});
         return io::save_scene(path, world.registry, world.meshes, world.textures);
     };
-    int tried = 0, kept = 0;
-    for (const int error : {ENOSPC, EACCES, EINTR, 0})
+    const auto load = [&] {
+        tests::World world;
+        if (!io::load_scene(path, world.registry, world.meshes, world.textures))
+            return -1;
+        const bool is_old = !scene::find_by_name(world.registry, "old").is_null(),
+                   is_new = !scene::find_by_name(world.registry, "new").is_null();
+        return is_old == is_new ? -1 : int(is_new);
+    };
+    const tests::Writer scene{"scene", save, load};
+    const tests::WriterCounts counts = tests::FailingWriter(place, scene).try_all();
+    std::printf("%d tried, %d kept the old scene\n", counts.tried, counts.refused);
+}
+
+// Beforehand, with the space that a write takes: what cannot reserve any has nothing to say; all else counts.
+TEST_F(RobustWriteFaults, ATrialFindsWhatAWriteWouldMeet) {
+    const fs::path file = folder / "file";
+    ASSERT_TRUE(write_file(file, "old"));
+    std::map<std::string, int> reached;
+    for (const int error :
+         {ENOSPC, EDQUOT, EFBIG, EACCES, EIO, EROFS, EPERM, EINTR, EOPNOTSUPP, ENOSYS, EINVAL, ENODEV})
         for (int at = 0;; ++at) {
-            for (const auto& entry : fs::directory_iterator(folder.path))
-                fs::remove(entry.path());
-            ASSERT_TRUE(save("old"));
-            const Status status = with_fault(at, error, [&] { return save("new"); });
+            const Status status = with_fault(at, error, [&] { return try_output(file, 10'000'000); });
             if (fault.name == nullptr)
                 break;
-            ++tried;
-            kept += !status;
-            tests::World world;
-            const auto report = io::load_scene(path, world.registry, world.meshes, world.textures);
-            ASSERT_TRUE(report) << fault.name << ", call " << at << ": " << report.error().message;
-            const bool is_new = !scene::find_by_name(world.registry, "new").is_null();
-            EXPECT_NE(is_new, !scene::find_by_name(world.registry, "old").is_null());
-            EXPECT_EQ(is_new, bool(status)) << fault.name << ", call " << at;
+            ++reached[fault.name];
+            const std::string_view call = fault.name;
+            const bool cannot_reserve = error == EOPNOTSUPP || error == ENOSYS || error == EINVAL || error == ENODEV;
+            const bool matters =
+                call == "fallocate" ? !cannot_reserve && error != EINTR : call == "open" && error != EINTR;
+            const std::string what = std::string(call) + ", " + std::strerror(error);
+            EXPECT_EQ(bool(status), !matters) << what;
+            if (!status) {
+                EXPECT_NE(status.error().message.find(file.string()), std::string::npos) << what;
+                EXPECT_NE(status.error().message.find(std::strerror(error)), std::string::npos) << what;
+                EXPECT_EQ(status.error().message.find("10 MB") != std::string::npos, call == "fallocate") << what;
+            }
+            EXPECT_EQ(names(), std::set<std::string>{"file"}) << what;
+            EXPECT_EQ(read_file(file).value(), "old") << what;
         }
-    EXPECT_GT(kept, 0);
-    std::printf("%d tried, %d kept the old scene\n", tried, kept);
+    for (const char* call : {"open", "flock", "fallocate"})
+        EXPECT_GT(reached[call], 0) << call;
+    EXPECT_FALSE(try_output(file, ~std::uint64_t(0))) << "more than a file can have";
 }
 
 } // namespace
