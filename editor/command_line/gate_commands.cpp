@@ -3,6 +3,7 @@
 #include "editor/command_line/bench_compare.h"
 #include "editor/command_line/common.h"
 #include "editor/gate/picture_store.h"
+#include "engine/core/output.h"
 #include "engine/core/stop_signals.h"
 
 #include "viewer/options.h"
@@ -32,8 +33,13 @@ void add_level_options(CLI::App& app, LevelOptions& options) {
     viewer::add_name(app, "--device", options.device, "Vulkan device by number or part of its name");
 }
 
+// What was printed is part of what was asked for: where it did not arrive, the status is no verdict.
+int status_of(const Status& done) {
+    return exit_status(done ? flush_standard_output() : done, int(gate::Outcome::error));
+}
 int outcome_status(const Result<gate::Outcome>& outcome) {
-    return outcome ? int(*outcome) : exit_status(outcome.error(), int(gate::Outcome::error));
+    const int status = status_of(outcome ? Status() : Status(outcome.error()));
+    return status == exit_done ? int(*outcome) : status;
 }
 
 std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
@@ -49,7 +55,7 @@ std::function<int()> add_level(CLI::App& bench, CLI::App*& app) {
     viewer::add_flag(*app, "--serve", options->serve, "Draw what the gate asks for on standard input (docs/gate.md)");
     return [options] {
         watch_interrupts();
-        return exit_status(bench_level(*options), int(gate::Outcome::error));
+        return status_of(bench_level(*options));
     };
 }
 
@@ -116,7 +122,7 @@ std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
     viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures", "FOLDER")->required();
     viewer::add_flag(*app, "--accept", options->accept, "Store what is drawn now, and list what was written");
     app->add_option("--frame", options->frames, "Frame to store or compare; repeatable")
-        ->type_name("NAME=NUMBER")
+        ->type_name("NAME=FRAME")
         ->check([](const std::string& text) {
             const auto frame = gate::parse_named_frame(text);
             return frame ? std::string() : frame.error().message;

@@ -79,6 +79,35 @@ TEST_F(RobustPrograms, HelpToAFullDiskFails) {
     EXPECT_EQ(in_folder(SUNFLECK_GENERATE " --what").status, exit_usage);
 }
 
+// Whatever is printed, of a command that does its work otherwise.
+TEST_F(RobustPrograms, ResultsToAFullDiskFail) {
+    fs::copy_file(fs::path(SUNFLECK_TOOL).parent_path() / "../scenes/cornell.glb", folder / "a.glb");
+    ASSERT_TRUE(write_file(folder / "walk.rec", "sunfleck_input 1\n100 100 0 0 0 0\n"));
+    const std::string render = " render cornell --size 8x6 --lights 4 --warmup 0 -o ";
+    ASSERT_EQ(in_folder(SUNFLECK_TOOL + render + "a.png").status, exit_done);
+    const std::string fake = " \"" SUNFLECK_FAKE " x x\"", gate = " bench compare" + fake + fake;
+    for (const std::string& words : std::vector<std::string>{
+             gate, " info", " info --json", " info --schema", " info --reference", " info a.glb", " info a.glb --json",
+             " compare a.png a.png", " compare a.png a.png --json", " bench reference --repeat 1 --json",
+             " bench level --scene cornell --input walk.rec --set lights=4 --size 8x6 --warmup 0 --frames 2"}) {
+        const std::string command = SUNFLECK_TOOL + words;
+        const Outcome fine = in_folder(command);
+        EXPECT_EQ(fine.status, exit_done) << command << ": " << fine.output;
+        const Outcome full = in_folder("( " + command + " 2>&1 >/dev/full )");
+        // Of the gate, 1 is a verdict.
+        const bool of_gate = words == gate || words.starts_with(" bench level");
+        EXPECT_EQ(full.status, of_gate ? exit_usage : exit_failed) << command << ": " << full.output;
+        EXPECT_TRUE(full.output.find("output: No space left") != std::string::npos ||
+                    full.output.find("as by a full disk") != std::string::npos)
+            << command << ": " << full.output;
+        const std::size_t error = full.output.find("error:");
+        EXPECT_EQ(full.output.find("error:", error + 1), std::string::npos) << command << ": " << full.output;
+    }
+    const Outcome graph = in_folder("( " SUNFLECK_TOOL + render + "b.png --print-graph 2>&1 >/dev/full )");
+    EXPECT_EQ(graph.status, exit_failed) << graph.output;
+    EXPECT_NE(graph.output.find("standard output"), std::string::npos) << graph.output;
+}
+
 // The disk is full when the scenes are written once more: all of the old ones are there.
 TEST_F(RobustPrograms, ScenesAreOldOrNew) {
     ASSERT_EQ(in_folder(SUNFLECK_GENERATE " scenes").status, exit_done);
