@@ -82,7 +82,7 @@ Status parse_boolean(const Field& field, void* object, std::string_view text) {
     const bool on = text == "true" || text == "on" || text == "1";
     const bool off = text == "false" || text == "off" || text == "0";
     if (!on && !off)
-        return Error{fmt::format("'{}' is not a value of '{}': on or off is needed", text, field.name)};
+        return Error{fmt::format("'{}' is not a value of '{}': true or false is needed", text, field.name)};
     member<bool>(field, object) = on;
     return {};
 }

@@ -85,16 +85,35 @@ ToolCases level_cases() {
             {"--scene", without("--scene"), "cornell", Shows::text, "\"scene\":\"cornell\""}};
 }
 
+// A command line of a program that makes its times up, as quickly as they are asked for.
+std::string made_up(const std::string& options = "") {
+    return "\"" SUNFLECK_FAKE " x x " + options + "\" ";
+}
+
+// What is handed on to programs, by one that says what it was given, and ends, where that is one of these.
+const std::vector<std::pair<std::string, std::string>> handed_on = {{"--scene", "cornell"},     {"--size", "33x44"},
+                                                                    {"--preset", "ultra"},      {"--set", "lights=12"},
+                                                                    {"--steps-per-frame", "4"}, {"--device", "other"}};
+
+// The self-test goes on where it was stopped, in a folder that has what it would build for hours.
 ToolCases gate_cases() {
-    const std::string programs = "of two programs, which draw for minutes: tests/gate",
-                      self_test = "of the self-test, which builds the project for hours: tests/gate";
+    const std::string equal = made_up() + made_up(), plays = "./plays.sh ./plays.sh --input walk.rec ";
     ToolCases cases = {{"--report", "base.json base.json", "made.html", Shows::file, "made.html"},
-                       {"--accept-counters", "base.json head.json", "changed_counter"}};
-    for (const char* option : {"--base", "--scene", "--input", "--size", "--preset", "--set", "--steps-per-frame",
-                               "--device", "--stored", "--time-limit", "--looks", "--skip-work", "--turns", "--seed"})
-        cases.push_back(not_tried(option, programs));
-    for (const char* option : {"--self-test", "--triples", "--rebuilds", "--folder"})
-        cases.push_back(not_tried(option, self_test));
+                       {"--accept-counters", "base.json head.json", "changed_counter"},
+                       {"--base", equal, "no_such_revision"},
+                       {"--stored", equal, "nothing"},
+                       {"--looks", made_up() + made_up("slow light by 1.06"), "2", Shows::text, "cannot tell"},
+                       {"--skip-work", made_up() + made_up("count 417 off 1"), ""},
+                       {"--turns", made_up("frames 150") + made_up("frames 150"), "10000"},
+                       not_tried("--seed", "which frames are drawn in which order is not said"),
+                       not_tried("--time-limit", "300 s without it; in GateProgram.ProgramsThatBreakGetOneMessage"),
+                       {"--input", "./plays.sh ./plays.sh ", "nothing"},
+                       {"--self-test", "--triples 12 --rebuilds 2 ", "", Shows::text, "equal builds:"},
+                       {"--triples", "--self-test --rebuilds 2 ", "154", Shows::text, "(77 triples)"},
+                       {"--rebuilds", "--self-test --triples 12 ", "16", Shows::text, "building 'rebuild_16'"},
+                       {"--folder", "--self-test --triples 12 --rebuilds 2 ", "made", Shows::text, "building 'base'"}};
+    for (const auto& [option, value] : handed_on)
+        cases.push_back({option, plays, value, Shows::text, option + " " + value});
     return cases;
 }
 
@@ -183,6 +202,27 @@ protected:
         ASSERT_TRUE(write_file(folder / "walk.rec", "sunfleck_input 1\n100 100 0 0 0 0\n"));
     }
 
+    // For the gate: see gate_cases.
+    void make_programs() const {
+        const auto write_program = [&](const std::filesystem::path& path, const std::string& lines) {
+            ASSERT_TRUE(write_file(path, "#!/bin/sh\n" + lines + "exec " SUNFLECK_FAKE " x x\n", 0777));
+        };
+        std::string answers = "case \"$*\" in\n";
+        for (const auto& [option, value] : handed_on)
+            answers.append("*\"").append(option).append(" ").append(value).append("\"*) ;;\n");
+        write_program(folder / "plays.sh", answers + "*) exec " SUNFLECK_FAKE " x x;;\nesac\n"
+                                                     "echo \"given $*\" >&2\nexit 7\n");
+        const std::filesystem::path prepared = folder / "build/gate/self-test";
+        std::filesystem::create_directories(prepared / "bin");
+        for (const char* name : {"base", "slow"})
+            write_program(prepared / "bin" / name, "");
+        for (int i = 1; i <= 15; ++i)
+            write_program(prepared / "bin" / ((i < 10 ? "rebuild_0" : "rebuild_") + std::to_string(i)), "");
+        ASSERT_TRUE(write_file(prepared / "amounts.json", R"({"shadow maps": 1, "low-resolution light": 1,
+                                                              "g-buffer": 1, "visibility": 1})"));
+        ASSERT_EQ(shell("cd '" + folder.path.string() + "' && git init -q").status, 0);
+    }
+
     const Folder folder{"sunfleck_effects"};
 
 private:
@@ -229,6 +269,7 @@ TEST_F(RobustToolEffects, OfBenchCompare) {
     for (json& frame : level["each_frame"])
         frame["counters"]["changed_counter"] = 2;
     ASSERT_TRUE(write_file(folder / "head.json", level.dump()));
+    make_programs();
     judge_all("bench compare");
 }
 

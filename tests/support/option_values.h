@@ -117,12 +117,34 @@ inline std::vector<std::string> ends_of(const std::string& type) {
     return {before, word.substr(0, word.find(','))};
 }
 
+// "on" and "off" of "on | off:{on,off}"; none of other types.
+inline std::vector<std::string> choices_of(const std::string& type) {
+    std::vector<std::string> choices;
+    if (type.find(" | ") == std::string::npos)
+        return choices;
+    std::istringstream words(type.substr(0, type.find_first_of("=:")));
+    for (std::string word; words >> word;)
+        if (word != "|")
+            choices.push_back(word);
+    return choices;
+}
+
+// What a message says is allowed: a number's range, a choice's words, the form of all else that has one.
+inline std::vector<std::string> allowed_by(const std::string& type) {
+    if (range_of(type))
+        return ends_of(type);
+    for (const char* form : {"WIDTHxHEIGHT", "NAME=FRAME"})
+        if (type.compare(0, std::string_view(form).size(), form) == 0)
+            return {form};
+    return choices_of(type);
+}
+
 inline void expect_refused(const Verdict& verdict, const Option& option, const std::string& what) {
     const std::string shown = what + ": " + verdict.message.substr(0, 300);
     EXPECT_EQ(verdict.status, exit_usage) << shown;
     EXPECT_NE(verdict.message.find(option.name), std::string::npos) << shown;
-    for (const std::string& end : range_of(option.type) ? ends_of(option.type) : std::vector<std::string>())
-        EXPECT_NE(verdict.message.find(end), std::string::npos) << shown << " (" << option.type << ")";
+    for (const std::string& allowed : allowed_by(option.type))
+        EXPECT_NE(verdict.message.find(allowed), std::string::npos) << shown << " (" << option.type << ")";
 }
 
 // All values at one option. `words_of`: the whole command line, with a value.
@@ -170,14 +192,8 @@ inline std::vector<std::string> sensible_values(const std::string& type) {
         return ends_of(type);
     if (type.compare(0, 12, "WIDTHxHEIGHT") == 0)
         return {"33x44"};
-    if (type.find(" | ") == std::string::npos)
-        return {"some_name", "/"}; // some folders have to be there
-    std::istringstream words(type.substr(0, type.find('=')));
-    std::vector<std::string> choices;
-    for (std::string word; words >> word;)
-        if (word != "|")
-            choices.push_back(word);
-    return choices;
+    const std::vector<std::string> choices = choices_of(type);
+    return choices.empty() ? std::vector<std::string>{"some_name", "/"} : choices; // some folders have to be there
 }
 
 // Each option of --help has an effect on what is read, of the type Options, from the command line.
