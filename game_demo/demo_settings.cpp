@@ -137,7 +137,7 @@ LoadedSettings load_settings(const std::filesystem::path& path) {
     const nlohmann::json file = nlohmann::json::parse(*text, nullptr, false);
     if (file.is_discarded() || !file.is_object()) {
         result.problem = "'" + path.string() + "' is damaged; default settings are used";
-        std::filesystem::rename(path, path.string() + ".damaged", code);
+        set_aside(path);
         return result;
     }
     for (const Field& field : DemoSettings::description().fields) {

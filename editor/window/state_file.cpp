@@ -91,7 +91,7 @@ EditorState load_state(const std::filesystem::path& path, std::string& problem, 
     const Json json = Json::parse(*text, nullptr, false);
     if (!json.is_object()) {
         problem = "'" + path.string() + "' is damaged; layout and keys are the usual ones";
-        std::filesystem::rename(path, path.string() + ".damaged", code);
+        set_aside(path);
         return state;
     }
     if (const auto found = json.find("layout"); found != json.end() && found->is_object())

@@ -50,6 +50,14 @@ std::vector<std::filesystem::path> folder_content(const std::filesystem::path& f
     return result;
 }
 
+void set_aside(const std::filesystem::path& path) {
+    constexpr std::string_view ending = ".damaged";
+    constexpr std::size_t longest = 255; // bytes, of names
+    std::string name = path.filename().string().substr(0, longest - ending.size());
+    std::error_code code;
+    std::filesystem::rename(path, path.parent_path() / name.append(ending), code);
+}
+
 std::filesystem::path free_path(const std::filesystem::path& path) {
     std::filesystem::path result = path;
     std::error_code code;

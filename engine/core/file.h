@@ -25,6 +25,10 @@ std::vector<std::filesystem::path> folder_content(const std::filesystem::path& f
 // `path`, or with the lowest free number behind its stem: "trace 2.json".
 std::filesystem::path free_path(const std::filesystem::path& path);
 
+// Renames a damaged file, so that what is written next does not replace it: ".damaged" behind its name, whose end is
+// left out where names may not be as long. Where that fails, it stays.
+void set_aside(const std::filesystem::path& path);
+
 // The one writer of files. Writes a temporary file in the folder of `path`, flushes it to disk and renames it over
 // `path`, which keeps its owner and permissions; a new file gets `permissions`, less the process's mask. On any failure
 // (no space, no permission) the temporary file is removed and `path` keeps its previous content; what a killed program

@@ -8,13 +8,15 @@ namespace {
 
 constexpr std::size_t size_limit = std::size_t(64) << 20;
 
+constexpr std::size_t longest_stem = 200; // bytes: a hash, endings and set_aside's go behind it
+
 // Levels of one name in two folders have files of their own.
 std::string file_name_of(const std::string& identity) {
     const std::string name = std::filesystem::path(identity).filename().string();
     const std::string stem = name.substr(0, name.find('.'));
     if (identity == name)
         return stem;
-    return stem + "_" + hash_text(hash_bytes(hash_start, identity.data(), identity.size()));
+    return stem.substr(0, longest_stem) + "_" + hash_text(hash_bytes(hash_start, identity.data(), identity.size()));
 }
 
 } // namespace
@@ -58,9 +60,7 @@ bool CheckpointFiles::load(GameWorld& world, std::string& message) const {
         const Status loaded = text ? load_game(world, level_, *text) : Status(text.error());
         if (loaded)
             return true;
-        std::filesystem::path aside = path;
-        aside += ".damaged";
-        std::filesystem::rename(path, aside, code);
+        set_aside(path);
         if (message.empty())
             message = "The checkpoint '" + path.string() + "' was set aside: " + loaded.error().message;
     }

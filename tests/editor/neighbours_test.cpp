@@ -177,6 +177,20 @@ TEST(EditorState, ScenesReachOutsideOnlyWhereTheyMay) {
     EXPECT_EQ(options.memory_mib, 4000u);
 }
 
+TEST(EditorDocuments, NamesOf255Bytes) {
+    const tests::Folder folder("sunfleck_editor_long_names");
+    const fs::path path = folder / std::string(244, 'n').append(".scene.json");
+    editor::Document document;
+    for (int times = 0; times < 2; ++times) {
+        editor::add_from(document, scene::entity_templates().front(), vec3(1.0f), 0.5f);
+        const Status saved = document.save(path);
+        ASSERT_TRUE(saved) << saved.error().message;
+        const auto opened = editor::Document::open(path);
+        ASSERT_TRUE(opened) << opened.error().message;
+        EXPECT_EQ((*opened)->entity_count(), document.entity_count());
+    }
+}
+
 // In its window.
 class EditorWindowNeighbours : public testing::Test {
 protected:
@@ -247,22 +261,25 @@ TEST_F(EditorWindowNeighbours, TwoEditorsShareTheirSettings) {
 TEST_F(EditorWindowNeighbours, OddNamesOfFiles) {
     int number = 0;
     for (const std::string& name :
-         {std::string("a b\nc"), std::string("\xff\xfe\x80"), std::string("$(x) '\"`;*"), std::string(200, 'n')}) {
+         {std::string("a b\nc"), std::string("\xff\xfe\x80"), std::string("$(x) '\"`;*"), std::string("255 bytes")}) {
+        const auto called = [&](const std::string& ending) { // as long as names can be
+            return (name == "255 bytes" ? std::string(255 - ending.size(), 'n') : name) + ending;
+        };
         const fs::path scenes = fs::path(SUNFLECK_TOOL).parent_path() / "../scenes";
-        fs::copy_file(scenes / "cornell.glb", folder / (name + ".glb"));
+        fs::copy_file(scenes / "cornell.glb", folder / called(".glb"));
         const std::string widgets = "widgets" + std::to_string(++number) + ".json";
-        const pid_t process =
-            start("HOME=/nowhere",
-                  {"--settings", name + ".settings", "--report", name + ".report", (folder / (name + ".glb")).string()},
-                  widgets);
+        const pid_t process = start(
+            "HOME=/nowhere",
+            {"--settings", called(".settings"), "--report", called(".report"), (folder / called(".glb")).string()},
+            widgets);
         EXPECT_TRUE(DrivenDisplay::wait_until([&] {
             return value(widgets, "menu/title").find(".glb") != std::string::npos;
         })) << name;
         EXPECT_EQ(DrivenDisplay::end(process, SIGTERM), 128 + SIGTERM) << read_file(folder / "log").value();
         for (const char* ending : {".settings", ".report"})
-            EXPECT_TRUE(nlohmann::json::accept(read_file(folder / (name + ending)).value())) << name << ending;
+            EXPECT_TRUE(nlohmann::json::accept(read_file(folder / called(ending)).value())) << name << ending;
         const std::string again = "widgets" + std::to_string(++number) + ".json";
-        EXPECT_EQ(DrivenDisplay::end(start("HOME=/nowhere", {"--settings", name + ".settings"}, again), SIGTERM),
+        EXPECT_EQ(DrivenDisplay::end(start("HOME=/nowhere", {"--settings", called(".settings")}, again), SIGTERM),
                   128 + SIGTERM)
             << "the file that it opened is in the list of recent ones";
     }

@@ -100,6 +100,24 @@ TEST(GameCheckpoints, AClockThatWasSetBack) {
     EXPECT_EQ(hash_of(other), hash_of(played));
 }
 
+// As long as a scene's file can be called.
+TEST(GameCheckpoints, OfALevelWithALongName) {
+    const Folder folder;
+    const std::string level = (folder.path / std::string(244, 'n').append(".scene.json")).string(),
+                      other = (folder.path / std::string(243, 'n').append("o.scene.json")).string();
+    const CheckpointFiles files(folder.path, level), files_of_other(folder.path, other);
+    for (int times = 0; times < 2; ++times) {
+        ASSERT_TRUE(files.write("game"));
+        ASSERT_TRUE(files_of_other.write("another game"));
+    }
+    EXPECT_EQ(read_file(files.older()).value(), "game");
+    EXPECT_EQ(read_file(files_of_other.newest()).value(), "another game");
+    Played played;
+    std::string message;
+    EXPECT_FALSE(files.load(*played.world, message));
+    EXPECT_FALSE(files.any()) << "set aside";
+}
+
 // Damages the newest of two checkpoints by `harm`; the older one is loaded, and the newest set aside.
 void expect_older(const std::function<std::string(std::string)>& harm, const std::string& why) {
     const Folder folder;

@@ -16,8 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 using tests::DrivenDisplay;
 
+const std::string longest = "255 bytes";
+
+// The longest: as long as names can be.
+std::string with_ending(const std::string& name, const std::string& ending) {
+    return (name == longest ? std::string(255 - ending.size(), 'n') : name) + ending;
+}
+
 const std::vector<std::string>& names_of_outputs() {
-    static const std::vector<std::string> names = {"a b\nc", "\xff\xfe\x80", "$(x) '\"`;*", std::string(240, 'n')};
+    static const std::vector<std::string> names = {"a b\nc", "\xff\xfe\x80", "$(x) '\"`;*", longest};
     return names;
 }
 
@@ -47,7 +54,7 @@ protected:
 
 TEST_F(RobustDemoNeighbours, OddNamesWithoutAWindow) {
     for (const std::string& name : names_of_outputs()) {
-        const std::string record = folder / (name + ".rec"), output = folder / (name + ".out");
+        const std::string record = folder / with_ending(name, ".rec"), output = folder / with_ending(name, ".out");
         const std::vector<std::string> headless = {"--headless", "--size", "16x16", "--pictures", "1", "--frames", "3"};
         std::vector<std::string> recorded = headless, played = headless;
         recorded.insert(recorded.end(), {"-o", output, "--record", record});
@@ -55,7 +62,7 @@ TEST_F(RobustDemoNeighbours, OddNamesWithoutAWindow) {
         EXPECT_EQ(run(recorded), 0) << name;
         EXPECT_EQ(run(played), 0) << name;
         EXPECT_TRUE(fs::exists(fs::path(output) / "frame_00002.png")) << name;
-        EXPECT_TRUE(nlohmann::json::accept(content(name + ".out/stats.json"))) << name;
+        EXPECT_TRUE(nlohmann::json::accept(content(with_ending(name, ".out") + "/stats.json"))) << name;
     }
 }
 
@@ -68,23 +75,28 @@ protected:
         display.emplace(folder / "display");
     }
     // Until it shows the title.
-    pid_t start(const std::string& settings, const std::string& state, const std::vector<std::string>& options = {}) {
-        std::vector<std::string> all = {"env",
-                                        "XDG_DATA_HOME=" + folder.path.string(),
-                                        "ALSOFT_DRIVERS=null",
-                                        SUNFLECK_DEMO,
-                                        "--scene",
-                                        "cornell",
-                                        "--size",
-                                        "96x54",
-                                        "--settings",
-                                        folder / settings,
-                                        "--state",
-                                        folder / state};
+    pid_t start_in(const std::vector<std::string>& environment, const std::string& state,
+                   const std::vector<std::string>& options) {
+        std::vector<std::string> all = {"env"};
+        all.insert(all.end(), environment.begin(), environment.end());
+        all.insert(all.end(), {"ALSOFT_DRIVERS=null", SUNFLECK_DEMO, "--scene", "cornell", "--size", "96x54", "--state",
+                               (folder / state).string()});
         all.insert(all.end(), options.begin(), options.end());
         const pid_t process = display->launch(all, folder / "log");
         EXPECT_TRUE(DrivenDisplay::wait_until([&] { return screen(state) == "title"; }, 90.0)) << content("log");
         return process;
+    }
+    pid_t start(const std::string& settings, const std::string& state, std::vector<std::string> options = {}) {
+        options.insert(options.end(), {"--settings", (folder / settings).string()});
+        return start_in({"XDG_DATA_HOME=" + folder.path.string()}, state, options);
+    }
+    // Presses the key until the condition holds, or for long.
+    void press(const char* key, const std::function<bool()>& until) {
+        const std::string window = display->window("Lantern House$");
+        for (int tries = 0; tries < 10 && !until(); ++tries) {
+            display->run("xdotool windowfocus --sync " + window + " key " + std::string(key));
+            DrivenDisplay::wait_until(until, 3.0);
+        }
     }
     std::string screen(const std::string& state) const {
         const auto json = nlohmann::json::parse(content(state), nullptr, false);
@@ -106,29 +118,40 @@ TEST_F(RobustDemoWindow, TwoShareTheirSettings) {
 }
 
 TEST_F(RobustDemoWindow, OddNames) {
-    for (const std::string& name : {names_of_outputs()[0], names_of_outputs()[1]}) {
-        fs::create_directories(folder / name);
-        const pid_t process = start(name + ".json", name + ".state",
-                                    {"--screenshots", folder / name, "--record", folder / (name + ".rec")});
-        const std::string window = display->window("Lantern House$");
-        const auto press = [&](const char* key) {
-            display->run("xdotool windowfocus --sync " + window + " key " + std::string(key));
-        };
-        const auto has_picture = [&] { return !fs::is_empty(folder / name); };
-        for (int tries = 0; tries < 10 && screen(name + ".state") != "playing"; ++tries) {
-            press("Return");
-            DrivenDisplay::wait_until([&] { return screen(name + ".state") == "playing"; }, 3.0);
-        }
-        for (int tries = 0; tries < 10 && !has_picture(); ++tries) {
-            press("p");
-            DrivenDisplay::wait_until(has_picture, 3.0);
-        }
+    for (const std::string& name : {names_of_outputs()[0], names_of_outputs()[1], longest}) {
+        const std::string pictures = folder / with_ending(name, ""), state = with_ending(name, ".state");
+        fs::create_directories(pictures);
+        const pid_t process = start(with_ending(name, ".json"), state,
+                                    {"--screenshots", pictures, "--record", folder / with_ending(name, ".rec")});
+        const auto has_picture = [&] { return !fs::is_empty(pictures); };
+        press("Return", [&] { return screen(state) == "playing"; });
+        press("p", has_picture);
         EXPECT_TRUE(has_picture()) << name << ": " << content("log");
         EXPECT_EQ(DrivenDisplay::end(process, SIGTERM), 128 + SIGTERM) << content("log");
         for (const char* ending : {".json", ".state", ".rec"})
-            EXPECT_TRUE(fs::exists(folder / (name + ending))) << name << ending;
-        EXPECT_TRUE(nlohmann::json::accept(content(name + ".json")));
+            EXPECT_TRUE(fs::exists(folder / with_ending(name, ending))) << name << ending;
+        EXPECT_TRUE(nlohmann::json::accept(content(with_ending(name, ".json"))));
     }
+}
+
+// It plays all the same, and keeps nothing in places that are anybody's.
+TEST_F(RobustDemoWindow, NoHome) {
+    ASSERT_TRUE(write_file(folder / "file", "x"));
+    const auto files = [&] { return std::distance(fs::recursive_directory_iterator(folder / "display"), {}); };
+    const auto before = files();
+    int number = 0;
+    for (const std::vector<std::string>& home : std::vector<std::vector<std::string>>{
+             {"-u", "HOME"}, {"HOME="}, {"HOME=relative"}, {"HOME=" + (folder / "file").string()}}) {
+        std::vector<std::string> environment = {"-u", "XDG_CONFIG_HOME", "-u", "XDG_DATA_HOME", "-u", "XDG_CACHE_HOME"};
+        environment.insert(environment.end(), home.begin(), home.end());
+        const std::string state = "state" + std::to_string(++number);
+        const pid_t process = start_in(environment, state, {});
+        press("Return", [&] { return screen(state) == "playing"; });
+        EXPECT_EQ(screen(state), "playing") << home.back();
+        EXPECT_EQ(DrivenDisplay::end(process, SIGTERM), 128 + SIGTERM) << home.back() << content("log");
+        EXPECT_EQ(files(), before) << home.back();
+    }
+    EXPECT_EQ(content("file"), "x");
 }
 
 TEST(RobustDemoSettings, NumbersOfAnySize) {

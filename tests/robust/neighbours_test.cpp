@@ -117,11 +117,31 @@ TEST_F(RobustNeighbours, OddNamesOfScenesPicturesAndStatistics) {
     EXPECT_TRUE(nlohmann::json::accept(content_of(at + ".json")));
 }
 
+// As long as names can be, each of them.
+TEST_F(RobustNeighbours, NamesOf255Bytes) {
+    tests::GltfBuilder square;
+    square.add_square();
+    const auto at = [&](const std::string& ending) {
+        return (folder.path / std::string(255 - ending.size(), 'n').append(ending)).string();
+    };
+    ASSERT_TRUE(write_file(at(".glb"), square.glb()));
+    for (const char* ending : {".png", ".exr"})
+        EXPECT_EQ(run({"render", at(".glb"), "-o", at(ending), "--size", "8x6", "--lights", "4", "--warmup", "0",
+                       "--stats", at(".json"), "--trace", at(".trace")}),
+                  0)
+            << ending;
+    EXPECT_EQ(run({"compare", at(".png"), at(".png"), "--diff", at(".difference.png")}), 0);
+    EXPECT_EQ(run({"info", at(".glb")}), 0);
+    for (const char* ending : {".json", ".trace"})
+        EXPECT_TRUE(nlohmann::json::accept(content_of(at(ending)))) << ending;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path), {}), 6);
+}
+
 TEST_F(RobustNeighbours, OddNamesOfSavedScenes) {
     tests::GltfBuilder square;
     square.add_square();
     for (std::string name : odd_names()) {
-        name = name.substr(0, 243); // 255 with the extension
+        name = name.substr(0, 244); // 255 with the extension
         const fs::path path = folder.path / (name + ".scene.json");
         for (int times = 0; times < 2; ++times) {
             tests::World world, after;

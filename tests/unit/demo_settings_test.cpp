@@ -56,6 +56,11 @@ TEST_F(DemoSettingsTest, DamagedFilesGiveTheUsualSettingsAndAreKept) {
         EXPECT_EQ(loaded.settings.light_samples, DemoSettings().light_samples);
         EXPECT_TRUE(fs::exists(path.string() + ".damaged"));
     }
+    const fs::path longest = path.parent_path() / std::string(255, 'n');
+    ASSERT_TRUE(write_file(longest, "{"));
+    EXPECT_NE(load_settings(longest).problem, "");
+    EXPECT_FALSE(fs::exists(longest)) << "else the next save would replace it";
+    EXPECT_EQ(read_file(path.parent_path() / std::string(247, 'n').append(".damaged")).value(), "{");
     ASSERT_TRUE(write_file(path, R"({"exposure": 99, "light_samples": "many", "sensitivity": 2.5, "unknown": [1],
                                      "bindings": {"use": "no such key", "run": "R", "fly": "X"}})"));
     const LoadedSettings loaded = load_settings(path);
