@@ -94,6 +94,10 @@ Status bench(const BenchOptions& options) {
         return Error{"--plot: the suite '" + options.suite + "' has no plot (only convergence and thesis have)"};
     const NamedFile outputs[] = {{"--csv", options.csv}, {"--plot", options.plot}};
     SUNFLECK_TRY(try_outputs(outputs));
+    // One that is not there is named before anything is measured.
+    if (!options.device.empty())
+        if (const auto named = gpu::Device::create({options.device, false, {}}); !named)
+            return named.error();
     std::vector<PlotSeries> plot;
     SUNFLECK_ASSIGN(const BenchTable table, run_suite(options, plot));
     SUNFLECK_ASSIGN(const auto device, gpu::Device::create({options.device, false, {}}));

@@ -83,7 +83,13 @@ TEST(RobustOptions, TheParserTakesWhatHelpShowsAndNothingElse) {
 
 TEST(RobustOptions, TheDemosParserToo) {
     OptionCounts counts;
-    try_options(parse_demo, {{"--headless"}, {}}, counts);
+    demo::Options usual;
+    read_demo({"--headless"}, usual);
+    try_options(parse_demo, {{"--headless"}, {}}, counts, [&](const std::vector<std::string>& words) {
+        demo::Options options;
+        read_demo(words, options);
+        return !(options == usual);
+    });
     EXPECT_GE(counts.ranges, 6u);
     EXPECT_GE(counts.options, 18u);
     counts.print();

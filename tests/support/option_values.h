@@ -147,10 +147,23 @@ inline void expect_refused(const Verdict& verdict, const Option& option, const s
         EXPECT_NE(verdict.message.find(allowed), std::string::npos) << shown << " (" << option.type << ")";
 }
 
-// All values at one option. `words_of`: the whole command line, with a value.
+// "INT 1 to 60=5" and "5" or "5.0".
+inline bool is_default(const std::string& type, const std::string& value) {
+    const std::size_t equals = type.find('=');
+    if (equals == std::string::npos)
+        return false;
+    const std::string usual = type.substr(equals + 1);
+    return value == usual ||
+           (range_of(type) && std::strtod(value.c_str(), nullptr) == std::strtod(usual.c_str(), nullptr));
+}
+
+// Whether a command line has another effect than the one without the option.
+using Changes = std::function<bool(const std::vector<std::string>&)>;
+
+// All values at one option. `words_of`: the whole command line, with a value. `changes`: of what is taken.
 inline void try_values(const Parse& parse, const Option& option,
                        const std::function<std::vector<std::string>(const std::string& value)>& words_of,
-                       OptionCounts& counts) {
+                       OptionCounts& counts, const Changes& changes = {}) {
     const std::optional<Range> range = range_of(option.type);
     ++counts.options;
     counts.ranges += range.has_value();
@@ -163,6 +176,9 @@ inline void try_values(const Parse& parse, const Option& option,
             expect_refused(verdict, option, what);
         if (range && range->whole && lies_in(*range, value)) {
             EXPECT_EQ(verdict.status, exit_done) << what << ": " << verdict.message;
+        }
+        if (changes && verdict.status == exit_done && !is_default(option.type, value)) {
+            EXPECT_TRUE(changes(words_of(value))) << what << " has no effect";
         }
     }
 }
@@ -178,12 +194,12 @@ inline std::vector<std::string> with_option(const Command& command, const std::s
 }
 
 // Of all options of a command that take a value.
-inline void try_options(const Parse& parse, const Command& command, OptionCounts& counts) {
+inline void try_options(const Parse& parse, const Command& command, OptionCounts& counts, const Changes& changes = {}) {
     for (const Option& option : options_of(parse, command))
         if (!option.type.empty())
             try_values(
                 parse, option, [&](const std::string& value) { return with_option(command, option.name, value); },
-                counts);
+                counts, changes);
 }
 
 // Values that an option of this type takes, one of which is not its default.
