@@ -1,6 +1,7 @@
 // What the host says of meshes, materials, instances and lights: kept in its words, and mirrored into the registry.
 #include "gi_module/host_context.h"
 
+#include "engine/core/memory_limit.h"
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
@@ -44,6 +45,20 @@ scene::Mesh mesh_of(const MeshData& data) {
     if (mesh.normals.empty())
         scene::compute_normals(mesh);
     return mesh;
+}
+
+// Of the copies.
+Status check_memory_of(const MeshData& data) {
+    const std::uint64_t vertices = data.positions.size() / 3;
+    const std::uint64_t bytes_per_vertex = 2 * sizeof(vec3) + (data.texture_coordinates.empty() ? 0 : sizeof(vec4));
+    return check_memory(vertices * bytes_per_vertex + data.indices.size_bytes(),
+                        "MeshData of " + std::to_string(vertices) + " vertices", "its detail");
+}
+
+Status check_memory_of(const TextureData& data) {
+    return check_memory(data.pixels.size_bytes(),
+                        "TextureData of " + std::to_string(data.width) + "x" + std::to_string(data.height) + " texels",
+                        "its size");
 }
 
 scene::Texture texture_of(const TextureData& data) {
@@ -154,6 +169,7 @@ Result<std::uint32_t> Context::add_mesh(const MeshData& data) {
     return self.run([&]() -> Result<std::uint32_t> {
         SUNFLECK_TRY(self.check_ready());
         SUNFLECK_TRY(check_mesh(data));
+        SUNFLECK_TRY(check_memory_of(data));
         return self.description.meshes.add(mesh_of(data));
     });
 }
@@ -183,6 +199,7 @@ Result<SharedMaterial> Context::Implementation::make_material(const MaterialData
     if (data.albedo_texture.pixels.empty())
         return result;
     scene::TextureStore& textures = description.textures;
+    SUNFLECK_TRY(check_memory_of(data.albedo_texture));
     scene::Texture texture = texture_of(data.albedo_texture);
     const std::int32_t old = before != nullptr && before->textures ? before->textures->base_colour.texture : -1;
     const bool same = old >= 0 && textures[std::uint32_t(old)].width == texture.width &&

@@ -54,15 +54,15 @@ void VisibilityDatabase::choose_exact_roots() {
 
 // A state and two counts of 16 bits a pair, and their rows for shaders.
 Status VisibilityDatabase::check_size() const {
-    const std::uint64_t roots = patches_.roots(), samples = samples_.size(), rows = roots * words_per_row() * 4;
+    const std::uint64_t nodes = patches_.nodes().size(), samples = samples_.size(), rows = nodes * words_per_row() * 4;
     const std::string what =
-        "the visibility of " + std::to_string(roots) + " surfaces from " + std::to_string(samples) + " light samples";
+        "the visibility of " + std::to_string(nodes) + " surfaces from " + std::to_string(samples) + " light samples";
     if (rows > options_.max_row_bytes)
         return Error{what + " would take a buffer of " + std::to_string(rows >> 20) + " MiB; this device allows " +
                          std::to_string(options_.max_row_bytes >> 20) +
                          ". Lower the number of light samples (lights), or switch the setting visibility off",
                      ErrorCode::memory};
-    return check_memory(roots * samples * 5 + rows, what, "the number of light samples (lights)");
+    return check_memory(nodes * samples * 5 + rows, what, "the number of light samples (lights)");
 }
 
 bool VisibilityDatabase::may_split_more() const {

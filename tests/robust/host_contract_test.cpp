@@ -1,6 +1,7 @@
 // Every call of sunfleck/host.h, in any order and with any value: right, or an error that names what was wrong and
 // leaves all as it was.
 #include "engine/core/log.h"
+#include "engine/core/memory_limit.h"
 #include "tests/support/host_program.h"
 
 #include <thread>
@@ -257,6 +258,32 @@ TEST_F(RobustHost, MemoryLimitsAreTheHosts) {
     }
     ASSERT_TRUE(context->set("shadow_map_resolution", "32"));
     EXPECT_TRUE(program.settle(*context, 0));
+}
+
+// What a context copies is counted before it is taken; nothing has changed then.
+TEST_F(RobustHost, CopiesBeyondTheMemoryLimitAreRefused) {
+    HostProgram program(device());
+    const auto context = make_context(program);
+    describe_room(*context);
+    const HostPicture expected = picture_of_room(program, *context);
+    const std::vector<std::uint8_t> pixels(std::size_t(4096) * 4096 * 4, 200);
+    host::MaterialData textured;
+    textured.albedo_texture = {pixels, 4096, 4096};
+    const std::vector<float> positions(3'000'000 * 3, 1.0f);
+    const std::vector<std::uint32_t> indices = {0, 1, 2};
+    const auto expect_refused = [](const Status& status, const char* what) {
+        ASSERT_FALSE(status) << what;
+        EXPECT_EQ(status.error().code, ErrorCode::memory) << status.error().message;
+        EXPECT_NE(status.error().message.find(what), std::string::npos) << status.error().message;
+    };
+    host::set_memory_limit(memory_in_use() + (std::uint64_t(32) << 20));
+    const auto material = context->add_material(textured);
+    const auto mesh = context->add_mesh({positions, {}, indices, {}});
+    host::set_memory_limit(0);
+    expect_refused(without_value(material), "4096x4096 texels would take 64.0 MiB");
+    expect_refused(without_value(mesh), "3000000 vertices would take 68.7 MiB");
+    EXPECT_EQ(context->add_mesh(cube(true)).value(), 2u);
+    EXPECT_EQ(picture_of_room(program, *context), expected);
 }
 
 TEST_F(RobustHost, SettingsThatNeverFitAreRefusedAtOnce) {

@@ -3,6 +3,8 @@
 #include "engine/core/memory_limit.h"
 #include "tests/support/visibility_world.h"
 
+#include <fstream>
+
 namespace sunfleck::gi {
 namespace {
 
@@ -18,14 +20,12 @@ protected:
     }
 };
 
-TEST_F(MemoryBounds, RaysAmongManyTriangles) {
-    scene::MeshStore meshes;
-    ecs::Registry registry;
+// A grid of hills: 2 * side^2 triangles, no two of which lie in one plane.
+scene::Mesh make_hills(std::uint32_t side) {
     scene::Mesh mesh;
-    constexpr std::uint32_t side = 512; // 2 * side^2 triangles, whose trees take 130 MiB
     for (std::uint32_t i = 0; i <= side; ++i)
         for (std::uint32_t j = 0; j <= side; ++j)
-            mesh.positions.push_back(vec3(float(i), 0.0f, float(j)));
+            mesh.positions.push_back(vec3(float(i), float((i * i * 7 + j * j * 13 + i * j) % 11), float(j)));
     mesh.normals.assign(mesh.positions.size(), vec3(0, 1, 0));
     for (std::uint32_t i = 0; i < side; ++i)
         for (std::uint32_t j = 0; j < side; ++j) {
@@ -33,6 +33,13 @@ TEST_F(MemoryBounds, RaysAmongManyTriangles) {
             for (const std::uint32_t index : {0u, 1u, side + 1, side + 1, 1u, side + 2})
                 mesh.indices.push_back(corner + index);
         }
+    return mesh;
+}
+
+TEST_F(MemoryBounds, RaysAmongManyTriangles) {
+    scene::MeshStore meshes;
+    ecs::Registry registry;
+    scene::Mesh mesh = make_hills(512); // whose trees take 130 MiB
     const ecs::Entity entity = registry.create();
     registry.emplace<scene::MeshInstance>(entity, {meshes.add(std::move(mesh))});
     registry.emplace<scene::Transform>(entity, {});
@@ -44,6 +51,44 @@ TEST_F(MemoryBounds, RaysAmongManyTriangles) {
     expect_refused(refused.error(), {"rays among 524288 triangles", "130.0 MiB", "the level's detail", "--memory"});
     set_memory_limit(0);
     EXPECT_TRUE(rays->update(registry, meshes)) << "what was refused can be tried again";
+}
+
+// The most that the process has had since clear_refs was written to.
+std::uint64_t peak_memory() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;)
+        if (word == "VmHWM:") {
+            std::uint64_t kibibytes = 0;
+            status >> kibibytes;
+            return kibibytes << 10;
+        }
+    return 0;
+}
+
+// What is counted for the blockers among them is what they take, at the most.
+TEST_F(MemoryBounds, VisibilityOfManyTriangles) {
+    scene::MeshStore meshes;
+    ecs::Registry registry;
+    const ecs::Entity entity = registry.create();
+    registry.emplace<scene::MeshInstance>(entity, {meshes.add(make_hills(512))});
+    registry.emplace<scene::Transform>(entity, {});
+    registry.emplace<scene::Material>(entity, {});
+    scene::update_world_transforms(registry);
+    {
+        SurfacePatches patches;
+        StaticBlockers blockers;
+        std::ofstream("/proc/self/clear_refs") << 5;
+        const std::uint64_t before = memory_in_use();
+        ASSERT_TRUE(patches.build(registry, meshes, {}, blockers));
+        EXPECT_EQ(blockers.polygons(), 2u * 512 * 512);
+        EXPECT_LE(peak_memory() - before, std::uint64_t(150) << 20) << "what is counted below";
+    }
+    VisibilityDatabase database;
+    const std::vector<LightSample> one(1);
+    allow(64);
+    EXPECT_FALSE(database.build(registry, meshes, one, {}));
+    set_memory_limit(0);
+    expect_refused(database.problem(), {"524288 triangles", "150.0 MiB", "the level's detail", "--memory"});
 }
 
 TEST_F(MemoryBounds, VisibilityOfManySamples) {
