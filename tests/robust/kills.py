@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Kills programs that write, at random moments, and looks at what they leave: old or new, never broken.
 
-Usage: kills.py BUILD_FOLDER FIRST LAST     seeds; each is one kill, of what its number chooses:
+Usage: kills.py BUILD_FOLDER FIRST LAST     seeds; each is one kill, of what its number chooses
+       kills.py BUILD_FOLDER share          one of each, with a long pass of 2 s and whatever it loses on a machine with
+                                            other work: part of every test run. The kinds:
   reference     of many passes, saved every 0.2 s: goes on to the same bits, and loses at most two intervals
   long pass     of one pass of about a minute, killed again and again and gone on with, by this run and the next; the
                 picture is compared when it is done, at the latest after seed 300
@@ -31,9 +33,10 @@ BUILD = pathlib.Path(sys.argv[1]).resolve()
 TOOL, DEMO, EDITOR, SCENES = (str(BUILD / "bin" / name) for name in
                               ("sunfleck", "sunfleck_demo", "sunfleck_editor", "generate_scenes"))
 INTERVAL = 0.2     # s, between saved states
-SLACK = 0.5        # s, of a machine with other work
-LONG_PASS = float(os.environ.get("SUNFLECK_LONG_PASS", 60))   # s, about
-LAST_SEED = 300    # of the whole
+SHARE = sys.argv[2:] == ["share"]
+SLACK = 10 if SHARE else 0.5    # s, of a machine with other work
+LONG_PASS = 2 if SHARE else float(os.environ.get("SUNFLECK_LONG_PASS", 60))   # s, about
+LAST_SEED = 7 if SHARE else 300
 
 
 def bits(path):
@@ -108,7 +111,7 @@ class Trials:
         self.folder, self.display, self.wholes = folder, display, {}
         self.counts = collections.defaultdict(lambda: dict.fromkeys(("tried", "killed", "finished first", "wrong"), 0))
         self.lost = collections.defaultdict(float)   # s of work that a kill took at most, by kind
-        self.kept = BUILD / "robust" / "kills"
+        self.kept = folder / "kept" if SHARE else BUILD / "robust" / "kills"
         self.kept.mkdir(parents=True, exist_ok=True)
 
     def run(self, command, **options):
@@ -318,7 +321,7 @@ class Trials:
 
 
 def main():
-    first, last = int(sys.argv[2]), int(sys.argv[3])
+    first, last = (1, LAST_SEED) if SHARE else (int(sys.argv[2]), int(sys.argv[3]))
     display = Display()
     with tempfile.TemporaryDirectory() as folder:
         os.environ.update(XDG_CONFIG_HOME=folder, XDG_DATA_HOME=folder, XDG_CACHE_HOME=folder + "/cache",

@@ -1,5 +1,5 @@
-// Shares of what takes hours as a whole (./run bench robust --part 6 and 7): how the time to the first picture grows
-// with the level, and whether memory grows from frame to frame.
+// Shares of what takes hours as a whole (./run bench robust --part 5 to 7): what programs that are killed leave, how the
+// time to the first picture grows with the level, and whether memory grows from frame to frame.
 #include "test_places.h"
 #include "tests/support/run_tool.h"
 
@@ -21,6 +21,10 @@ void expect_done(const std::string& script) {
 
 TEST(RobustShares, TwiceTheObjectsTakeLittleMoreThanTwiceTheTime) {
     expect_done("scale.py");
+}
+
+TEST(RobustShares, KillsLeaveOldOrNewFiles) {
+    expect_done("kills.py");
 }
 
 TEST(RobustShares, MemoryOfDemoAndToolDoesNotGrow) {
