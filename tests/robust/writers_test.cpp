@@ -261,6 +261,20 @@ TEST_F(RobustWriters, FilesOfTheGate) {
         return store && picture >= std::stoi(store->recording) ? std::stoi(store->recording) : -1;
     };
     expect_old_or_new({"stored pictures", accept, read_store});
+
+    const char* remarks[] = {"the old report", "the new report"};
+    const auto report = [&](int which) {
+        gate::GateRun run;
+        run.weaker = remarks[which];
+        return gate::write_html_report(at("report.html"), run);
+    };
+    const auto read_report = [&] {
+        const auto text = read_file(at("report.html"));
+        if (!text || !text->ends_with("</html>\n"))
+            return -1;
+        return text->find(remarks[0]) != std::string::npos ? 0 : text->find(remarks[1]) != std::string::npos ? 1 : -1;
+    };
+    expect_old_or_new({"report of the gate", report, read_report});
 }
 
 // Commands as a whole, with what they read and what they try before they begin.
@@ -332,7 +346,7 @@ TEST(RobustWriterList, HasEachPlaceOfTheSources) {
         {"editor/command_line/bench_level.cpp", text_at_the_end},
         {"editor/command_line/bench_picture.cpp", "one text, replaced after each row"},
         {"editor/command_line/bench_self_test.cpp", "one text, replaced after each amount"},
-        {"editor/gate/html_report.cpp", text_at_the_end},
+        {"editor/gate/html_report.cpp", "RobustWriters.FilesOfTheGate"},
         {"editor/gate/picture_store.cpp", "RobustWriters.FilesOfTheGate"},
         {"editor/gate/triples.cpp", "RobustWriters.FilesOfTheGate"},
         {"editor/gate/self_test_builds.cpp", "programs of a run's own, which go with it"},
