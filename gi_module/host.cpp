@@ -90,11 +90,26 @@ Context::Implementation::Turn::~Turn() {
     context.busy = false;
 }
 
-// Counted before it looks, so that either it sees the call under way, or that call sees it.
-Context::Implementation::Reading::Reading(const Implementation& of) : context(of), allowed((++of.readers, !of.busy)) {}
+namespace {
+
+bool begin_reading(const std::atomic<bool>& busy, std::atomic<int>& readers) {
+    if (busy) // without being counted, so that whoever asks again and again keeps no call waiting
+        return false;
+    ++readers;
+    if (!busy) // now either this sees the call under way, or that call sees the reader
+        return true;
+    --readers;
+    return false;
+}
+
+} // namespace
+
+Context::Implementation::Reading::Reading(const Implementation& of)
+    : context(of), allowed(begin_reading(of.busy, of.readers)) {}
 
 Context::Implementation::Reading::~Reading() {
-    --context.readers;
+    if (allowed)
+        --context.readers;
 }
 
 void Context::Implementation::let_go_if_wanted() {

@@ -115,8 +115,8 @@ struct Context::Implementation {
     Description description;
     std::unique_ptr<Follower> follower;
     Serials serials;
-    // A call that may change the context is under way. Calls from callbacks of its, and from other threads meanwhile,
-    // are refused.
+    // A call that may change the context is under way. Calls from its callbacks, and from other threads meanwhile, are
+    // refused.
     std::atomic<bool> busy{false};
     mutable std::atomic<int> readers{0};     // those that only look something up
     std::atomic<bool> abandon_wanted{false}; // seen to by whichever call has the turn, or the next one
@@ -174,7 +174,7 @@ struct Context::Implementation {
     }
 };
 
-// There may be none for the message, either.
+// There may be no memory for the message, either.
 inline Error out_of_memory(const char* call) noexcept {
     try {
         return Error{std::string(call) + ": out of memory", ErrorCode::memory};

@@ -67,13 +67,13 @@ Json json_of(const ecs::PoolBase& pool, const void* value) {
 }
 
 // The lines beyond the base, until `visit` says no, or one cannot be read: false then. The last one may have been cut
-// off by the end of the program, before its edit was made.
+// off where the program ended.
 template <typename Visit>
 bool for_each_edit(const std::string& text, const JournalBase& base, const Visit& visit) {
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = text.find('\n', begin);
         if (end == std::string::npos)
-            return true;
+            return false;
         const Json json =
             Json::parse(text.begin() + std::ptrdiff_t(begin), text.begin() + std::ptrdiff_t(end), nullptr, false);
         begin = end + 1;

@@ -53,7 +53,7 @@ public:
     Status append(std::uint64_t epoch, std::uint64_t revision, const std::string& name);
 
 private:
-    // What a write that failed left of its line: the next line would go on from it, and be unreadable, too.
+    // What is left of a line whose write failed: the next line would continue it, and be unreadable, too.
     Status cut_off_remains();
 
     int file_ = -1;
@@ -71,7 +71,7 @@ private:
 
 struct Replayed {
     std::vector<std::string> names; // of the edits
-    bool complete = true;           // false: a later edit could not be read
+    bool complete = true;           // false: an edit after them could not be read
 };
 // The edits that a journal has beyond its base, without making them.
 Replayed edits_of_journal(const std::string& text, const JournalBase& base);

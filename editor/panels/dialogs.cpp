@@ -176,6 +176,8 @@ void recover_dialog(Session& session) {
         ui::note("edit " + std::to_string(i + 1), recovered.edits[i]);
     }
     ImGui::EndChild();
+    if (!recovered.complete)
+        ImGui::TextUnformatted("What was edited after these could not be kept.");
     ImGui::TextDisabled("They open as a scene of their own; no file is changed.");
     const auto next = [&] {
         session.recovered.pop_back();

@@ -60,6 +60,7 @@ void add_journal(Recovered& result, const nlohmann::json& about) {
         return;
     const Replayed edits = edits_of_journal(*journal, *base);
     result.count += edits.names.size();
+    result.complete = edits.complete;
     result.edits.insert(result.edits.end(), edits.names.begin(), edits.names.end());
     constexpr std::size_t most_names = 20;
     if (result.edits.size() > most_names)

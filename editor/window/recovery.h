@@ -26,6 +26,7 @@ struct Recovered {
     std::string file;                    // that was edited; empty: it had never been saved
     std::vector<std::string> edits;      // the last ones
     std::uint64_t count = 0;             // of all
+    bool complete = true;                // false: an edit after them could not be kept
     std::string journal;                 // what was done since, as its lines
     JournalBase base;                    // the scene, for these
 };

@@ -329,7 +329,7 @@ Status flush_standard_output() {
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)
         return {};
     // Why an earlier part was not taken is no longer known.
-    const std::string why = errno != 0 ? std::strerror(errno) : "a part of it was not taken, as by a full disk";
+    const std::string why = errno != 0 ? std::strerror(errno) : "an earlier part was not written; the disk may be full";
     return Error{"cannot write to standard output: " + why};
 }
 

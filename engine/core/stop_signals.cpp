@@ -44,13 +44,12 @@ void note_signal(int signal) {
 }
 
 void allow_grace() {
-    static const bool made = [] {
-        struct sigaction action {};
-        action.sa_handler = end_now;
-        sigemptyset(&action.sa_mask);
-        ::sigaction(SIGALRM, &action, nullptr);
-        return ::timer_create(CLOCK_MONOTONIC, nullptr, &grace) == 0; // its signal is SIGALRM
-    }();
+    // Each time: in the meantime, watch_stop_signals may have given the timer's signal another meaning.
+    struct sigaction action {};
+    action.sa_handler = end_now;
+    sigemptyset(&action.sa_mask);
+    ::sigaction(SIGALRM, &action, nullptr);
+    static const bool made = ::timer_create(CLOCK_MONOTONIC, nullptr, &grace) == 0; // its signal is SIGALRM
     has_grace = made ? 1 : 0;
 }
 
@@ -88,9 +87,12 @@ void end_soon() {
 void watch_stop_signals() {
     has_grace = 0;
     watch_interrupts();
-    // The last five end a program that does not know them; batch systems send some before they take a machine away.
-    for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF})
-        if (signal != SIGHUP || !is_ignored(signal))
+    for (const int signal : {SIGTERM, SIGQUIT, SIGXCPU})
+        watch(signal);
+    // All of these end a program that does not know them, unless whoever started it has them ignored; batch systems
+    // send some before they take a machine away.
+    for (const int signal : {SIGHUP, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF})
+        if (!is_ignored(signal))
             watch(signal);
 }
 

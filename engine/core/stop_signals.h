@@ -11,9 +11,9 @@ void watch_interrupts();
 // The same for work that has nothing to save: where it does not end by itself within 0.15 s (of gigabytes of memory,
 // sooner), whatever it is doing, the program ends.
 void end_at_interrupts();
-// The same as watch_interrupts for SIGTERM, SIGQUIT, SIGXCPU, SIGUSR1, SIGUSR2, the signals of timers and (unless it is
-// ignored, as by nohup) SIGHUP: for work that has something to save and looks at the flag often. All else is better
-// ended by them at once, since no file is ever half written.
+// The same as watch_interrupts for SIGTERM, SIGQUIT, SIGXCPU and, unless they are ignored (as by nohup), SIGHUP,
+// SIGUSR1, SIGUSR2 and the signals of timers: for work that has something to save and looks at the flag often. All else
+// is better ended by them at once, since no file is ever half written.
 void watch_stop_signals();
 
 // Once all of that is saved: if a signal has come, or when one comes, what is left to do (threads that are waited for,

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t size_limit = std::size_t(64) << 20;
 
-constexpr std::size_t longest_stem = 200; // bytes: a hash, endings and set_aside's go behind it
+constexpr std::size_t longest_stem = 223; // bytes: a hash of 16 digits and ".checkpoint.old" go behind it
 
 // Levels of one name in two folders have files of their own.
 std::string file_name_of(const std::string& identity) {

@@ -32,8 +32,8 @@ Status check_size_of_blockers(ecs::Registry& registry, const scene::MeshStore& m
         if (instance.mesh < meshes.size() && scene::is_static(registry, entity))
             triangles += meshes[instance.mesh].triangle_count();
     });
-    return check_memory(triangles * bytes_per_triangle,
-                        "what " + std::to_string(triangles) + " triangles hide from the light", "the level's detail");
+    return check_memory(triangles * bytes_per_triangle, "visibility among " + std::to_string(triangles) + " triangles",
+                        "the level's detail");
 }
 
 } // namespace
@@ -57,10 +57,11 @@ bool VisibilityDatabase::build(ecs::Registry& registry, const scene::MeshStore& 
     if (status && !stopped) {
         make_groups();
         choose_exact_roots();
-        status = check_size();
+        constexpr std::uint64_t state = 1, counts = 4; // bytes
+        status = check_size(state + counts);
         stopped = status && !split_and_decide(progress_part(progress, until_patches, 1.0f));
         if (status && !stopped)
-            status = check_size(); // of what was split, too
+            status = check_size(counts); // of what was split, too
     }
     if (stopped)
         status = Error{"preparing the lighting was stopped", ErrorCode::stopped};

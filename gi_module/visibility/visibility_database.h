@@ -209,7 +209,7 @@ private:
         std::uint64_t tests = 0;
     };
 
-    Status check_size() const;
+    Status check_size(std::uint64_t bytes_per_pair) const;
     bool split_and_decide(const std::function<bool(float)>& progress);
     PairState decide_static(std::uint32_t node, std::uint32_t sample, LikelyBlockers* likely = nullptr) const;
     PairState inherit(const SurfacePatch& patch, PairState parent, const LightSample& sample) const;

@@ -52,8 +52,8 @@ void VisibilityDatabase::choose_exact_roots() {
         is_exact_[order[i]] = 1;
 }
 
-// A state and two counts of 16 bits a pair, and their rows for shaders.
-Status VisibilityDatabase::check_size() const {
+// Of all nodes that there are, and their rows for shaders.
+Status VisibilityDatabase::check_size(std::uint64_t bytes_per_pair) const {
     const std::uint64_t nodes = patches_.nodes().size(), samples = samples_.size(), rows = nodes * words_per_row() * 4;
     const std::string what =
         "the visibility of " + std::to_string(nodes) + " surfaces from " + std::to_string(samples) + " light samples";
@@ -62,7 +62,7 @@ Status VisibilityDatabase::check_size() const {
                          std::to_string(options_.max_row_bytes >> 20) +
                          ". Lower the number of light samples (lights), or switch the setting visibility off",
                      ErrorCode::memory};
-    return check_memory(nodes * samples * 5 + rows, what, "the number of light samples (lights)");
+    return check_memory(nodes * samples * bytes_per_pair + rows, what, "the number of light samples (lights)");
 }
 
 bool VisibilityDatabase::may_split_more() const {

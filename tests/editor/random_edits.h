@@ -13,6 +13,8 @@ public:
 
     // One edit; it may turn out to change nothing. Returns what it was.
     std::string once() {
+        if (list().empty()) // all may have been in one group that was deleted
+            return add();
         switch (below(16)) {
         case 0:
             return add();

@@ -59,16 +59,18 @@ void insist(const Call& call) {
     EXPECT_TRUE(status) << status.error().message;
 }
 
-// A box that moves for some frames, above a sensor; the picture and what the sensor says then.
-std::pair<HostPicture, host::Vector3> move_a_box(HostProgram& program, host::Context& context) {
+// A box that moves for some frames, above a sensor.
+void move_a_box(HostProgram& program, host::Context& context) {
     for (int frame = 0; frame < 20; ++frame) {
         const vec3 centre(0.4f, 0.6f, 0.2f - 0.02f * float(frame));
         insist([&] { return context.set_transform(1, box_matrix(centre, vec3(0.6f))); });
         insist([&] { return context.step_sensors(); });
         insist([&] { return program.frame(context, 0); });
     }
-    insist([&] { return program.settle(context, 0); });
-    return {program.picture(), context.read_sensor(0).irradiance};
+}
+
+std::pair<HostPicture, host::Vector3> settled(HostProgram& program, host::Context& context) {
+    return {picture_of_room(program, context), context.read_sensor(0).irradiance};
 }
 
 // Threads that look things up, and one that makes calls which are refused, change nothing of what another thread does,
@@ -81,37 +83,39 @@ TEST_F(RobustHostThreads, OtherThreadsReadOrAreRefused) {
         EXPECT_TRUE(context->add_sensor({}));
         return context;
     };
-    const auto alone = move_a_box(program, *begin());
+    const OwnedContext undisturbed = begin();
+    move_a_box(program, *undisturbed);
+    const auto alone = settled(program, *undisturbed);
     const OwnedContext context = begin();
     std::atomic<bool> done{false};
-    std::atomic<std::uint64_t> read{0}, known{0}, refused{0};
+    std::atomic<std::uint64_t> known{0}, busy{0};
     const auto look = [&] {
         while (!done) {
             known += context->surface_id(0) != 0 ? 1 : 0;
             static_cast<void>(context->read_sensor(0));
-            if (++read % 64 == 0)
-                std::this_thread::yield();
+            std::this_thread::yield();
         }
     };
     const auto disturb = [&] {
         while (!done) {
             static_cast<void>(context->statistics());
             const Status status = context->set("lights", "nan");
-            refused += !status && status.error().code == ErrorCode::argument ? 1 : 0;
+            EXPECT_FALSE(status);
+            busy += !status && status.error().message.find("within another call") != std::string::npos ? 1 : 0;
             std::this_thread::sleep_for(std::chrono::microseconds(500));
         }
     };
     std::vector<std::thread> others;
     others.emplace_back(look), others.emplace_back(look), others.emplace_back(disturb);
-    const auto disturbed = move_a_box(program, *context);
+    move_a_box(program, *context);
     done = true;
     for (std::thread& other : others)
         other.join();
+    const auto disturbed = settled(program, *context);
     EXPECT_EQ(disturbed.first, alone.first);
     EXPECT_EQ(disturbed.second, alone.second);
     EXPECT_GT(known, 0u);
-    EXPECT_GT(read, known) << "while an update goes on, nothing is known";
-    EXPECT_GT(refused, 0u);
+    EXPECT_GT(busy, 0u);
 }
 
 #ifdef __SANITIZE_THREAD__

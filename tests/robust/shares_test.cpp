@@ -1,5 +1,5 @@
-// Shares of what takes hours as a whole (./run bench robust --part 5 to 7): what programs that are killed leave, how the
-// time to the first picture grows with the level, and whether memory grows from frame to frame.
+// Shares of what takes hours as a whole (./run bench robust --part 5 to 7): what programs that are killed leave, how
+// the time to the first picture grows with the level, and whether memory grows from frame to frame.
 #include "test_places.h"
 #include "tests/support/run_tool.h"
 

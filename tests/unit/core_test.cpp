@@ -8,6 +8,7 @@
 #include "engine/core/random.h"
 #include "engine/core/result.h"
 #include "engine/core/stage_times.h"
+#include "engine/core/stop_signals.h"
 #include "gi_module/settings.h"
 
 #include <gtest/gtest.h>
@@ -19,6 +20,7 @@
 #include <set>
 #include <sstream>
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace sunfleck {
 namespace {
@@ -256,6 +258,38 @@ bool asked_for_large_pages(const void* address) {
             return line.find(" hg") != std::string::npos;
     }
     return false;
+}
+// A program that waits for something that never comes, in its end: first where the signals of timers mean that all is
+// to be saved, as in the demo, then after that.
+void end_after(int signal) {
+    end_at_interrupts();
+    watch_stop_signals();
+    std::raise(signal);
+    if (stop_signal() != signal)
+        ::_exit(1);
+    end_soon();
+    ::sleep(20);
+    ::sleep(20); // the first may be interrupted
+}
+
+TEST(StopSignalsDeathTest, AnEndThatHangsIsEnded) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    for (const int signal : {SIGTERM, SIGUSR1, SIGALRM})
+        EXPECT_EXIT(end_after(signal), testing::ExitedWithCode(128 + signal), "") << signal;
+}
+
+// Whoever starts a program may have it spared.
+TEST(StopSignalsDeathTest, IgnoredSignalsStayIgnored) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto spared = [] {
+        for (const int signal : {SIGHUP, SIGUSR1, SIGUSR2, SIGALRM})
+            std::signal(signal, SIG_IGN);
+        watch_stop_signals();
+        for (const int signal : {SIGHUP, SIGUSR1, SIGUSR2, SIGALRM})
+            std::raise(signal);
+        ::_exit(stop_signal() == 0 ? 0 : 1);
+    };
+    EXPECT_EXIT(spared(), testing::ExitedWithCode(0), "");
 }
 
 TEST(LargePages, LargePiecesAlone) {

@@ -77,7 +77,8 @@ TEST_F(MemoryBounds, VisibilityOfManyTriangles) {
     {
         SurfacePatches patches;
         StaticBlockers blockers;
-        std::ofstream("/proc/self/clear_refs") << 5;
+        if (!(std::ofstream("/proc/self/clear_refs") << 5 << std::flush))
+            GTEST_SKIP() << "the system does not forget what was the most";
         const std::uint64_t before = memory_in_use();
         ASSERT_TRUE(patches.build(registry, meshes, {}, blockers));
         EXPECT_EQ(blockers.polygons(), 2u * 512 * 512);
