@@ -98,7 +98,7 @@ TEST_F(RobustPrograms, ResultsToAFullDiskFail) {
         const bool of_gate = words == gate || words.starts_with(" bench level");
         EXPECT_EQ(full.status, of_gate ? exit_usage : exit_failed) << command << ": " << full.output;
         EXPECT_TRUE(full.output.find("output: No space left") != std::string::npos ||
-                    full.output.find("as by a full disk") != std::string::npos)
+                    full.output.find("the disk may be full") != std::string::npos)
             << command << ": " << full.output;
         const std::size_t error = full.output.find("error:");
         EXPECT_EQ(full.output.find("error:", error + 1), std::string::npos) << command << ": " << full.output;
