@@ -5,32 +5,13 @@
 #include "viewer/scene_renderer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 namespace sunfleck::editor {
 namespace {
 
 constexpr std::size_t longest_name = 120; // bytes
-
-// Whether the two have the same bits; text: the same letters.
-bool same_field(const Field& field, const void* a, const void* b) {
-    const char* from = static_cast<const char*>(a) + field.offset;
-    const char* to = static_cast<const char*>(b) + field.offset;
-    switch (field.kind) {
-    case FieldKind::text:
-        return *reinterpret_cast<const std::string*>(from) == *reinterpret_cast<const std::string*>(to);
-    case FieldKind::boolean:
-        return *reinterpret_cast<const bool*>(from) == *reinterpret_cast<const bool*>(to);
-    case FieldKind::vector3:
-        return std::memcmp(from, to, sizeof(vec3)) == 0;
-    case FieldKind::quaternion:
-        return std::memcmp(from, to, sizeof(quat)) == 0;
-    case FieldKind::entity:
-        return std::memcmp(from, to, sizeof(EntityBits)) == 0;
-    default:
-        return std::memcmp(from, to, 4) == 0;
-    }
-}
 
 bool same_mesh(const scene::Mesh& a, const scene::Mesh& b) {
     return a.name == b.name && a.positions == b.positions && a.normals == b.normals && a.indices == b.indices &&
@@ -56,6 +37,25 @@ std::string clean_name(std::string name) {
 
 } // namespace
 
+bool same_field(const Field& field, const void* a, const void* b) {
+    const char* from = static_cast<const char*>(a) + field.offset;
+    const char* to = static_cast<const char*>(b) + field.offset;
+    switch (field.kind) {
+    case FieldKind::text:
+        return *reinterpret_cast<const std::string*>(from) == *reinterpret_cast<const std::string*>(to);
+    case FieldKind::boolean:
+        return *reinterpret_cast<const bool*>(from) == *reinterpret_cast<const bool*>(to);
+    case FieldKind::vector3:
+        return std::memcmp(from, to, sizeof(vec3)) == 0;
+    case FieldKind::quaternion:
+        return std::memcmp(from, to, sizeof(quat)) == 0;
+    case FieldKind::entity:
+        return std::memcmp(from, to, sizeof(EntityBits)) == 0;
+    default:
+        return std::memcmp(from, to, 4) == 0;
+    }
+}
+
 bool same_value(const ecs::PoolBase& pool, const ecs::Value& a, const ecs::Value& b) {
     if (a == nullptr || b == nullptr || a == b)
         return a == b;
@@ -69,6 +69,11 @@ ecs::PoolBase* find_component(Document& document, std::string_view name) {
         if (pool->description()->name == name)
             return pool;
     return nullptr;
+}
+
+std::uint64_t Document::next_number() {
+    static std::atomic<std::uint64_t> last{0}; // files load on threads of their own
+    return ++last;
 }
 
 Document::Document() {

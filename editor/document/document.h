@@ -18,6 +18,7 @@
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace sunfleck::editor {
 
@@ -64,6 +65,8 @@ public:
     bool file_changed() const;
     // What another program has written there is known.
     void saw_file() { stamp_ = stamp_of(path_); }
+    // Of this document alone, as long as the program runs: a new one may lie where another was.
+    std::uint64_t number() const { return number_; }
     // What the import left out or changed.
     const std::vector<std::string>& notes() const { return notes_; }
     // True if there are edits that the file lacks.
@@ -120,6 +123,8 @@ public:
 
     // --- Selection, in the order in which it was made ------------------------------------------------------------
     const std::vector<Entity>& selection() const { return selection_; }
+    // Raised with every change of it.
+    std::uint64_t selection_revision() const { return selection_revision_; }
     bool selected(Entity entity) const { return entity.index < selected_.size() && selected_[entity.index]; }
     void select(const std::vector<Entity>& entities);
     void toggle(Entity entity);
@@ -149,6 +154,8 @@ private:
     HistoryEntry end_gesture();
     void tidy_updates();
 
+    static std::uint64_t next_number();
+    const std::uint64_t number_ = next_number();
     ecs::Registry registry_;
     scene::MeshStore meshes_;
     std::vector<std::uint32_t> shapes_; // meshes of add_shape
@@ -186,6 +193,7 @@ private:
     std::vector<Entity> moved_;  // whose names or parents have changed since
     std::uint64_t structure_revision_ = 1, children_revision_ = 0, revision_ = 1, settings_revision_ = 1;
     std::vector<Entity> selection_;
+    std::uint64_t selection_revision_ = 1;
     std::vector<bool> selected_; // by index
     // In the order in which they came: of those of one component the last counts. Tidied when there are so many.
     std::vector<Update> updates_;
@@ -194,8 +202,21 @@ private:
     std::uint32_t handles_ = 0;
 };
 
+// A state of a document: where it is the same, all that is seen of its entities and of the selection is.
+struct SeenState {
+    std::uint64_t document = 0, revision = 0, selection = 0;
+    bool operator==(const SeenState&) const = default;
+    // True, once, where it is another than before.
+    bool follow(const Document& now) {
+        const SeenState next{now.number(), now.revision(), now.selection_revision()};
+        return std::exchange(*this, next) != next;
+    }
+};
+
 // The document's pool of a described component; null if there is none of that name.
 ecs::PoolBase* find_component(Document& document, std::string_view name);
+// Whether the two have the same bits there; text: the same letters.
+bool same_field(const Field& field, const void* a, const void* b);
 // Whether both are null or have the same values in all described fields.
 bool same_value(const ecs::PoolBase& pool, const ecs::Value& a, const ecs::Value& b);
 

@@ -154,6 +154,7 @@ std::vector<Entity> Document::family(Entity entity) {
 
 // `entities` may be the selection itself.
 void Document::select(const std::vector<Entity>& entities) {
+    ++selection_revision_;
     for (const Entity entity : selection_)
         selected_[entity.index] = false;
     std::vector<Entity> chosen;

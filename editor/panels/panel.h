@@ -60,8 +60,17 @@ private:
     void toolbar(Session& session);
     static void play_buttons(Session& session);
     bool split(Session& session);
-    Entity icon_at(Session& session, vec2 place) const;
+    Entity icon_at(Session& session, vec2 place);
+    void find_places(Document& document);
+    struct Icon {
+        Entity entity;
+        vec3 place; // in the world; or pixels and distance
+    };
+    std::vector<Icon> icons(Session& session);
     Gizmo gizmo_;
+    SeenState places_state_;
+    std::vector<Icon> icon_places_; // in the world, of all that has one
+    std::vector<Placed> outlines_;  // of what is selected
     bool flying_ = false;
     ImVec2 pressed_{0, 0};
     ImVec2 toolbar_low_{0, 0}, toolbar_high_{0, 0}; // in the last frame; clicks there do not go through to the picture

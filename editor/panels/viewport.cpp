@@ -114,20 +114,33 @@ void say_how_to_begin(ImVec2 low, ImVec2 room) {
     }
 }
 
-struct Icon {
-    Entity entity;
-    vec3 place; // pixels and distance
-};
+} // namespace
 
-std::vector<Icon> icons(Session& session) {
+// What changes with edits and the selection alone, so that in other frames a large scene takes no longer.
+void Viewport::find_places(Document& document) {
+    if (!places_state_.follow(document))
+        return;
+    icon_places_.clear();
+    for (const Entity entity : without_geometry(document))
+        icon_places_.push_back({entity, vec3(world_of(document, entity)[3])});
+    outlines_.clear();
+    for (const Entity entity : document.selection()) {
+        if (outlines_.size() == most_outlines)
+            return;
+        if (const std::optional<Placed> placed = place_of(document, entity); placed && !placed->bounds.empty())
+            outlines_.push_back(*placed);
+    }
+}
+
+std::vector<Viewport::Icon> Viewport::icons(Session& session) {
+    find_places(*session.document);
     std::vector<Icon> result;
-    for (const Entity entity : without_geometry(*session.document)) {
+    for (const auto& [entity, where] : icon_places_) {
         if (result.size() == most_icons)
             break;
         if (session.hidden.count(entity) > 0 || session.locked.count(entity) > 0)
             continue;
-        const vec3 place =
-            project(session.camera.view(), viewport_size(session), vec3(world_of(*session.document, entity)[3]));
+        const vec3 place = project(session.camera.view(), viewport_size(session), where);
         if (place.z > scene::camera_near && place.x > 0.0f && place.y > 0.0f && place.x < viewport_size(session).x &&
             place.y < viewport_size(session).y)
             result.push_back({entity, place});
@@ -135,9 +148,7 @@ std::vector<Icon> icons(Session& session) {
     return result;
 }
 
-} // namespace
-
-Entity Viewport::icon_at(Session& session, vec2 place) const {
+Entity Viewport::icon_at(Session& session, vec2 place) {
     if (!session.view.show_icons)
         return ecs::null_entity;
     std::vector<Icon> there = icons(session);
@@ -260,16 +271,13 @@ void Viewport::toolbar(Session& session) {
 void Viewport::overlay(Session& session) {
     if (session.view.show_grid)
         grid(session);
-    Document& document = *session.document;
+    find_places(*session.document);
     if (session.view.show_icons)
         for (const Icon& one : icons(session))
             icon(session, one.entity, one.place);
     mark_inspected(session);
-    std::size_t outlines = 0;
-    for (const Entity entity : document.selection())
-        if (const std::optional<Placed> placed = place_of(document, entity);
-            placed && !placed->bounds.empty() && ++outlines <= most_outlines)
-            outline(session, *placed);
+    for (const Placed& placed : outlines_)
+        outline(session, placed);
 }
 
 void Viewport::draw(Session& session, const ScenePicture* picture) {

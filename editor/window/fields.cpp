@@ -15,12 +15,9 @@ using Phase = ui::NumberEdit::Phase;
 constexpr float room_for_name = 6.5f; // of ui::unit()
 constexpr ImU32 changed_colour = IM_COL32(240, 178, 80, 255);
 
-bool same_text(const FieldSource& source) {
-    if (source.objects.size() == 1)
-        return true;
-    const std::string first = field_to_text(*source.field, source.objects[0]);
+bool same_in_all(const FieldSource& source) {
     return std::all_of(source.objects.begin() + 1, source.objects.end(),
-                       [&](const void* object) { return field_to_text(*source.field, object) == first; });
+                       [&](const void* object) { return same_field(*source.field, object, source.objects[0]); });
 }
 
 bool same_part(const FieldSource& source, int part) {
@@ -95,6 +92,7 @@ void number_cells(Session& session, const FieldSource& source, int parts, float 
     const Field& field = *source.field;
     const float gap = 0.25f * ui::unit();
     static const char* names[] = {"x", "y", "z"};
+    const bool same = same_in_all(source);
     for (int part = 0; part < parts; ++part) {
         ui::NumberLook look;
         look.value = read_part(field, source.objects[0], part);
@@ -102,7 +100,7 @@ void number_cells(Session& session, const FieldSource& source, int parts, float 
         look.minimum = ranged ? field.minimum * shown_factor(field) : 0.0;
         look.maximum = ranged ? field.maximum * shown_factor(field) : 0.0;
         look.whole = field.kind == FieldKind::integer || field.kind == FieldKind::unsigned_integer;
-        look.mixed = !same_part(source, part);
+        look.mixed = !same && !same_part(source, part);
         look.unit = shown_unit(field);
         look.width = (width - gap * float(parts - 1)) / float(parts);
         if (part > 0)
@@ -113,7 +111,7 @@ void number_cells(Session& session, const FieldSource& source, int parts, float 
 
 void choice_cell(Session& session, const FieldSource& source, float width) {
     const Field& field = *source.field;
-    const bool mixed = !same_text(source);
+    const bool mixed = !same_in_all(source);
     const std::string now = field_to_text(field, source.objects[0]);
     ImGui::SetNextItemWidth(width);
     const bool is_open = ImGui::BeginCombo("##value", mixed ? "mixed" : readable_name(now).c_str());
@@ -128,7 +126,7 @@ void choice_cell(Session& session, const FieldSource& source, float width) {
 }
 
 void boolean_cell(Session& session, const FieldSource& source) {
-    const bool mixed = !same_text(source);
+    const bool mixed = !same_in_all(source);
     bool on = field_to_text(*source.field, source.objects[0]) == "true";
     ImGui::PushItemFlag(ImGuiItemFlags_MixedValue, mixed);
     const bool changed = ImGui::Checkbox("##value", &on);
@@ -143,7 +141,7 @@ void text_cell(Session& session, const FieldSource& source, float width) {
     static ImGuiID editing = 0;
     static std::string text;
     const ImGuiID id = ImGui::GetID("##value");
-    const std::string now = same_text(source) ? field_to_text(*source.field, source.objects[0]) : std::string();
+    const std::string now = same_in_all(source) ? field_to_text(*source.field, source.objects[0]) : std::string();
     std::string shown = editing == id ? text : now;
     ImGui::SetNextItemWidth(width);
     const bool enter = ImGui::InputText("##value", &shown, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -165,7 +163,7 @@ void reset_cell(Session& session, const FieldSource& source) {
     if (source.defaults == nullptr)
         return;
     std::string usual = field_to_text(*source.field, source.defaults);
-    if (same_text(source) && field_to_text(*source.field, source.objects[0]) == usual)
+    if (field_to_text(*source.field, source.objects[0]) == usual && same_in_all(source))
         return;
     ImGui::SameLine(0.0f, 0.2f * ui::unit());
     const ImVec2 low = ImGui::GetCursorScreenPos();

@@ -52,6 +52,17 @@ vec3 handles_of(const Placed& placed) {
     return vec3(placed.world * vec4(outside && !bounds.empty() ? bounds.centre() : vec3(0.0f), 1.0f));
 }
 
+vec3 middle_of(Document& document, const Entities& entities) {
+    vec3 sum(0.0f);
+    float count = 0.0f;
+    for (const Entity entity : entities)
+        if (const auto placed = place_of(document, entity)) {
+            sum += handles_of(*placed);
+            count += 1.0f;
+        }
+    return sum / std::max(count, 1.0f);
+}
+
 bool snaps(const Session& session) {
     return session.gizmo.snap != ImGui::GetIO().KeyCtrl;
 }
@@ -66,19 +77,16 @@ Gizmo::Pointer Gizmo::pointer_ray(Session& session, vec2 pixel) const {
     return {session.camera.view().position, ray_through(session.camera.view(), viewport_size(session), pixel)};
 }
 
-Gizmo::Frame Gizmo::find_frame(Session& session) const {
+Gizmo::Frame Gizmo::find_frame(Session& session) {
     Frame frame;
     Document& document = *session.document;
-    const Entities tops = session.selected_tops();
-    float count = 0.0f;
-    for (const Entity entity : tops)
-        if (const auto placed = place_of(document, entity)) {
-            frame.pivot += handles_of(*placed);
-            count += 1.0f;
-        }
-    frame.pivot /= std::max(count, 1.0f);
-    if (!tops.empty() && (session.gizmo.local || session.gizmo.mode == GizmoMode::scale)) {
-        const mat4 world = world_of(document, tops.back());
+    if (tops_state_.follow(document)) { // in other frames a large selection takes no longer
+        tops_ = session.selected_tops();
+        pivot_ = middle_of(document, tops_);
+    }
+    frame.pivot = pivot_;
+    if (!tops_.empty() && (session.gizmo.local || session.gizmo.mode == GizmoMode::scale)) {
+        const mat4 world = world_of(document, tops_.back());
         for (int axis = 0; axis < 3; ++axis)
             if (const float length = glm::length(vec3(world[axis])); length > 1e-12f)
                 frame.axes[axis] = vec3(world[axis]) / length;

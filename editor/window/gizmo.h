@@ -22,7 +22,7 @@ private:
     struct Pointer {
         vec3 origin{0.0f}, direction{0.0f};
     };
-    Frame find_frame(Session& session) const;
+    Frame find_frame(Session& session);
     int handle_under(Session& session, const Frame& frame, vec2 pointer) const;
     void paint(Session& session, const Frame& frame, int hot) const;
     void begin(Session& session, const Frame& frame, int handle);
@@ -41,6 +41,9 @@ private:
     vec2 start_pixel_{0.0f};
     float angle_ = 0.0f; // of a rotation, rad
     std::string said_;   // how far it went
+    SeenState tops_state_;
+    Entities tops_;    // of what is selected
+    vec3 pivot_{0.0f}; // their middle
     Entities entities_;
     std::vector<mat4> worlds_; // before
 };

@@ -1,9 +1,12 @@
-// Who is below whom: after each edit, lists that follow what has moved are those of a look at everything.
+// Who is below whom: after each edit, lists that follow what has moved are those of a look at everything. And what is
+// kept for as long as a state stays: no edit is missed.
 #include "tests/editor/random_edits.h"
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <map>
+#include <optional>
 
 namespace sunfleck::editor {
 namespace {
@@ -94,6 +97,77 @@ TEST(EditorTree, ChildrenOfNobodyAreAtTheTop) {
         expect_lists_of_everything(*document);
     }
     EXPECT_GE(rounds, 20);
+}
+
+// Where everything is, as what keeps places sees it.
+std::string places(Document& document) {
+    std::string bytes;
+    const auto add = [&](const auto& value) {
+        char raw[sizeof value];
+        std::memcpy(raw, &value, sizeof value);
+        bytes.append(raw, sizeof raw);
+    };
+    for (const Entity entity : document.registry().entities())
+        if (const auto placed = place_of(document, entity)) {
+            add(entity);
+            add(placed->world);
+            add(placed->bounds);
+        }
+    for (const Entity entity : document.selection())
+        add(entity);
+    return bytes;
+}
+
+TEST(EditorTree, AStateIsAnotherAfterEveryChangeOfPlacesAndSelection) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        std::mt19937 random(seed);
+        Document document;
+        for (const scene::EntityTemplate& source : scene::entity_templates())
+            add_from(document, source, vec3(float(random() % 9), 0.0f, 0.0f), 1.0f);
+        tests::RandomEdits edits(document, seed);
+        SeenState state;
+        EXPECT_TRUE(state.follow(document));
+        std::string before = places(document);
+        int changed = 0;
+        for (int step = 0; step < 400; ++step) {
+            const Entities all = document.registry().entities();
+            const Entity one = all.empty() ? Entity() : all[random() % all.size()];
+            const std::uint32_t kind = edits.below(8);
+            if (kind == 0) {
+                document.undo();
+            } else if (kind == 1) {
+                document.redo();
+            } else if (kind == 2) {
+                document.select({one});
+            } else if (kind == 3 && document.exists(one)) {
+                document.toggle(one);
+            } else if (kind == 4 && document.exists(one)) { // a drag that is given up, each half seen
+                document.begin("Move");
+                set_world(document, one, glm::translate(mat4(1.0f), vec3(float(step), 1.0f, 0.0f)));
+                EXPECT_TRUE(state.follow(document) || places(document) == before);
+                before = places(document);
+                document.cancel();
+            } else {
+                edits.once();
+            }
+            const bool is_another = places(document) != before;
+            EXPECT_TRUE(state.follow(document) || !is_another) << "seed " << seed << ", step " << step;
+            EXPECT_FALSE(state.follow(document)) << "once";
+            before = places(document);
+            changed += is_another ? 1 : 0;
+        }
+        EXPECT_GE(changed, 100);
+    }
+}
+
+// The next document may lie where the one before was, and have as many changes.
+TEST(EditorTree, AnotherDocumentAtTheSamePlaceIsAnotherState) {
+    std::optional<Document> document(std::in_place);
+    SeenState state;
+    EXPECT_TRUE(state.follow(*document));
+    EXPECT_FALSE(state.follow(*document));
+    document.emplace();
+    EXPECT_TRUE(state.follow(*document));
 }
 
 } // namespace
