@@ -62,6 +62,7 @@ Status write_report(const std::filesystem::path& path, const ReportFigures& figu
     json["gui_ms"] = {{"median", figures.gui_ms.empty() ? 0.0 : statistics::median(figures.gui_ms)},
                       {"p95", figures.gui_ms.empty() ? 0.0 : statistics::percentile(figures.gui_ms, 0.95)}};
     json["gui_frames_at"] = figures.gui_at;
+    json["gui_frame_ms"] = figures.gui_ms;
     json["scene_frames_at"] = Json::array();
     json["scene_frame_ms"] = Json::array();
     for (const FrameNote& note : session.scene.frame_notes()) {
