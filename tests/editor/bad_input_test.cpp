@@ -1,5 +1,6 @@
 // What is wrong is said, once, and changes nothing: files that are none, drops, texts, places that cannot be written
 // to, a window of no size, no display.
+#include "editor/document/document.h"
 #include "tests/editor/window_fixture.h"
 #include "tests/support/test_size.h"
 
@@ -97,6 +98,50 @@ TEST_F(EditorWindowBadInput, FilesThatAreNoScenesAreSaidAndLeaveTheScene) {
     EXPECT_GE(said, int(refused));
     EXPECT_LE(said, int(bad.size())) << "one message each";
     EXPECT_EQ(report["edits"], 1) << "the history is as it was";
+}
+
+// Dropped, as in the dialog: what is a scene is opened, what is none is said once, and the scene that is open stays.
+TEST_F(EditorWindowBadInput, TheCorpusAFolderAndAPipeAreDropped) {
+    if (!fs::exists(SUNFLECK_DROP_FILES))
+        GTEST_SKIP() << "Xlib is not installed";
+    editor->start({"cornell"});
+    ASSERT_TRUE(editor->settles());
+    std::vector<std::string> dropped;
+    fs::copy(fs::path(SUNFLECK_SOURCE_DIR) / "tests/corpus", folder / "corpus", fs::copy_options::recursive);
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "corpus"))
+        if (entry.is_regular_file())
+            dropped.push_back(entry.path().string());
+    std::sort(dropped.begin(), dropped.end());
+    ASSERT_GE(dropped.size(), 6u);
+    fs::create_directories(folder / "a folder.glb");
+    ASSERT_EQ(::mkfifo(editor->file("a pipe.glb").c_str(), 0600), 0);
+    dropped.insert(dropped.end(), {editor->file("a folder.glb"), editor->file("a pipe.glb"), editor->file("gone.glb")});
+    std::size_t opened = 0, refused = 0;
+    std::vector<std::string> errors;
+    for (const std::string& path : dropped) {
+        SCOPED_TRACE(path);
+        const std::string name = fs::path(path).filename().string();
+        const std::string title = editor->value("menu/title"), before = message();
+        ASSERT_EQ(editor->run(SUNFLECK_DROP_FILES " " + editor->window() + " '" + path + "'").status, 0);
+        ASSERT_TRUE(editor->wait_until([&] {
+            return message() != before && message().find(name) != std::string::npos;
+        })) << message();
+        ASSERT_TRUE(editor->settles());
+        const bool is_scene = bool(editor::Document::open(path));
+        ++(is_scene ? opened : refused);
+        EXPECT_EQ(message().starts_with("Opened "), is_scene) << message();
+        EXPECT_EQ(editor->value("menu/title"), is_scene ? name : title);
+        if (!is_scene)
+            errors.push_back(message());
+    }
+    std::printf("%zu opened, %zu refused\n", opened, refused);
+    EXPECT_GE(opened, 2u);
+    EXPECT_GE(refused, 5u);
+    const auto report = editor->end();
+    const std::vector<std::string> said = messages(report, 0);
+    for (const std::string& text : errors)
+        EXPECT_EQ(std::count(said.begin(), said.end(), text), 1) << text;
+    EXPECT_EQ(report["validation_messages"], 0);
 }
 
 TEST_F(EditorWindowBadInput, FiftyFilesAtOnceOpenTheFirst) {
