@@ -38,13 +38,20 @@ struct Found {
     bool contained = false;
 };
 
+// What the sources are, which SUNFLECK_COST_SOURCES says: results of others do not count.
+std::string sources() {
+    const char* const text = std::getenv("SUNFLECK_COST_SOURCES");
+    return text == nullptr ? "" : text;
+}
+
 // The file that SUNFLECK_COST_RESULTS names has a line for each setting that was measured; those are not measured
 // again, so that what takes an hour can be done in pieces. SUNFLECK_COST_MOST: so many in this piece.
 std::vector<Found> found_before(const char* path) {
     std::vector<Found> result;
     std::ifstream file(path == nullptr ? "" : path);
     for (std::string line; std::getline(file, line);)
-        if (const auto json = nlohmann::json::parse(line, nullptr, false); json.is_object())
+        if (const auto json = nlohmann::json::parse(line, nullptr, false);
+            json.is_object() && json.value("sources", "") == sources())
             result.push_back({json["setting"], json["width"], json["contained"]});
     return result;
 }
@@ -75,7 +82,8 @@ TEST_F(EditorCost, IntervalsContainWhatALongerMeasurementFinds) {
                     longer.frame.estimate, longer.frame.low, longer.frame.high, longer.frame_ms);
         std::fflush(stdout);
         if (results != nullptr)
-            std::ofstream(results, std::ios::app) << nlohmann::json{{"setting", change.setting},
+            std::ofstream(results, std::ios::app) << nlohmann::json{{"sources", sources()},
+                                                                    {"setting", change.setting},
                                                                     {"width", found.back().width},
                                                                     {"contained", found.back().contained}}
                                                          .dump()
@@ -95,17 +103,54 @@ TEST_F(EditorCost, IntervalsContainWhatALongerMeasurementFinds) {
     }
 }
 
-// Five times as many light samples: that costs, and the pass is named. A setting of a technique that lights
-// nothing here does not.
+// Five times as many light samples: that costs, and the pass is named.
 TEST_F(EditorCost, TheDearerPassIsNamed) {
     const Cost dear = measure({"lights", "1500"}, {0.0, tests::by_size(4.0, 60.0)});
     EXPECT_GT(dear.frame.low, 0.0) << cost_text(dear);
     EXPECT_TRUE(std::any_of(dear.passes.begin(), dear.passes.end(), [](const auto& pass) {
         return pass.first.find("light") != std::string::npos && pass.second.estimate > 0.0;
     })) << cost_text(dear);
-    const Cost none = measure({"transfer_reflections", "0"}, {0.0, tests::by_size(6.0, 60.0)});
-    EXPECT_LT(std::abs(none.frame.estimate), 0.1 * none.frame_ms) << cost_text(none);
-    std::printf("%s\n%s\n", cost_text(dear).c_str(), cost_text(none).c_str());
+    std::printf("%s\n", cost_text(dear).c_str());
+}
+
+// A setting of a technique that lights nothing here. An interval of 95 % is beside the truth once in twenty: two of
+// three say that there is no effect. The few seconds of the short size may be too few for that; that nothing can be
+// measured is an answer then.
+TEST_F(EditorCost, ASettingWithoutEffectIsShownAsSuch) {
+    int without = 0;
+    for (int time = 1; time <= 3 && without < 2; ++time) {
+        const Cost none = measure({"transfer_reflections", "0"}, {0.0, tests::by_size(3.0, 60.0)});
+        std::printf("%s\n", cost_text(none).c_str());
+        EXPECT_TRUE(none.finished);
+        const std::string text = cost_text(none);
+        const bool nothing = text.starts_with("no measurable effect over ");
+        const bool small = std::abs(none.frame.estimate) < 0.1 * none.frame_ms;
+        without += nothing || (!tests::long_size() && small && text.starts_with("not measurable over ")) ? 1 : 0;
+    }
+    EXPECT_EQ(without, 2);
+}
+
+// What is shown for each kind of finding.
+TEST(EditorCostText, SaysWhetherThereIsAnEffect) {
+    Cost cost;
+    cost.from = "300";
+    cost.pairs = 9;
+    cost.finished = true;
+    cost.frame_ms = 20.0;
+    cost.frame = {0.1, -0.2, 0.4};
+    EXPECT_EQ(cost_text(cost), "no measurable effect over 300 (less than 0.40 ms)");
+    cost.frame = {0.1, -2.0, 2.2};
+    EXPECT_EQ(cost_text(cost), "not measurable over 300 (-2.00 to 2.20 ms)");
+    cost.frame = {0.3, 0.1, 0.5};
+    EXPECT_EQ(cost_text(cost), "+0.30 ms (0.10 to 0.50) of 20.0 ms over 300");
+    cost.frame = {-0.3, -0.5, -0.1};
+    EXPECT_EQ(cost_text(cost), "-0.30 ms (-0.50 to -0.10) of 20.0 ms over 300");
+    cost.finished = false;
+    EXPECT_TRUE(cost_text(cost).ends_with(" ..."));
+    cost.pairs = 1;
+    EXPECT_EQ(cost_text(cost), "measuring ...");
+    cost.error = "The device was lost";
+    EXPECT_EQ(cost_text(cost), "The device was lost");
 }
 
 // A machine that is slow by up to half for a while, with noise and some wild blocks: 95 % of intervals contain the
