@@ -24,7 +24,7 @@ endif()
 # rays, and all in builds with the thread sanitizer: functions of std::string that are not inlined there are those that
 # Embree calls, too, and it is not instrumented.
 set(SUNFLECK_BRIEF_TARGETS sunfleck_core sunfleck_gpu sunfleck_io sunfleck_statistics
-    sunfleck_render sunfleck_assets sunfleck_viewer file_tests sanitizer_tests)
+    sunfleck_render sunfleck_assets sunfleck_viewer sunfleck_shader_compiler file_tests sanitizer_tests)
 
 # sunfleck_use_precompiled(target owner): the target takes the headers that the owner precompiles.
 function(sunfleck_use_precompiled target owner)

@@ -7,6 +7,7 @@
 #include "engine/core/file.h"
 #include "test_places.h"
 #include "tests/support/driven_display.h"
+#include "tests/support/test_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,15 +38,9 @@ public:
 
     void start(const std::vector<std::string>& arguments, const std::string& program = SUNFLECK_EDITOR) {
         std::filesystem::remove(folder_ / "widgets.json");
-        std::vector<std::string> all{program,
-                                     "--size",
-                                     size_,
-                                     "--widgets",
-                                     file("widgets.json"),
-                                     "--report",
-                                     file("report.json"),
-                                     "--settings",
-                                     file("settings.json")};
+        std::vector<std::string> all = environment();
+        all.insert(all.end(), {program, "--size", size_, "--widgets", file("widgets.json"), "--report",
+                               file("report.json"), "--settings", file("settings.json")});
         all.insert(all.end(), arguments.begin(), arguments.end());
         editor_ = display_.launch(all, folder_ / "log");
         answers_ = true;
@@ -173,8 +168,17 @@ public:
     // Ends as by a signal, and what it reported; null if it did not end by itself.
     nlohmann::json end() {
         DrivenDisplay::end(std::exchange(editor_, -1), SIGINT);
-        const auto text = read_file(folder_ / "report.json");
-        return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+        return report();
+    }
+    // Ends as users do, without saving; the report. `status`: the program's, which tells of what a sanitizer has found,
+    // of leaks, too: after a signal it has no time to look for them.
+    nlohmann::json quit(int& status) {
+        key("ctrl+q");
+        if (wait_until([&] { return !runs() || find("dialog/Discard").has_value(); }, 10.0) && runs() &&
+            !click("dialog/Discard"))
+            return {};
+        status = wait_for_end();
+        return report();
     }
     // As a crash would.
     void crash() { DrivenDisplay::end(std::exchange(editor_, -1), SIGKILL); }
@@ -193,6 +197,19 @@ public:
     }
 
 private:
+    // In builds with sanitizers the driver stays loaded to the end, so that leak reports can tell its leaks from ours
+    // by module (tests/leak_suppressions.txt). Not the validation layer: its functions have the loader's names.
+    static std::vector<std::string> environment() {
+        if (!sanitized())
+            return {};
+        const char* const options = std::getenv("ASAN_OPTIONS");
+        return {"env", "LD_PRELOAD=libvulkan_lvp.so",
+                "ASAN_OPTIONS=verify_asan_link_order=0:" + std::string(options == nullptr ? "" : options)};
+    }
+    nlohmann::json report() const {
+        const auto text = read_file(folder_ / "report.json");
+        return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    }
     nlohmann::json shown() const {
         const auto text = read_file(folder_ / "widgets.json");
         return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
