@@ -8,7 +8,7 @@
 namespace sunfleck {
 namespace {
 
-using tests::DrivenEditor;
+namespace fs = std::filesystem;
 
 constexpr const char* roughness = "inspector/Material/roughness/value";
 
@@ -38,17 +38,18 @@ protected:
     bool picture_changes(const std::string& before) const {
         return editor->wait_until([&] { return editor->value("viewport/picture") != before; });
     }
-    // Of the scene as it is saved.
-    mat4 world_of(const std::string& name, const std::string& entity) const {
-        saved(name);
-        auto opened = editor::Document::open(folder / name / "room.scene.json");
+    // Where the two are, in a file and in the scene that is saved now.
+    static std::pair<mat4, mat4> both_blocks(const fs::path& file) {
+        auto opened = editor::Document::open(file);
         EXPECT_TRUE(opened);
-        return opened ? editor::world_of(**opened, (*opened)->find(entity)) : mat4(0.0f);
+        const auto place = [&](const char* name) {
+            return opened ? editor::world_of(**opened, (*opened)->find(name)) : mat4(0.0f);
+        };
+        return {place("tall block"), place("short block")};
     }
-    std::pair<mat4, mat4> both_blocks(const std::string& name) const {
-        const mat4 tall = world_of(name, "tall block");
-        auto opened = editor::Document::open(folder / name / "room.scene.json");
-        return {tall, opened ? editor::world_of(**opened, (*opened)->find("short block")) : mat4(0.0f)};
+    std::pair<mat4, mat4> both_blocks_saved(const std::string& name) const {
+        saved(name);
+        return both_blocks(folder / name / "room.scene.json");
     }
 };
 
@@ -176,14 +177,14 @@ TEST_F(EditorWindowEditing, ComponentsAreCopiedPastedRemovedAndAdded) {
 // About one pivot: rotated, they keep their distance; scaled, they and their distance grow alike.
 TEST_F(EditorWindowEditing, HandlesTurnAndScaleSeveralAboutOnePivot) {
     ASSERT_NO_FATAL_FAILURE(select_both_blocks());
-    const auto [tall, low] = both_blocks("before");
+    const auto [tall, low] = both_blocks(fs::path(SUNFLECK_TOOL).parent_path() / "../scenes/cornell.scene.json");
     const float apart = glm::length(vec3(tall[3] - low[3]));
     const vec3 middle(0.5f * (tall[3] + low[3]));
     editor->key("e");
     ASSERT_TRUE(editor->appears("viewport/gizmo y"));
     ASSERT_TRUE(editor->drag("viewport/gizmo y", 60, 0));
-    ASSERT_TRUE(editor->wait_for("menu/title", "room.scene.json *"));
-    const auto [tall_turned, low_turned] = both_blocks("turned");
+    ASSERT_TRUE(editor->wait_for("menu/title", "cornell.scene.json *"));
+    const auto [tall_turned, low_turned] = both_blocks_saved("turned");
     EXPECT_NEAR(glm::length(vec3(tall_turned[3] - low_turned[3])), apart, 1e-3f * apart);
     EXPECT_NEAR(glm::length(vec3(0.5f * (tall_turned[3] + low_turned[3])) - middle), 0.0f, 1e-3f * apart);
     EXPECT_GT(glm::length(vec3(tall_turned[3] - tall[3])), 0.02f * apart);
@@ -200,7 +201,7 @@ TEST_F(EditorWindowEditing, HandlesTurnAndScaleSeveralAboutOnePivot) {
     ASSERT_TRUE(editor->appears("viewport/gizmo middle"));
     ASSERT_TRUE(editor->drag("viewport/gizmo middle", 30, 0));
     ASSERT_TRUE(editor->wait_for("menu/title", "room.scene.json *"));
-    const auto [tall_grown, low_grown] = both_blocks("grown");
+    const auto [tall_grown, low_grown] = both_blocks_saved("grown");
     const float factor = glm::length(vec3(tall_grown[0])) / glm::length(vec3(tall_turned[0]));
     EXPECT_GT(factor, 1.05f);
     EXPECT_NEAR(glm::length(vec3(low_grown[1])) / glm::length(vec3(low_turned[1])), factor, 1e-3f);
