@@ -6,6 +6,7 @@
 #include "viewer/preparation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -15,12 +16,12 @@ namespace {
 
 using CostClock = std::chrono::steady_clock;
 
-constexpr int warm_up_blocks = 3, frames_of_block = 3;
+constexpr int warm_up_frames = 9;
 constexpr std::uint32_t small_width = 64, small_height = 36;
-// Whether the interval is narrow enough is looked at when there are so many pairs, and then each time that their number
-// has grown by half; it has to be so twice in a row. Who looks after every pair, or once, stops at the narrow ones
-// among many, and those miss more often.
-constexpr std::size_t fewest_pairs = 16;
+// Whether the interval is narrow enough is looked at when there are so many rounds, and then each time that their
+// number has grown by half; it has to be so twice in a row. Who looks after every round, or once, stops at the narrow
+// ones among many, and those miss more often.
+constexpr std::size_t fewest_rounds = 16;
 constexpr double precise_share = 0.05;   // of the frame: how wide the interval may be
 constexpr double telling_interval = 0.5; // s: the GUI's own frames disturb what is measured
 constexpr double two_sided_95 = 1.959964;
@@ -56,7 +57,7 @@ std::string cost_text(const Cost& cost) {
     char text[160];
     if (!cost.error.empty())
         return cost.error;
-    if (!std::isfinite(cost.frame.low) || !std::isfinite(cost.frame.high) || cost.pairs < 2)
+    if (!std::isfinite(cost.frame.low) || !std::isfinite(cost.frame.high) || cost.rounds < 2)
         return "measuring ...";
     const double most = std::max(std::abs(cost.frame.low), std::abs(cost.frame.high));
     if (!cost.frame.includes_zero())
@@ -76,11 +77,28 @@ struct CostThread::Work {
     std::string setting;
     gi::Settings from;
     ViewRequest view;
-    std::vector<double> frame_ms, log_ratios; // with the first value; of a pair, second to first
+    std::vector<double> frame_ms, log_ratios; // by round: with the first value; second to first
     std::map<std::string, std::vector<double>> passes;
     std::string to_text;
-    CostClock::time_point began; // of the first pair
+    CostClock::time_point began; // of the first round
+
+    void add(const Round& round);
+    CostInterval interval() const { return cost_of_ratios(log_ratios, statistics::median(frame_ms)); }
 };
+
+// What a round found: two frames with each value.
+struct CostThread::Round {
+    std::array<double, 2> log_ms{};                       // by value, the sum
+    std::map<std::string, std::array<double, 2>> pass_ms; // likewise; a frame without the pass counts as none
+};
+
+void CostThread::Work::add(const Round& round) {
+    for (const auto& [name, times] : round.pass_ms)
+        if (auto& differences = passes[name]; differences.size() == log_ratios.size()) // was in all rounds so far
+            differences.push_back(0.5 * (times[1] - times[0]));
+    frame_ms.push_back(std::exp(0.5 * round.log_ms[0]));
+    log_ratios.push_back(0.5 * (round.log_ms[1] - round.log_ms[0]));
+}
 
 CostThread::CostThread(gpu::Device& device, std::function<bool()> busy, std::function<void()> wake, CostEffort effort)
     : device_(device), busy_(std::move(busy)), wake_(std::move(wake)), effort_(effort), thread_([this] { run(); }) {}
@@ -133,36 +151,44 @@ bool CostThread::wait_for_turn() const {
     return !abandoned_;
 }
 
-Status CostThread::block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times,
-                         double& frame_ms) {
+// A frame, by its time, ms; and what its passes took.
+Result<double> CostThread::frame(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& passes) {
     viewer::FrameRequest request = request_of(view);
     request.progress = [this](float) { return !abandoned_; };
-    double log_sum = 0.0;
-    std::map<std::string, std::vector<double>> passes;
-    for (int i = 0; i < frames_of_block; ++i) {
-        SUNFLECK_TRY(copy.renderer().render_and_wait(request));
-        const viewer::FrameStatistics& statistics = copy.renderer().statistics();
-        log_sum += std::log(statistics.frame_ms);
-        for (const auto& [name, time] : statistics.gpu_ms)
-            passes[name].push_back(time);
-        for (const auto& [name, time] : statistics.cpu_ms)
-            passes[name + " (CPU)"].push_back(time);
+    SUNFLECK_TRY(copy.renderer().render_and_wait(request));
+    const viewer::FrameStatistics& statistics = copy.renderer().statistics();
+    passes.clear();
+    for (const auto& [name, time] : statistics.gpu_ms)
+        passes[name] = time;
+    for (const auto& [name, time] : statistics.cpu_ms)
+        passes[name + " (CPU)"] = time;
+    return statistics.frame_ms;
+}
+
+// A B B A, frame by frame. Single frames: what disturbs one mostly disturbs the next, too, so that several of one value
+// in a row say little more than one, and those of the two values are best close together.
+Result<std::optional<CostThread::Round>> CostThread::round(const Copies& copies, const ViewRequest& view) {
+    Round result;
+    for (const std::size_t value : {0u, 1u, 1u, 0u}) {
+        if (!wait_for_turn())
+            return std::optional<Round>();
+        std::map<std::string, double> passes;
+        SUNFLECK_ASSIGN(const double milliseconds, frame(*copies[value], view, passes));
+        result.log_ms[value] += std::log(milliseconds);
+        for (const auto& [name, time] : passes)
+            result.pass_ms[name][value] += time;
     }
-    frame_ms = std::exp(log_sum / frames_of_block);
-    times.clear();
-    for (const auto& [name, values] : passes)
-        times[name] = statistics::median(values);
-    return {};
+    return std::optional<Round>(std::move(result));
 }
 
 void CostThread::publish(const Work& work, bool finished) {
     const std::scoped_lock lock(mutex_);
     if (abandoned_) // something else is asked for already, or nothing
         return;
-    cost_.pairs = work.log_ratios.size();
+    cost_.rounds = work.log_ratios.size();
     cost_.seconds = seconds_of(CostClock::now() - work.began);
     cost_.frame_ms = statistics::median(work.frame_ms);
-    cost_.frame = cost_of_ratios(work.log_ratios, cost_.frame_ms);
+    cost_.frame = work.interval();
     cost_.finished = finished;
     cost_.passes.clear();
     for (const auto& [name, differences] : work.passes)
@@ -186,46 +212,34 @@ Result<std::unique_ptr<SceneCopy>> CostThread::prepared_copy(const Work& work, c
     small.height = small_height;
     SUNFLECK_TRY(viewer::prepare_lighting(copy->renderer(), request_of(small), options));
     std::map<std::string, double> unused;
-    double frame_ms = 0.0;
-    for (int i = 0; i < warm_up_blocks && wait_for_turn(); ++i)
-        SUNFLECK_TRY(block(*copy, work.view, unused, frame_ms));
+    for (int i = 0; i < warm_up_frames && wait_for_turn(); ++i)
+        SUNFLECK_TRY(frame(*copy, work.view, unused));
     return copy;
 }
 
 Status CostThread::measure(Work& work) {
-    std::unique_ptr<SceneCopy> copies[2];
-    for (int i = 0; i < 2; ++i) {
+    Copies copies;
+    for (std::size_t i = 0; i < copies.size(); ++i) {
         SUNFLECK_ASSIGN(copies[i], prepared_copy(work, i == 0 ? work.from : *work.scene.settings));
     }
     work.began = CostClock::now();
-    CostClock::time_point told = work.began;
-    std::size_t next_look = fewest_pairs;
-    for (bool narrow = false, precise = false;
-         !precise && seconds_of(CostClock::now() - work.began) < effort_.longest;) {
-        std::map<std::string, double> times[2];
-        double frame_ms[2] = {};
-        const int first = int(work.log_ratios.size() % 2); // A B, then B A
-        for (const int turn : {first, 1 - first}) {
-            if (!wait_for_turn())
-                return {};
-            SUNFLECK_TRY(block(*copies[turn], work.view, times[turn], frame_ms[turn]));
-        }
-        work.frame_ms.push_back(frame_ms[0]);
-        work.log_ratios.push_back(std::log(frame_ms[1] / frame_ms[0]));
-        for (int i = 0; i < 2; ++i)
-            for (const auto& [name, time] : times[i])
-                work.passes[name].resize(work.log_ratios.size() - 1);
-        for (auto& [name, differences] : work.passes)
-            differences.push_back(times[1][name] - times[0][name]);
-        const double usual_ms = statistics::median(work.frame_ms);
-        const CostInterval interval = cost_of_ratios(work.log_ratios, usual_ms);
+    const auto elapsed = [&work] { return seconds_of(CostClock::now() - work.began); };
+    double told = 0.0;
+    std::size_t next_look = fewest_rounds;
+    for (bool narrow = false, precise = false; !precise && elapsed() < effort_.longest;) {
+        SUNFLECK_ASSIGN(const std::optional<Round> found, round(copies, work.view));
+        if (!found)
+            return {};
+        work.add(*found);
         if (work.log_ratios.size() >= next_look) {
             next_look += next_look / 2;
-            const bool was_narrow = std::exchange(narrow, interval.high - interval.low <= precise_share * usual_ms);
-            precise = narrow && was_narrow && seconds_of(CostClock::now() - work.began) >= effort_.shortest;
+            const CostInterval interval = work.interval();
+            const double precise_ms = precise_share * statistics::median(work.frame_ms);
+            const bool was_narrow = std::exchange(narrow, interval.high - interval.low <= precise_ms);
+            precise = narrow && was_narrow && elapsed() >= effort_.shortest;
         }
-        if (const auto now = CostClock::now(); !precise && seconds_of(now - told) > telling_interval) {
-            told = now;
+        if (!precise && elapsed() - told > telling_interval) {
+            told = elapsed();
             publish(work, false);
             wake_();
         }

@@ -1,9 +1,11 @@
-// What a setting costs: two copies of the scene, with one value and with the other, are drawn in short blocks by turns
-// (A B B A), so that whatever else the machine does meets both alike. The difference and its interval are those of
-// engine/statistics/clipped_sum.h, one implementation with the frame-time gate.
+// What a setting costs: two copies of the scene, with one value and with the other, are drawn by turns, in rounds of
+// four frames (A B B A), so that whatever else the machine does meets both alike. The difference and its interval are
+// those of engine/statistics/clipped_sum.h, one implementation with the frame-time gate.
 #pragma once
 
 #include "editor/window/scene_thread.h"
+
+#include <array>
 
 namespace sunfleck::editor {
 
@@ -18,7 +20,7 @@ struct Cost {
     double frame_ms = 0.0; // with the first value, median
     CostInterval frame;
     std::vector<std::pair<std::string, CostInterval>> passes; // whose time changed, the most changed first
-    std::size_t pairs = 0;                                    // of blocks
+    std::size_t rounds = 0;                                   // of two frames with each value
     double seconds = 0.0;                                     // that they took
     bool finished = false;
     std::string error;
@@ -29,10 +31,10 @@ struct Cost {
     }
 };
 
-// The difference of pairs: centre and interval.
+// The difference by rounds: centre and interval.
 CostInterval cost_interval(const std::vector<double>& differences);
-// The same where a pair gives the logarithm of how many times longer its second block took, as in the gate: a machine
-// that is slow for a while slows both down by the same factor, and not by the same time.
+// The same where a round gives the logarithm of how many times longer the second value's frames took, as in the gate: a
+// machine that is slow for a while slows both down by the same factor, and not by the same time.
 CostInterval cost_of_ratios(const std::vector<double>& log_ratios, double frame_ms);
 // "+3.2 ms (2.9 to 3.5)", "no measurable effect (less than 0.4 ms)", or what is under way.
 std::string cost_text(const Cost& cost);
@@ -58,10 +60,13 @@ public:
 
 private:
     struct Work;
+    struct Round;
+    using Copies = std::array<std::unique_ptr<SceneCopy>, 2>; // with the first value and the second
     void run();
     Status measure(Work& work);
     Result<std::unique_ptr<SceneCopy>> prepared_copy(const Work& work, const gi::Settings& settings);
-    Status block(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& times, double& frame_ms);
+    Result<double> frame(SceneCopy& copy, const ViewRequest& view, std::map<std::string, double>& passes);
+    Result<std::optional<Round>> round(const Copies& copies, const ViewRequest& view);
     bool wait_for_turn() const;
     void publish(const Work& work, bool finished);
 

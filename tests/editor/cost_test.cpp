@@ -76,9 +76,9 @@ TEST_F(EditorCost, IntervalsContainWhatALongerMeasurementFinds) {
         found.push_back(
             {change.setting, width(shown) / shown.frame_ms,
              estimate >= shown.frame.low / shown.frame_ms && estimate <= shown.frame.high / shown.frame_ms});
-        std::printf("%-20s %s; after %.0f s and %zu pairs the interval is %.1f %% of the frame; four times longer: "
+        std::printf("%-20s %s; after %.0f s and %zu rounds the interval is %.1f %% of the frame; four times longer: "
                     "%+.2f ms (%.2f to %.2f) of %.1f ms\n",
-                    change.setting, cost_text(shown).c_str(), shown.seconds, shown.pairs, 100.0 * found.back().width,
+                    change.setting, cost_text(shown).c_str(), shown.seconds, shown.rounds, 100.0 * found.back().width,
                     longer.frame.estimate, longer.frame.low, longer.frame.high, longer.frame_ms);
         std::fflush(stdout);
         if (results != nullptr)
@@ -134,7 +134,7 @@ TEST_F(EditorCost, ASettingWithoutEffectIsShownAsSuch) {
 TEST(EditorCostText, SaysWhetherThereIsAnEffect) {
     Cost cost;
     cost.from = "300";
-    cost.pairs = 9;
+    cost.rounds = 9;
     cost.finished = true;
     cost.frame_ms = 20.0;
     cost.frame = {0.1, -0.2, 0.4};
@@ -147,7 +147,7 @@ TEST(EditorCostText, SaysWhetherThereIsAnEffect) {
     EXPECT_EQ(cost_text(cost), "-0.30 ms (-0.50 to -0.10) of 20.0 ms over 300");
     cost.finished = false;
     EXPECT_TRUE(cost_text(cost).ends_with(" ..."));
-    cost.pairs = 1;
+    cost.rounds = 1;
     EXPECT_EQ(cost_text(cost), "measuring ...");
     cost.error = "The device was lost";
     EXPECT_EQ(cost_text(cost), "The device was lost");
