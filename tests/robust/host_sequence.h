@@ -298,13 +298,24 @@ private:
     void set() {
         const SettingValues& setting = host_settings[pick(std::size(host_settings))];
         if (!wrong_)
-            return expect(context_.set(setting.name, setting.values[pick(setting.values.size())]), "set");
+            return set(setting.name, setting.values[pick(setting.values.size())]);
         if (pick(8) == 0)
             return expect(context_.set(chance() ? "" : "nothing", "1"), "set", "no such setting");
         // Of no setting's kind.
         constexpr const char* bad[] = {"nan", "inf", "1e38", "-1", "maybe", "0x", "1 1"};
         const std::string value = bad[pick(std::size(bad))];
         expect(context_.set(setting.name, value), "set", std::string(setting.name) + " = " + value);
+    }
+    // A value of the setting's kind is accepted unless it contradicts another setting.
+    void set(std::string_view name, std::string_view value) {
+        const std::string_view movers = name == "movers" ? value : movers_, plan = name == "plan" ? value : plan_;
+        wrong_ = contradict(movers, plan);
+        const Status status = context_.set(name, value);
+        if (status) {
+            movers_ = movers;
+            plan_ = plan;
+        }
+        expect(status, "set", "movers = " + std::string(movers) + ", plan = " + std::string(plan));
     }
     // What returns no status: any number will do.
     void look() {
@@ -327,6 +338,7 @@ private:
     }
 
     std::vector<std::function<Status(host::Context&)>> accepted_;
+    std::string_view movers_ = initial_value("movers"), plan_ = initial_value("plan");
     std::uint32_t materials_ = 0, live_ = 0;
     std::vector<bool> meshes_, instances_, lights_, sensors_; // by number: whether it is there
     std::vector<std::uint32_t> mesh_of_;                      // by instance

@@ -1,4 +1,4 @@
-// Values that random hosts give each setting: cheap ones, all of which fit together.
+// Values that random hosts give each setting: cheap ones, all of which but one pair fit together.
 #pragma once
 
 #include "gi_module/settings.h"
@@ -94,6 +94,18 @@ inline constexpr SettingValues host_settings[] = {
     {"sensor_rays", {"2048", "1", "100"}},
     {"sensors", {"all", "direct", "all"}},
 };
+
+// Transferred radiance is the only light of the movers that it supports, so that no other technique may be told to
+// light them, too.
+inline bool contradict(std::string_view movers, std::string_view plan) {
+    return movers == "prt" && plan == "direct.fixed=brute_force";
+}
+
+inline std::string_view initial_value(std::string_view name) {
+    const auto* found = std::find_if(std::begin(host_settings), std::end(host_settings),
+                                     [name](const SettingValues& known) { return known.name == name; });
+    return found->values[0];
+}
 
 // Settings that the list above forgets.
 inline std::string forgotten_settings() {
