@@ -26,6 +26,18 @@ constexpr double precise_share = 0.05;   // of the frame: how wide the interval 
 constexpr double telling_interval = 0.5; // s: the GUI's own frames disturb what is measured
 constexpr double two_sided_95 = 1.959964;
 
+// Neighbours may have been disturbed alike. The centres of parts in a row know little of each other once a part is
+// longer than what disturbs it: they are as few as an interval can be made of, so that they are as long as possible.
+std::vector<double> centres_of_parts(const std::vector<double>& samples) {
+    const std::size_t length = std::max(samples.size() / fewest_rounds, std::size_t(1));
+    std::vector<double> centres;
+    for (std::size_t at = 0; at + length <= samples.size(); at += length)
+        centres.push_back(statistics::clipped_centre(
+            std::vector<double>(samples.begin() + std::ptrdiff_t(at), samples.begin() + std::ptrdiff_t(at + length)),
+            0.0));
+    return centres;
+}
+
 viewer::FrameRequest request_of(const ViewRequest& view) {
     viewer::FrameRequest request;
     request.camera = view.camera;
@@ -42,7 +54,8 @@ double seconds_of(CostClock::duration duration) {
 
 } // namespace
 
-CostInterval cost_interval(const std::vector<double>& differences) {
+CostInterval cost_interval(const std::vector<double>& by_round) {
+    const std::vector<double> differences = centres_of_parts(by_round);
     return {statistics::clipped_centre(differences, 0.0), statistics::clipped_centre(differences, two_sided_95),
             statistics::clipped_centre(differences, -two_sided_95)};
 }

@@ -31,8 +31,8 @@ struct Cost {
     }
 };
 
-// The difference by rounds: centre and interval.
-CostInterval cost_interval(const std::vector<double>& differences);
+// The difference by rounds, in the order in which they were drawn: centre and interval.
+CostInterval cost_interval(const std::vector<double>& by_round);
 // The same where a round gives the logarithm of how many times longer the second value's frames took, as in the gate: a
 // machine that is slow for a while slows both down by the same factor, and not by the same time.
 CostInterval cost_of_ratios(const std::vector<double>& log_ratios, double frame_ms);
