@@ -2,7 +2,8 @@
 """Kills programs that write, at random moments, and looks at what they leave: old or new, never broken.
 
 Usage: kills.py BUILD_FOLDER FIRST LAST     seeds; each is one kill, of what its number chooses
-       kills.py BUILD_FOLDER share          one of each, with a long pass of 2 s and whatever it loses on a machine with other work: part of every test run. The kinds:
+       kills.py BUILD_FOLDER share          one of each, as a part of every test run: with a long pass of 2 s, and however
+                                            much work is lost, since the machine may have other work. The kinds:
   reference     of many passes, saved every 0.2 s: goes on to the same bits, and loses at most two intervals
   long pass     of one pass of about a minute, killed again and again and gone on with, by this run and the next; the
                 picture is compared when it is done, at the latest after seed 300
