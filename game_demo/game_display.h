@@ -4,6 +4,7 @@
 #include "engine/app/gui_screen.h"
 #include "game_demo/options.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -33,6 +34,11 @@ public:
     viewer::SceneRenderer::Overlay overlay();
     // Submits the recorded frame and hands its picture to the window.
     Status present(VkCommandBuffer commands, viewer::SceneRenderer& renderer);
+
+    // Of text and widgets, by the window's height.
+    static float ui_scale(const DemoSettings& settings, VkExtent2D extent) {
+        return settings.ui_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
+    }
 
 private:
     GameDisplay() = default;

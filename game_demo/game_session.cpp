@@ -27,14 +27,13 @@ ImU32 colour_of(vec3 threshold) {
 }
 
 // The closed sensor of the area, or else an open one.
-ecs::Entity sensor_in(const GameWorld& world, const scene::GameArea& area, vec3 centre) {
+ecs::Entity sensor_in(const GameWorld& world, ecs::Entity area) {
     ecs::Entity found;
     bool found_open = true;
     world.registry().view<scene::LightSensor, scene::SensorReading, scene::WorldTransform>().each(
         [&](ecs::Entity entity, const scene::LightSensor&, const scene::SensorReading& reading,
             const scene::WorldTransform& place) {
-            const vec3 away = glm::abs(vec3(place.matrix[3]) - centre) - area.half_size;
-            if (std::max({away.x, away.y, away.z}) <= 0.0f && (found.is_null() || (found_open && !reading.open))) {
+            if (world.is_in(area, vec3(place.matrix[3])) && (found.is_null() || (found_open && !reading.open))) {
                 found = entity;
                 found_open = reading.open;
             }
@@ -97,6 +96,9 @@ bool GameSession::begin(GameWorld& world, bool resume) {
     title_seconds_ = title_time;
     area_seconds_ = 0.0;
     hint_seconds_ = resumed ? 0.0 : hint_time; // the first one says what the game is about
+    ended_ = world.finished();
+    if (!resume && has_folder_ && is_game()) // of this game from now on, not of the one before
+        save_checkpoint();
     return resumed || !resume;
 }
 
@@ -105,19 +107,30 @@ void GameSession::save_checkpoint() {
     saving_ = std::async(std::launch::async, [files = files_, game = kept()] { return files.write(game()); });
 }
 
+void GameSession::remove_checkpoints() {
+    end_saving();
+    saving_ = std::async(std::launch::async, [files = files_] { return files.clear(); });
+}
+
 void GameSession::end_saving() {
     if (!saving_.valid())
         return;
     if (const Status saved = saving_.get(); !saved)
-        message_ = "No checkpoint: " + saved.error().message;
+        message_ = (ended_ ? "The checkpoint stays: " : "No checkpoint: ") + saved.error().message;
 }
 
 void GameSession::update(double seconds) {
     if (saving_.valid() && saving_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
         end_saving();
-    if (!has_areas() || world_->finished())
+    if (!is_game() || ended_)
         return;
     seconds_ = double(world_->simulation().steps()) * simulation::step_seconds;
+    if (world_->finished()) {
+        ended_ = true;
+        if (has_folder_)
+            remove_checkpoints();
+        return;
+    }
     title_seconds_ = std::max(title_seconds_ - seconds, 0.0);
     hint_seconds_ = std::max(hint_seconds_ - seconds, 0.0);
     area_seconds_ += seconds;
@@ -136,7 +149,7 @@ void GameSession::update(double seconds) {
 
 Status GameSession::keep() {
     end_saving();
-    return has_folder_ && has_areas() && !world_->finished() ? files_.write(saved()) : Status();
+    return has_folder_ && is_game() && !world_->finished() ? files_.write(saved()) : Status();
 }
 
 void GameSession::show_hint() {
@@ -147,7 +160,7 @@ GameProgress GameSession::progress() const {
     if (world_ == nullptr)
         return {"", vec3(0.0f), 0.0f, 0, false, false, false, can_resume()};
     const simulation::Simulation& simulation = world_->simulation();
-    return {has_areas() ? world_->area()->title : std::string(),
+    return {has_area() ? world_->area()->title : std::string(),
             simulation.player().capsule().foot,
             simulation.player().yaw(),
             simulation.steps(),
@@ -158,7 +171,7 @@ GameProgress GameSession::progress() const {
 }
 
 void GameSession::draw() const {
-    if (!has_areas())
+    if (!has_area())
         return;
     draw_title();
     draw_sensor();
@@ -174,10 +187,8 @@ void GameSession::draw_title() const {
 
 // The room's sensor: its shape, and a bar for each colour that it needs, with a line where it is enough.
 void GameSession::draw_sensor() const {
-    const scene::GameArea& area = *world_->area();
     const ecs::Registry& registry = world_->registry();
-    const vec3 centre(scene::world_matrix(registry, world_->area_entity())[3]);
-    const ecs::Entity entity = sensor_in(*world_, area, centre);
+    const ecs::Entity entity = sensor_in(*world_, world_->area_entity());
     if (entity.is_null())
         return;
     const auto& sensor = registry.get<scene::LightSensor>(entity);

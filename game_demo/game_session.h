@@ -26,11 +26,12 @@ public:
     GameSession(const GameSession&) = delete;
     GameSession& operator=(const GameSession&) = delete;
 
-    // Of a level that was just loaded. `resume`: goes on at the last checkpoint. False: none is good, and the level
-    // must be loaded once more.
+    // Of a level that was just loaded. `resume`: goes on at the last checkpoint; else the first one is made. False:
+    // none is good, and the level must be loaded once more.
     bool begin(GameWorld& world, bool resume);
     bool can_resume() const { return has_folder_ && files_.any(); }
-    // After a frame's steps: notices new areas, saves a checkpoint there, on a thread: no frame waits for the disk.
+    // After a frame's steps: notices new areas, saves a checkpoint there, on a thread: no frame waits for the disk. At
+    // the end of the game the checkpoints go.
     void update(double seconds);
     void show_hint();
     // Saves a checkpoint where the player stands, unless the game has ended: whoever quits goes on from there. Waits.
@@ -42,7 +43,9 @@ public:
     std::function<std::string()> kept() const {
         return world_ != nullptr ? keep_game(*world_, files_.level()) : std::function<std::string()>();
     }
-    bool has_areas() const { return world_ != nullptr && world_->area() != nullptr; }
+    bool is_game() const { return world_ != nullptr && world_->is_game(); }
+    bool has_area() const { return world_ != nullptr && world_->area() != nullptr; }
+    bool has_hint() const { return has_area() && !world_->area()->hint.empty(); }
     bool finished() const { return world_ != nullptr && world_->finished(); }
     double seconds() const { return seconds_; }
 
@@ -53,6 +56,7 @@ public:
 
 private:
     void save_checkpoint();
+    void remove_checkpoints();
     void end_saving(); // waits, and keeps what went wrong as a message
     void draw_title() const;
     void draw_sensor() const;
@@ -63,7 +67,8 @@ private:
     ecs::Entity area_;
     double seconds_ = 0.0, title_seconds_ = 0.0, hint_seconds_ = 0.0, area_seconds_ = 0.0;
     std::string message_;
-    std::future<Status> saving_; // valid: a checkpoint is being written
+    bool ended_ = false;
+    std::future<Status> saving_; // valid: a checkpoint is being written, or all are removed
 };
 
 } // namespace sunfleck::demo

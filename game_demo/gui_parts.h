@@ -23,6 +23,12 @@ inline float unit() {
     return ImGui::GetFontSize();
 }
 
+inline void heading(const char* text, float scale) {
+    ImGui::SetWindowFontScale(scale);
+    ImGui::TextUnformatted(text);
+    ImGui::SetWindowFontScale(1.0f);
+}
+
 inline std::string key_of(const DemoSettings& settings, Action action) {
     return app::key_name(settings.bindings[std::size_t(action)]);
 }

@@ -13,7 +13,7 @@ namespace sunfleck::demo {
 enum class Screen { title, playing, paused, settings, help, finished };
 // "title", "playing", "paused", ...
 const char* screen_name(Screen screen);
-enum class Decision { none, play, resume, restart, hint, reset_room, quit };
+enum class Decision { none, play, resume, restart, hint, reset_room, title, quit };
 
 // Data for the overlays.
 struct OverlayData {
@@ -25,7 +25,8 @@ struct OverlayData {
     std::uint32_t rendered_width = 0, rendered_height = 0;
     std::optional<float> light_share; // how far a change of light is, 0 to 1; none: there is none
     std::string device;
-    bool is_game = false, can_resume = false; // the level has areas; there is a checkpoint
+    bool is_game = false, can_resume = false; // the level has areas or a goal; there is a checkpoint
+    bool has_area = false, has_hint = false;  // the person is in one; it has a hint
     bool with_gamepad = false;                // the person plays with one
     double game_seconds = 0.0;
 };
@@ -35,13 +36,13 @@ public:
     Screen screen() const { return screen_; }
     // Settings and help lead back to the screen that they were opened from.
     void show(Screen screen);
-    // Escape or the gamepad's start button.
+    // Escape or the gamepad's start button; in menus, its B button.
     void back();
     // Draws and applies changes to `settings` immediately. `changed`: at least one setting changed.
     Decision draw(DemoSettings& settings, const OverlayData& data, const app::InputState& input, bool& changed);
     // Replaces draw while a level loads. `share`: fraction done, 0 to 1.
     static void loading_screen(float share);
-    // Shows a message at the top for a few seconds.
+    // Shows a message at the top for a few seconds; an empty one is none.
     void say(std::string message, double seconds = 3.5);
     // The button that the keyboard or gamepad has selected; empty: none.
     const std::string& selected() const { return selected_; }
@@ -59,6 +60,7 @@ private:
     void settings_tabs(DemoSettings& settings, const app::InputState& input, bool& changed);
     void help_screen(const DemoSettings& settings, bool is_game);
     void prompts(const DemoSettings& settings, const OverlayData& data);
+    static void direct_light_label(const DemoSettings& settings, const OverlayData& data);
     void times(const OverlayData& data);
     void message();
     static void light_progress(float share);
@@ -73,7 +75,8 @@ private:
     std::string selected_, asked_;
     std::string message_;
     double message_seconds_ = 0.0;
-    bool a_is_down_ = false; // of the gamepad
+    bool a_is_down_ = false, b_is_down_ = false; // of the gamepad
+    bool popup_was_open_ = false;                // in the last frame
 };
 
 } // namespace sunfleck::demo

@@ -11,7 +11,11 @@ OverlayData overlay_data(Level& level, const viewer::FrameRequest& request) {
     result.cpu_ms = statistics.cpu_ms;
     if (level.game().has_sensors())
         result.cpu_ms["light sensors"] = level.take_sensor_milliseconds();
-    result.is_game = level.game().area() != nullptr;
+    result.is_game = level.game().is_game();
+    if (const scene::GameArea* area = level.game().area()) {
+        result.has_area = true;
+        result.has_hint = !area->hint.empty();
+    }
     result.light_samples = statistics.counters["light_samples"];
     result.rendered_width = request.width;
     result.rendered_height = request.height;

@@ -45,6 +45,8 @@ void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
     const bool target = data.interaction != simulation::Interaction::none;
     list->AddCircleFilled(ImVec2(0.5f * size.x, 0.5f * size.y), target ? 0.22f * unit() : 0.12f * unit(),
                           target ? IM_COL32(255, 196, 110, 220) : IM_COL32(255, 255, 255, 130));
+    if (!data.indirect_light)
+        direct_light_label(settings, data);
     const std::string text = prompt_text(settings, data.interaction, data.carries_lantern, data.with_gamepad);
     if (text.empty())
         return;
@@ -52,6 +54,16 @@ void Menu::prompts(const DemoSettings& settings, const OverlayData& data) {
     ImGui::SetNextWindowBgAlpha(0.45f);
     ImGui::Begin("prompt", nullptr, behind);
     ImGui::TextUnformatted(text.c_str());
+    ImGui::End();
+}
+
+// As long as it lasts: else whoever has pressed the key by mistake takes the dark for the game's.
+void Menu::direct_light_label(const DemoSettings& settings, const OverlayData& data) {
+    place_next(0.01f, 0.02f, 0.0f, 0.0f);
+    ImGui::SetNextWindowBgAlpha(0.45f);
+    ImGui::Begin("direct light", nullptr, behind);
+    ImGui::TextUnformatted(
+        ("Direct light only (" + (data.with_gamepad ? "Y" : key_of(settings, Action::indirect_light)) + ")").c_str());
     ImGui::End();
 }
 

@@ -78,6 +78,7 @@ Status StateFile::write_now(const GameState& state, double frame_ms) {
                                    {"sound_device", state.device},
                                    {"subtitles", state.subtitles},
                                    {"message", state.message},
+                                   {"bounced_light", state.bounced_light},
                                    {"saved", state.saved ? state.saved() : std::string()}};
     // Names of files in messages need not be UTF-8.
     const auto text_of = [&] { return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; };

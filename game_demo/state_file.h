@@ -20,6 +20,7 @@ struct GameState {
     std::vector<std::string> subtitles;
     std::string message;
     std::function<std::string()> saved; // makes the game as a checkpoint would keep it; null: there is none
+    bool bounced_light = true;          // is shown
 };
 
 class StateFile {

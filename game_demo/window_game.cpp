@@ -126,7 +126,8 @@ private:
     // The device is idle when the level takes over, because submission serials restart.
     Status loading_frame() {
         app::Swapchain& swapchain = display_->swapchain();
-        SUNFLECK_ASSIGN(level_, loading_->frame(*window_, swapchain, display_->screen(), ui_scale(swapchain.extent())));
+        SUNFLECK_ASSIGN(level_, loading_->frame(*window_, swapchain, display_->screen(),
+                                                GameDisplay::ui_scale(settings_, swapchain.extent())));
         if (!level_)
             return {};
         loading_.reset();
@@ -233,8 +234,7 @@ private:
         if (!started_)
             return;
         session_.update(seconds);
-        if (const std::string message = session_.take_message(); !message.empty())
-            menu_.say(message, 8.0);
+        menu_.say(session_.take_message(), 8.0);
         if (session_.finished())
             menu_.show(Screen::finished);
     }
@@ -245,8 +245,7 @@ private:
         const simulation::DrawnMoment moment{clock_.fraction(), controls_.pending_look()};
         const FrameQuality quality =
             pace_.choose(settings_, *level_, seconds_since(began_), moment.look != vec2(0.0f), playing());
-        if (const std::string message = pace_.take_message(); !message.empty())
-            menu_.say(message, 6.0);
+        menu_.say(pace_.take_message(), 6.0);
         DemoSettings shown = settings_;
         shown.render_scale = quality.render_scale;
         level_->adapt(settings_, seconds);
@@ -260,7 +259,7 @@ private:
         SUNFLECK_TRY(renderer.collect_statistics());
         hitches_.log(seconds, renderer.statistics());
         app::Gui& gui = display_->screen().gui();
-        gui.begin_frame(input, extent.width, extent.height, seconds, ui_scale(extent));
+        gui.begin_frame(input, extent.width, extent.height, seconds, GameDisplay::ui_scale(settings_, extent));
         if (menu_.screen() == Screen::playing) {
             session_.draw();
             sounds_.draw();
@@ -286,7 +285,7 @@ private:
 
     GameState state() const {
         return {screen_name(menu_.screen()), menu_.selected(),     session_.progress(), sounds_.device(),
-                sounds_.subtitles(),         menu_.message_text(), session_.kept()};
+                sounds_.subtitles(),         menu_.message_text(), session_.kept(),     indirect_};
     }
 
     OverlayData shown_data(const viewer::FrameRequest& request, double seconds) {
@@ -299,10 +298,6 @@ private:
         result.game_seconds = session_.seconds();
         result.device = display_->device().traits().name;
         return result;
-    }
-
-    float ui_scale(VkExtent2D extent) const {
-        return settings_.ui_scale * std::clamp(float(extent.height) / 720.0f, 0.6f, 3.0f);
     }
 
     void decide(Decision decision) {
@@ -326,20 +321,31 @@ private:
             sounds_.forget(); // what is put back makes no noise
             menu_.show(Screen::playing);
             break;
+        case Decision::title:
+            started_ = false;
+            renew();
+            menu_.show(Screen::title);
+            break;
         case Decision::quit:
             window_->close();
             break;
         }
     }
 
-    // `resume`: at the last checkpoint.
-    void restart(bool resume) {
+    // The world as it was loaded, and seen as at first.
+    void renew() {
         level_->restart();
         sounds_.forget();
+        clock_.reset();
+        indirect_ = true;
+    }
+
+    // `resume`: at the last checkpoint.
+    void restart(bool resume) {
+        renew();
         if (!session_.begin(level_->game(), resume))
             return restart(false);
         level_->jumped();
-        clock_.reset();
         recording_.clear(resume ? on_one_line(session_.saved()) : std::string());
     }
 

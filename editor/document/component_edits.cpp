@@ -1,5 +1,6 @@
 // Edits of components and settings, all from their descriptions.
 #include "editor/document/edits.h"
+#include "engine/scene/simulation_components.h"
 
 #include <algorithm>
 
@@ -61,7 +62,7 @@ Status set_field(Document& document, const Entities& entities, ecs::PoolBase& po
 Status edit_field(Document& document, const Entities& entities, ecs::PoolBase& pool, const Field& field,
                   std::string_view text) {
     document.begin("Set " + readable(field.name) + " of " + what(document, entities));
-    const Status status = set_field(document, entities, pool, field, text);
+    Status status = set_field(document, entities, pool, field, text);
     if (status)
         document.commit();
     else
@@ -71,7 +72,7 @@ Status edit_field(Document& document, const Entities& entities, ecs::PoolBase& p
 
 Status edit_setting(Document& document, std::string_view name, std::string_view value) {
     document.begin("Set " + readable(name));
-    const Status status = document.set_setting(name, value);
+    Status status = document.set_setting(name, value);
     if (status)
         document.commit();
     else
@@ -90,11 +91,15 @@ std::optional<Placed> place_of(Document& document, Entity entity) {
     return placed;
 }
 
+bool is_power(const Field& field) {
+    return field.kind == FieldKind::vector3 && field.unit.starts_with("W");
+}
+
 bool emits(Document& document, Entity entity) {
     for (const ecs::PoolBase* pool : document.registry().described_pools())
-        if (pool->contains(entity))
+        if (pool->contains(entity) && pool->description() != &scene::LightSensor::description()) // which takes light
             for (const Field& field : pool->description()->fields) {
-                if (field.kind != FieldKind::vector3 || !field.unit.starts_with("W"))
+                if (!is_power(field))
                     continue;
                 const auto* value = static_cast<const char*>(pool->address(pool->position_of(entity.index)));
                 if (*reinterpret_cast<const vec3*>(value + field.offset) != vec3(0.0f))

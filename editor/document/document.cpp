@@ -1,5 +1,6 @@
 #include "editor/document/document.h"
 
+#include "editor/document/content_hash.h"
 #include "engine/scene/entity_templates.h"
 #include "engine/scene/procedural.h"
 #include "viewer/scene_renderer.h"
@@ -33,6 +34,17 @@ std::string clean_name(std::string name) {
         name.pop_back();
     name.erase(0, name.find_first_not_of(' '));
     return name.empty() ? "entity" : name;
+}
+
+// Also in a picture of the sky, which no field describes.
+bool is_unchanged(const ComponentChange& change) {
+    if (!same_value(*change.pool, change.before, change.after))
+        return false;
+    if (change.before == nullptr || change.after == nullptr ||
+        change.pool->description() != &scene::EnvironmentMap::description())
+        return true;
+    return static_cast<const scene::EnvironmentMap*>(change.before.get())->image ==
+           static_cast<const scene::EnvironmentMap*>(change.after.get())->image;
 }
 
 } // namespace
@@ -81,18 +93,23 @@ Document::Document() {
     name_pool_ = find_component(*this, scene::Name::description().name);
     parent_pool_ = find_component(*this, scene::Parent::description().name);
     lamp_pool_ = find_component(*this, scene::AreaLight::description().name);
+    sky_pool_ = find_component(*this, scene::EnvironmentMap::description().name);
 }
 
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
                                                  const std::function<bool(float)>& progress, bool allow_outside) {
     auto document = std::make_unique<Document>();
-    document->stamp_ = stamp_of(path);
+    document->stamp_ = FileStamp::of(path);
+    if (path.extension() != ".json")
+        document->file_checksum_ = checksum_of_file(path);
     io::ImportOptions options;
     options.progress = progress;
     options.allow_outside = allow_outside;
+    options.for_saving = true;
     SUNFLECK_ASSIGN(const io::ImportReport report,
                     io::load_scene(path, document->registry_, document->meshes_, document->textures_, options));
     document->notes_ = report.notes;
+    document->set_source(report.source);
     for (const auto& [name, value] : report.settings)
         if (const Status status = document->settings_.set(name, value); !status)
             document->notes_.push_back(status.error().message);
@@ -100,6 +117,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& pa
         document->notes_.push_back("The scene has no lights: a sky and a sun were added");
     document->name_everything();
     document->path_ = path;
+    document->folder_ = path.parent_path();
     return document;
 }
 
@@ -128,7 +146,13 @@ void Document::begin(std::string name) {
         commit();
     gesture_.emplace();
     gesture_->name = std::move(name);
-    gesture_->selected_before = selection_;
+    gesture_->selected_before = shared_selection();
+}
+
+const std::shared_ptr<const std::vector<Entity>>& Document::shared_selection() {
+    if (shared_selection_ == nullptr || *shared_selection_ != selection_)
+        shared_selection_ = std::make_shared<const std::vector<Entity>>(selection_);
+    return shared_selection_;
 }
 
 HistoryEntry Document::end_gesture() {
@@ -193,9 +217,8 @@ void Document::note_setting(std::string_view name, const std::string& before) {
 bool Document::gesture_changed() const {
     if (!gesture_)
         return false;
-    return std::any_of(
-               gesture_->components.begin(), gesture_->components.end(),
-               [](const ComponentChange& change) { return !same_value(*change.pool, change.before, change.after); }) ||
+    return std::any_of(gesture_->components.begin(), gesture_->components.end(),
+                       [](const ComponentChange& change) { return !is_unchanged(change); }) ||
            std::any_of(gesture_->settings.begin(), gesture_->settings.end(),
                        [](const SettingChange& change) { return change.before != change.after; });
 }
@@ -239,13 +262,13 @@ bool Document::commit() {
     if (!gesture_)
         return false;
     settle_lamps();
+    settle_skies();
     HistoryEntry entry = end_gesture();
-    std::erase_if(entry.components,
-                  [](const ComponentChange& change) { return same_value(*change.pool, change.before, change.after); });
+    std::erase_if(entry.components, is_unchanged);
     std::erase_if(entry.settings, [](const SettingChange& change) { return change.before == change.after; });
     if (entry.empty())
         return false;
-    entry.selected_after = selection_;
+    entry.selected_after = shared_selection();
     history_.add(std::move(entry));
     return true;
 }
@@ -255,7 +278,7 @@ void Document::cancel() {
         return;
     const HistoryEntry entry = end_gesture();
     apply(entry, false);
-    select(entry.selected_before);
+    select(*entry.selected_before);
 }
 
 void Document::apply(const HistoryEntry& entry, bool forward) {
@@ -278,7 +301,7 @@ bool Document::undo() {
         return false;
     const HistoryEntry& entry = history_.step_back();
     apply(entry, false);
-    select(entry.selected_before);
+    select(*entry.selected_before);
     return true;
 }
 
@@ -288,7 +311,7 @@ bool Document::redo() {
         return false;
     const HistoryEntry& entry = history_.step_forward();
     apply(entry, true);
-    select(entry.selected_after);
+    select(*entry.selected_after);
     return true;
 }
 

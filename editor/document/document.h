@@ -9,7 +9,9 @@
 //     document.commit();                   // one entry of the history; cancel() restores everything and leaves none
 #pragma once
 
+#include "editor/document/file_stamp.h"
 #include "editor/document/history.h"
+#include "engine/io/encoded_textures.h"
 #include "engine/io/scene_file.h"
 #include "viewer/quality.h"
 
@@ -47,6 +49,12 @@ public:
     // Writes a .scene.json file and its geometry; from then on the document is this file. Refuses to replace another
     // scene's files unless `replace` says so, and, once, a file that file_changed(): the next save replaces it.
     Status save(const std::filesystem::path& path, Replace replace = Replace::own);
+    // The same in three parts, for who writes a copy elsewhere: whether that may be, how a document is written, and
+    // that the files are there, as of that serial of the history.
+    Status may_save(const std::filesystem::path& path, Replace replace = Replace::own);
+    static io::SaveOptions save_options(const gi::Settings& settings, io::EncodedTextures* encoded,
+                                        const std::string* source);
+    void note_saved(const std::filesystem::path& path, std::uint64_t serial);
     // Whether there is a file of that name which is not the document's.
     bool is_another_file(const std::filesystem::path& path) const;
 
@@ -63,12 +71,28 @@ public:
     const std::filesystem::path& path() const { return path_; }
     // Another program has written the file since it was opened or saved here.
     bool file_changed() const;
-    // What another program has written there is known.
-    void saw_file() { stamp_ = stamp_of(path_); }
+    // What another program has written there is known, as of that time.
+    void saw_file(const std::optional<FileStamp>& stamp) { stamp_ = stamp; }
     // Of this document alone, as long as the program runs: a new one may lie where another was.
     std::uint64_t number() const { return number_; }
     // What the import left out or changed.
     const std::vector<std::string>& notes() const { return notes_; }
+    // What its file says, or is to say, of the glTF file that the scene came from (source_link.h); null: nothing.
+    const std::shared_ptr<const std::string>& source() const { return source_; }
+    void set_source(std::string source) {
+        source_ = source.empty() ? nullptr : std::make_shared<const std::string>(std::move(source));
+    }
+    // What edits could not bring about, since the last call.
+    std::vector<std::string> take_remarks() { return std::exchange(remarks_, {}); }
+    // Pictures of the sky that were painted over under the same names since; one gesture. How many those were.
+    std::size_t read_skies_again();
+    // Of the glTF file that was opened, when it was read; else empty.
+    const std::string& file_checksum() const { return file_checksum_; }
+    // What names of other files are relative to; usually the file's own folder.
+    void set_folder(std::filesystem::path folder) { folder_ = std::move(folder); }
+    const std::filesystem::path& folder() const { return folder_; }
+    // The textures as files have them, for all who save the document or a copy.
+    const std::shared_ptr<io::EncodedTextures>& encoded_textures() const { return encoded_; }
     // True if there are edits that the file lacks.
     bool unsaved() const { return history_.serial() != saved_serial_ || gesture_changed(); }
     // The document is no file's any more, and unsaved.
@@ -143,6 +167,7 @@ private:
     bool gesture_changed() const;
     void note_setting(std::string_view name, const std::string& before);
     void settle_lamps();
+    void settle_skies();
     void name_changed(Entity entity, const void* before, const void* after);
     void name_everything();
     void find_children();
@@ -152,6 +177,7 @@ private:
     Entity stored_parent(Entity entity) const;
     bool is_at_top(Entity entity) const { return parent(entity).is_null(); }
     HistoryEntry end_gesture();
+    const std::shared_ptr<const std::vector<Entity>>& shared_selection();
     void tidy_updates();
 
     static std::uint64_t next_number();
@@ -161,17 +187,15 @@ private:
     std::vector<std::uint32_t> shapes_; // meshes of add_shape
     scene::TextureStore textures_;
     gi::Settings settings_ = viewer::usual_lighting();
-    ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr;
+    ecs::PoolBase *name_pool_ = nullptr, *parent_pool_ = nullptr, *lamp_pool_ = nullptr, *sky_pool_ = nullptr;
     std::filesystem::path path_;
     // Of the file when it was opened or saved; none: it was not there.
-    struct Stamp {
-        std::filesystem::file_time_type written;
-        std::uintmax_t bytes = 0;
-        bool operator==(const Stamp&) const = default;
-    };
-    static std::optional<Stamp> stamp_of(const std::filesystem::path& path);
-    std::optional<Stamp> stamp_;
-    std::vector<std::string> notes_;
+    std::optional<FileStamp> stamp_;
+    std::vector<std::string> notes_, remarks_;
+    std::filesystem::path folder_;
+    std::shared_ptr<const std::string> source_;
+    std::string file_checksum_;
+    std::shared_ptr<io::EncodedTextures> encoded_ = std::make_shared<io::EncodedTextures>();
 
     History history_;
     std::uint64_t saved_serial_ = 0;
@@ -194,7 +218,8 @@ private:
     std::uint64_t structure_revision_ = 1, children_revision_ = 0, revision_ = 1, settings_revision_ = 1;
     std::vector<Entity> selection_;
     std::uint64_t selection_revision_ = 1;
-    std::vector<bool> selected_; // by index
+    std::shared_ptr<const std::vector<Entity>> shared_selection_; // as the newest entry of the history has it
+    std::vector<bool> selected_;                                  // by index
     // In the order in which they came: of those of one component the last counts. Tidied when there are so many.
     std::vector<Update> updates_;
     std::size_t tidied_at_ = most_untidied;

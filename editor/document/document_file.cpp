@@ -10,15 +10,8 @@ constexpr std::string_view scene_ending = ".scene.json";
 
 } // namespace
 
-std::optional<Document::Stamp> Document::stamp_of(const std::filesystem::path& path) {
-    std::error_code no_time, no_size;
-    const Stamp stamp{std::filesystem::last_write_time(path, no_time), std::filesystem::file_size(path, no_size)};
-    return no_time || no_size ? std::nullopt : std::optional(stamp);
-}
-
 bool Document::file_changed() const {
-    const std::optional<Stamp> now = stamp_of(path_);
-    return stamp_ && now && *now != *stamp_;
+    return FileStamp::changed(path_, stamp_);
 }
 
 bool Document::is_another_file(const std::filesystem::path& path) const {
@@ -26,7 +19,7 @@ bool Document::is_another_file(const std::filesystem::path& path) const {
     return path != path_ && std::filesystem::exists(path, code) && !std::filesystem::equivalent(path, path_, code);
 }
 
-Status Document::save(const std::filesystem::path& path, Replace replace) {
+Status Document::may_save(const std::filesystem::path& path, Replace replace) {
     commit();
     const std::string file = path.filename().string();
     if (!file.ends_with(scene_ending) || file.size() == scene_ending.size())
@@ -35,8 +28,8 @@ Status Document::save(const std::filesystem::path& path, Replace replace) {
     if (is_another && replace == Replace::own)
         return Error{"cannot save '" + path.string() +
                      "': there is a file of that name, of another scene; choose another name"};
-    if (!is_another && file_changed() && stamp_of(path)) {
-        stamp_ = stamp_of(path_);
+    if (!is_another && file_changed() && FileStamp::of(path)) {
+        stamp_ = FileStamp::of(path_);
         return Error{"'" + path.string() +
                      "' was changed by another program since it was opened; save once more to replace that, or under "
                      "another name to keep both"};
@@ -47,13 +40,32 @@ Status Document::save(const std::filesystem::path& path, Replace replace) {
     if (path != path_ && !std::filesystem::exists(path, code) && std::filesystem::exists(geometry, code))
         return Error{"cannot save '" + path.string() + "': '" + geometry.filename().string() +
                      "' is there and belongs to something else; choose another name"};
+    return {};
+}
+
+io::SaveOptions Document::save_options(const gi::Settings& settings, io::EncodedTextures* encoded,
+                                       const std::string* source) {
     io::SaveOptions options;
-    options.settings = viewer::unusual_lighting(settings_);
+    options.settings = viewer::unusual_lighting(settings);
     options.exact = true;
-    SUNFLECK_TRY(io::save_scene(path, registry_, meshes_, textures_, options));
+    options.encoded = encoded;
+    if (source != nullptr)
+        options.source = *source;
+    return options;
+}
+
+void Document::note_saved(const std::filesystem::path& path, std::uint64_t serial) {
     path_ = path;
-    stamp_ = stamp_of(path);
-    saved_serial_ = history_.serial();
+    folder_ = path.parent_path();
+    stamp_ = FileStamp::of(path);
+    saved_serial_ = serial;
+}
+
+Status Document::save(const std::filesystem::path& path, Replace replace) {
+    SUNFLECK_TRY(may_save(path, replace));
+    const io::SaveOptions options = save_options(settings_, encoded_.get(), source_.get());
+    SUNFLECK_TRY(io::save_scene(path, registry_, meshes_, textures_, options));
+    note_saved(path, history_.serial());
     return {};
 }
 

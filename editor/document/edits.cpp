@@ -1,5 +1,7 @@
 #include "editor/document/edits.h"
 
+#include "engine/scene/entity_names.h"
+
 #include <algorithm>
 
 namespace sunfleck::editor {
@@ -41,6 +43,36 @@ void retarget(const ecs::PoolBase& pool, void* value, const std::unordered_map<E
             if (const auto found = copies.find(*target); found != copies.end())
                 *target = found->second;
         }
+}
+
+using OtherNames = std::vector<std::pair<std::string, std::string>>; // before, after
+
+bool names_entities(const Field& field) {
+    return field.kind == FieldKind::text && (field.flags & scene::names_entities) != 0;
+}
+bool names_entities(const ecs::PoolBase& pool) {
+    return pool.description() != nullptr &&
+           std::any_of(pool.description()->fields.begin(), pool.description()->fields.end(),
+                       [](const Field& field) { return names_entities(field); });
+}
+
+// Names of entities in described texts follow those of the list; whether any did.
+bool rename_in(const ecs::PoolBase& pool, void* value, const OtherNames& names) {
+    bool any = false;
+    if (!names_entities(pool))
+        return any;
+    for (const Field& field : pool.description()->fields) {
+        if (!names_entities(field))
+            continue;
+        auto& text = *reinterpret_cast<std::string*>(static_cast<char*>(value) + field.offset);
+        const std::vector<std::string> named = scene::split_names(text);
+        for (const auto& [before, after] : names)
+            if (std::find(named.begin(), named.end(), before) != named.end()) {
+                text = scene::with_other_name(text, before, after);
+                any = true;
+            }
+    }
+    return any;
 }
 
 // Of what entities have in this document, and files keep.
@@ -111,15 +143,19 @@ Entities duplicate(Document& document, const Entities& entities) {
             if (entity == top)
                 tops.push_back(copies[entity]);
         }
+    OtherNames names;
+    for (const Entity entity : all) {
+        names.emplace_back(document.name(entity), document.free_name(document.name(entity)));
+        put(document, copies[entity], scene::Name{names.back().second});
+    }
     const std::vector<ecs::PoolBase*> pools = kept_pools(document);
     for (const Entity entity : all)
         for (ecs::PoolBase* pool : pools) {
-            if (!pool->contains(entity))
+            if (!pool->contains(entity) || pool == &pool_of<scene::Name>(document))
                 continue;
             const std::shared_ptr<void> value = pool->copy_value(pool->address(pool->position_of(entity.index)));
-            if (pool == &pool_of<scene::Name>(document))
-                static_cast<scene::Name*>(value.get())->name = document.free_name(document.name(entity));
             retarget(*pool, value.get(), copies);
+            rename_in(*pool, value.get(), names);
             document.set(copies[entity], *pool, value);
         }
     document.select(tops);
@@ -189,8 +225,20 @@ Status rename(Document& document, Entity entity, const std::string& wanted) {
     if (wanted == document.name(entity))
         return {};
     document.begin("Rename " + document.name(entity));
+    const std::string before = document.name(entity);
     put(document, entity, scene::Name{""}); // its own name is free, too
     put(document, entity, scene::Name{document.free_name(wanted)});
+    const OtherNames names = {{before, document.name(entity)}};
+    for (ecs::PoolBase* pool : kept_pools(document)) {
+        if (!names_entities(*pool))
+            continue;
+        const std::vector<Entity> users = pool->entities();
+        for (const Entity user : users) {
+            const std::shared_ptr<void> value = pool->copy_value(pool->address(pool->position_of(user.index)));
+            if (rename_in(*pool, value.get(), names))
+                document.set(user, *pool, value);
+        }
+    }
     document.commit();
     return {};
 }
@@ -201,20 +249,32 @@ Entity add_from(Document& document, const scene::EntityTemplate& source, vec3 po
     scene::MeshStore meshes;
     const Entity made = scratch.create();
     source.make(scratch, made, meshes, size);
-    if (scene::MeshInstance const* instance = scratch.try_get<scene::MeshInstance>(made)) {
-        const std::uint32_t mesh = document.add_shape(meshes[instance->mesh]);
-        scratch.patch<scene::MeshInstance>(made, [&](scene::MeshInstance& value) { value.mesh = mesh; });
-    }
     scratch.patch<scene::Transform>(made, [&](scene::Transform& transform) { transform.position = position; });
-    const Entity entity = document.create();
     std::string name(source.name);
     name[0] = char(std::tolower(name[0]));
-    put(document, entity, scene::Name{document.free_name(name)});
-    for (const ecs::PoolBase* pool : scratch.all_pools())
-        document.set(entity, document.registry().counterpart(*pool), scratch.value(*pool, made));
-    document.select({entity});
+    std::unordered_map<Entity, Entity> copies; // of the template's entity and its parts
+    for (const Entity part : scratch.entities())
+        copies[part] = document.create();
+    name = document.free_name(name);
+    for (const Entity part : scratch.entities()) {
+        if (scene::MeshInstance const* instance = scratch.try_get<scene::MeshInstance>(part)) {
+            const std::uint32_t mesh = document.add_shape(meshes[instance->mesh]);
+            scratch.patch<scene::MeshInstance>(part, [&](scene::MeshInstance& value) { value.mesh = mesh; });
+        }
+        const scene::Name* of_part = scratch.try_get<scene::Name>(part);
+        put(document, copies[part],
+            scene::Name{of_part != nullptr ? document.free_name(name + " " + of_part->name) : name});
+        for (const ecs::PoolBase* pool : scratch.all_pools()) {
+            if (!pool->contains(part) || pool->type_index == pool_of<scene::Name>(document).type_index)
+                continue;
+            const std::shared_ptr<void> value = pool->copy_value(pool->address(pool->position_of(part.index)));
+            retarget(*pool, value.get(), copies);
+            document.set(copies[part], document.registry().counterpart(*pool), value);
+        }
+    }
+    document.select({copies[made]});
     document.commit();
-    return entity;
+    return copies[made];
 }
 
 } // namespace sunfleck::editor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "editor/document/document.h"
+#include "editor/document/played_places.h"
 #include "engine/scene/entity_templates.h"
 
 namespace sunfleck::editor {
@@ -14,13 +15,15 @@ std::string what(const Document& document, const Entities& entities);
 
 // With all that is below them.
 void remove(Document& document, const Entities& entities);
-// Beside the originals, with all that is below them; the copies are selected.
+// Beside the originals, with all that is below them; the copies are selected. Where a copy names an entity that was
+// copied, too, it names that copy.
 Entities duplicate(Document& document, const Entities& entities);
 // Their places in the world stay. Null: to the top. An error if the parent is among them or below.
 Status reparent(Document& document, const Entities& entities, Entity parent);
 // Puts them under a new entity, at their middle.
 Entity group(Document& document, const Entities& entities);
-// The name is made distinct and free of control characters; an error if it is empty.
+// The name is made distinct and free of control characters; an error if it is empty. Texts that name the entity
+// follow.
 Status rename(Document& document, Entity entity, const std::string& wanted);
 // At `transform`'s position; `size`: of the template, m.
 Entity add_from(Document& document, const scene::EntityTemplate& source, vec3 position, float size);
@@ -43,6 +46,11 @@ Status edit_setting(Document& document, std::string_view name, std::string_view 
 inline mat4 world_of(Document& document, Entity entity) {
     return scene::world_matrix(document.registry(), entity);
 }
+// The same where a scene in motion has it; as edited where `played` is null or does not know the entity.
+inline mat4 world_of(Document& document, Entity entity, const PlayedPlaces* played) {
+    const mat4* place = played != nullptr ? played->find(entity) : nullptr;
+    return place != nullptr ? *place : world_of(document, entity);
+}
 // Within a gesture: gives an entity this place in the world, whatever is above it. Without a Transform it stays.
 void set_world(Document& document, Entity entity, const mat4& world);
 // Entities that have no ancestor among `entities`.
@@ -54,6 +62,8 @@ struct Placed {
 };
 // None: it has no place.
 std::optional<Placed> place_of(Document& document, Entity entity);
+// Of light: radiance, intensity, irradiance.
+bool is_power(const Field& field);
 // Whether one of its components has a power of light that is not zero.
 bool emits(Document& document, Entity entity);
 // Those that have a place, but nothing that could be seen there.

@@ -1,5 +1,8 @@
 #include "editor/document/history.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace sunfleck::editor {
 
 void History::add(HistoryEntry entry) {
@@ -9,6 +12,13 @@ void History::add(HistoryEntry entry) {
     entry.settings.shrink_to_fit();
     entries_.push_back(std::move(entry));
     position_ = entries_.size();
+}
+
+std::vector<std::string> History::newest_names(std::size_t most) const {
+    std::vector<std::string> names;
+    for (std::size_t i = position_ - std::min(position_, most); i < position_; ++i)
+        names.push_back(entries_[i].name);
+    return names;
 }
 
 std::map<std::string, std::string> History::old_settings() const {
@@ -21,10 +31,14 @@ std::map<std::string, std::string> History::old_settings() const {
 
 std::size_t History::overhead() const {
     std::size_t bytes = 0;
-    for (const HistoryEntry& entry : entries_)
+    const std::vector<Entity>* last = nullptr;
+    for (const HistoryEntry& entry : entries_) {
         bytes += sizeof entry + entry.name.capacity() + entry.components.size() * sizeof(ComponentChange) +
-                 entry.settings.size() * (sizeof(SettingChange) + 64) +
-                 (entry.selected_before.size() + entry.selected_after.size()) * sizeof(Entity);
+                 entry.settings.size() * (sizeof(SettingChange) + 64);
+        for (const auto* selected : {entry.selected_before.get(), entry.selected_after.get()})
+            if (std::exchange(last, selected) != selected)
+                bytes += sizeof *selected + selected->size() * sizeof(Entity);
+    }
     return bytes;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct HistoryEntry {
     std::string name; // shown to the user: "Move lamp"
     std::vector<ComponentChange> components;
     std::vector<SettingChange> settings;
-    std::vector<Entity> selected_before, selected_after;
+    std::shared_ptr<const std::vector<Entity>> selected_before, selected_after; // shared as long as they stay the same
     std::uint64_t serial = 0; // distinct for every entry that ever was
 
     bool empty() const { return components.empty() && settings.empty(); }
@@ -49,6 +50,8 @@ public:
     std::size_t position() const { return position_; }
     // Of the newest entry that is done; 0: none.
     std::uint64_t serial() const { return position_ == 0 ? 0 : entries_[position_ - 1].serial; }
+    // Of the newest entries that are done, at most so many, the newest last.
+    std::vector<std::string> newest_names(std::size_t most) const;
     // Of the settings that were changed, by name: what they were before the newest change that is done.
     std::map<std::string, std::string> old_settings() const;
     // Memory of the entries without the values of components, bytes.

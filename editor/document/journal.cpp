@@ -95,8 +95,10 @@ public:
         const ecs::PoolBase& meshes = pool_of<scene::MeshInstance>(document);
         for (const auto& [name, known] : base.entities) {
             const Entity entity = document.find(name);
-            if (!document.exists(entity))
+            if (!document.exists(entity)) {
+                missing_.insert(known.handle); // the file is another one now
                 continue;
+            }
             entities_[known.handle] = entity;
             if (known.mesh >= 0 && meshes.contains(entity))
                 meshes_[std::uint32_t(known.mesh)] = document.registry().get<scene::MeshInstance>(entity).mesh;
@@ -127,7 +129,7 @@ private:
     bool set(const Json& one) {
         const auto handle = one.at(0).get<EntityBits>();
         ecs::PoolBase* pool = find_component(document_, one.at(1).get<std::string>());
-        if (pool == nullptr)
+        if (pool == nullptr || missing_.count(handle) > 0)
             return false;
         const auto [known, is_new] = entities_.try_emplace(handle);
         if (is_new)
@@ -170,6 +172,8 @@ private:
         auto* target = reinterpret_cast<Entity*>(static_cast<char*>(value) + field.offset);
         if (target->is_null())
             return true;
+        if (missing_.count(target->bits()) > 0)
+            return false;
         const auto [known, is_new] = entities_.try_emplace(target->bits());
         if (is_new)
             known->second = document_.create();
@@ -179,6 +183,7 @@ private:
 
     Document& document_;
     std::unordered_map<EntityBits, Entity> entities_;
+    std::unordered_set<EntityBits> missing_; // which the base has, and the document has not
     std::unordered_map<std::uint32_t, std::uint32_t> meshes_;
 };
 

@@ -40,13 +40,14 @@ float triangle_distance(const vec3 (&corner)[3], vec3 origin, vec3 direction) {
 
 } // namespace
 
-Picked pick(Document& document, vec3 origin, vec3 direction, const std::function<bool(Entity)>& skip) {
+Picked pick(Document& document, vec3 origin, vec3 direction, const std::function<bool(Entity)>& skip,
+            const PlayedPlaces* played) {
     Picked nearest;
     nearest.distance = std::numeric_limits<float>::infinity();
     const auto look_at = [&](Entity entity, const scene::MeshInstance& instance) {
         if (instance.mesh >= document.meshes().size() || (skip && skip(entity)))
             return;
-        const mat4 world = world_of(document, entity);
+        const mat4 world = world_of(document, entity, played);
         if (!meets(transform_bounds(world, document.meshes().bounds(instance.mesh)), origin, direction,
                    nearest.distance))
             return;

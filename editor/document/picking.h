@@ -2,6 +2,7 @@
 #pragma once
 
 #include "editor/document/document.h"
+#include "editor/document/played_places.h"
 
 namespace sunfleck::editor {
 
@@ -10,8 +11,9 @@ struct Picked {
     float distance = 0.0f; // in multiples of the ray's direction
 };
 
-// The nearest geometry in front of `origin`, but for what is skipped. Time grows with the triangles whose bounds the
-// ray meets.
-Picked pick(Document& document, vec3 origin, vec3 direction, const std::function<bool(Entity)>& skip = {});
+// The nearest geometry in front of `origin`, but for what is skipped. `played`: where a scene in motion has it; null:
+// as edited. Time grows with the triangles whose bounds the ray meets.
+Picked pick(Document& document, vec3 origin, vec3 direction, const std::function<bool(Entity)>& skip = {},
+            const PlayedPlaces* played = nullptr);
 
 } // namespace sunfleck::editor

@@ -1,5 +1,6 @@
 #include "editor/document/reload.h"
 
+#include "engine/scene/animation.h"
 #include "engine/scene/deformation.h"
 
 #include <algorithm>
@@ -16,6 +17,17 @@ bool same_mesh(const scene::Mesh& a, const scene::Mesh& b) {
 bool same_texture(const scene::Texture& a, const scene::Texture& b) {
     return a.width == b.width && a.height == b.height && a.srgb == b.srgb && a.wrap_u == b.wrap_u &&
            a.wrap_v == b.wrap_v && a.nearest == b.nearest && a.pixels == b.pixels;
+}
+
+bool same_animation(const scene::Animation& a, const scene::Animation& b) {
+    const auto same_curve = [](const scene::AnimationCurve& one, const scene::AnimationCurve& other) {
+        return one.target == other.target && one.interpolation == other.interpolation && one.times == other.times &&
+               one.values == other.values;
+    };
+    const scene::WeightCurve &weights = a.weights, &others = b.weights;
+    return a.duration == b.duration && weights.interpolation == others.interpolation && weights.times == others.times &&
+           weights.values == others.values && weights.width == others.width &&
+           std::equal(a.curves.begin(), a.curves.end(), b.curves.begin(), b.curves.end(), same_curve);
 }
 
 // The index of a value in a store of the document, which it is added to if it is not there yet.
@@ -63,6 +75,7 @@ public:
         for (const Entity entity : added_)
             if (const Entity above = document_.parent(entity); !above.is_null() && !document_.exists(above))
                 document_.set(entity, parent_pool_, nullptr); // it was deleted here
+        merge_settings(fresh.settings());
         content_ = std::move(fresh);
         document_.commit();
         return std::move(report_);
@@ -125,12 +138,26 @@ private:
         }
     }
 
-    // Without a description, only textures can be compared.
+    // Equal geometry may be there twice, under two numbers. Without a description, only textures and animations can be
+    // compared.
     bool same(const ecs::PoolBase& pool, const ecs::Value& a, const ecs::Value& b) const {
+        if (a != nullptr && b != nullptr && is_of<scene::MeshInstance>(pool)) {
+            const std::uint32_t one = static_cast<const scene::MeshInstance*>(a.get())->mesh;
+            const std::uint32_t other = static_cast<const scene::MeshInstance*>(b.get())->mesh;
+            return one == other || same_mesh(document_.meshes()[one], document_.meshes()[other]);
+        }
         if (a == nullptr || b == nullptr || pool.description() != nullptr)
             return same_value(pool, a, b);
-        return !is_of<scene::MaterialTextures>(pool) || *static_cast<const scene::MaterialTextures*>(a.get()) ==
-                                                            *static_cast<const scene::MaterialTextures*>(b.get());
+        if (is_of<scene::MaterialTextures>(pool))
+            return *static_cast<const scene::MaterialTextures*>(a.get()) ==
+                   *static_cast<const scene::MaterialTextures*>(b.get());
+        if (is_of<scene::OtherAnimations>(pool)) {
+            const auto& clips = static_cast<const scene::OtherAnimations*>(a.get())->clips;
+            const auto& others = static_cast<const scene::OtherAnimations*>(b.get())->clips;
+            return std::equal(clips.begin(), clips.end(), others.begin(), others.end(), same_animation);
+        }
+        return !is_of<scene::Animation>(pool) || same_animation(*static_cast<const scene::Animation*>(a.get()),
+                                                                *static_cast<const scene::Animation*>(b.get()));
     }
 
     void merge(const std::string& name, const FileContent::Node& node) {
@@ -152,6 +179,17 @@ private:
                 changed;
         }
         report_.changed += changed ? 1 : 0;
+    }
+
+    void merge_settings(const gi::Settings& now) {
+        gi::Settings mixed = document_.settings();
+        for (const std::string_view name : gi::Settings::names()) {
+            const std::string before = content_.settings().get(name), text = now.get(name);
+            if (text != before && mixed.get(name) == before && mixed.set(name, text))
+                ++report_.settings;
+        }
+        if (report_.settings > 0 && !document_.set_settings(mixed)) // right only beside values that were edited here
+            report_.settings = 0;
     }
 
     // True if the document's component has changed.
@@ -234,6 +272,8 @@ const ecs::Value* FileContent::Node::find(const ecs::PoolBase& pool) const {
 
 FileContent FileContent::of(Document& document) {
     FileContent content;
+    content.settings_ = document.settings();
+    content.checksum_ = document.file_checksum();
     std::vector<ecs::PoolBase*> pools;
     for (ecs::PoolBase* pool : document.registry().all_pools())
         if (!pool->is_derived() && pool->is_copyable())
@@ -251,7 +291,8 @@ FileContent FileContent::of(Document& document) {
 
 std::string ReloadReport::text(const std::string& file) const {
     return "Reloaded " + file + ": " + std::to_string(changed) + " changed, " + std::to_string(added) + " new, " +
-           std::to_string(removed) + " gone";
+           std::to_string(removed) + " gone" +
+           (settings == 0 ? "" : ", " + std::to_string(settings) + (settings == 1 ? " setting" : " settings"));
 }
 
 ReloadReport reload(Document& document, FileContent& content, Document& now) {

@@ -3,8 +3,8 @@
 //
 // Three versions of each component meet: what the file held when it was read, what it holds now, and what the document
 // has. Where the file has not changed, the document stays; where the document was not edited, the file's is taken;
-// where both have changed, field by field, the edit stays. Geometry counts as changed where vertices or triangles
-// differ; skins and morph targets stay as they were read first.
+// where both have changed, field by field, the edit stays; likewise each lighting setting. Geometry counts as changed
+// where vertices or triangles differ; skins and morph targets stay as they were read first.
 #pragma once
 
 #include "editor/document/edits.h"
@@ -25,13 +25,21 @@ public:
     static FileContent of(Document& document);
     const std::map<std::string, Node>& nodes() const { return nodes_; }
     std::map<std::string, Node>& nodes() { return nodes_; }
+    const gi::Settings& settings() const { return settings_; }
+    void set_settings(const gi::Settings& settings) { settings_ = settings; }
+    // Of the file, if it is a glTF file.
+    const std::string& checksum() const { return checksum_; }
+    void set_checksum(std::string checksum) { checksum_ = std::move(checksum); }
 
 private:
     std::map<std::string, Node> nodes_;
+    gi::Settings settings_;
+    std::string checksum_;
 };
 
 struct ReloadReport {
     std::size_t changed = 0, added = 0, removed = 0; // entities
+    std::size_t settings = 0;                        // of lighting that were changed
     std::vector<std::string> lost; // nodes that are gone, and had been edited: those edits have no place any more
     std::string text(const std::string& file) const;
 };

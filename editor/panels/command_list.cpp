@@ -14,6 +14,7 @@ public:
 
 private:
     void row(Session& session, Command& command);
+    static void bind(Session& session, Command& command, const Shortcut& keys);
     void take_key(Session& session, Command& command);
     std::string filter_, waiting_; // path of the command whose keys are asked for
     int waited_ = 0;               // the last frame in which its row was there
@@ -37,12 +38,20 @@ void CommandPanel::take_key(Session& session, Command& command) {
         if (key >= app::first_mouse_button)
             return;
         if (key != app::key_escape)
-            session.commands->bind(command,
-                                   {key, input.down(app::key_left_control) || input.down(app::key_right_control),
-                                    input.down(app::key_left_shift) || input.down(app::key_right_shift),
-                                    input.down(app::key_left_alt) || input.down(app::key_right_alt)});
+            bind(session, command,
+                 {key, input.down(app::key_left_control) || input.down(app::key_right_control),
+                  input.down(app::key_left_shift) || input.down(app::key_right_shift),
+                  input.down(app::key_left_alt) || input.down(app::key_right_alt)});
         return;
     }
+}
+
+void CommandPanel::bind(Session& session, Command& command, const Shortcut& keys) {
+    const Command* const had = session.commands->bind(command, keys);
+    if (had != nullptr)
+        session.messages.say(shortcut_text(keys) + " is now '" + command.group + ": " + command.name + "'; '" +
+                                 had->group + ": " + had->name + "', which had it, has no keys",
+                             Message::Kind::warning);
 }
 
 void CommandPanel::row(Session& session, Command& command) {
@@ -65,6 +74,12 @@ void CommandPanel::row(Session& session, Command& command) {
         session.keys_are_asked_for = true;
     }
     ImGui::TableNextColumn();
+    if (!(command.shortcut == command.usual)) {
+        const std::string usual = shortcut_text(command.usual);
+        if (ui::button("Usual##usual", "Gives it its usual keys again: " + (usual.empty() ? "none" : usual)))
+            bind(session, command, command.usual);
+        ImGui::SameLine();
+    }
     ui::label(command.tooltip, {}, true);
 }
 
@@ -73,6 +88,9 @@ void CommandPanel::draw(Session& session) {
     if (waited_ + 1 < ImGui::GetFrameCount()) // it was out of sight
         waiting_.clear();
     ui::text_box("search", filter_, "Search commands", 13.0f * ui::unit());
+    ImGui::SameLine();
+    if (ui::button("Usual keys", "Gives every command its usual keys again", !session.commands->changed_keys().empty()))
+        session.commands->use_usual_keys();
     ImGui::SameLine();
     ui::label("Flying: hold the right button; W A S D, Q and E, shift, wheel", {}, true);
     ImGui::BeginChild("rows");

@@ -6,10 +6,15 @@
 #include "editor/window/presets.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <map>
 
 namespace sunfleck::editor {
 namespace {
+
+// Names that no preset can have.
+constexpr const char *scene_side = "(scene)", *kept_side = "(kept)";
 
 class Compare final : public Panel {
 public:
@@ -20,8 +25,12 @@ private:
     static void show_as(Session& session);
     static void figures(Session& session);
     void presets(Session& session);
-    void differences(const Session& session) const;
+    void choose_side(const Session& session, const char* name, std::string& side);
+    const gi::Settings* settings_of(Session& session, std::size_t which);
+    void differences(Session& session);
     std::string name_;
+    std::array<std::string, 2> sides_{scene_side, kept_side}; // what is held against one another: these, or presets
+    std::map<std::string, gi::Settings> loaded_;              // presets of the sides
 };
 
 // `next`: the name of the option that follows, on the same line where it fits; null: none does.
@@ -85,8 +94,9 @@ void Compare::figures(Session& session) {
         ui::text("state of one", comparison.name_of_one());
     ui::text("state", comparison.name_of_other());
     const std::shared_ptr<const Difference> difference = comparison.difference();
+    const std::string why = comparison.why_without_difference();
     if (difference == nullptr)
-        return ImGui::TextDisabled("Figures come when both pictures are at rest");
+        return ui::text("no figures", why.empty() ? "Figures come when both pictures are at rest" : why);
     const auto row = [](const char* name, double value, const char* tip) {
         char text[48];
         std::snprintf(text, sizeof text, "%.4g", value);
@@ -108,8 +118,10 @@ void Compare::presets(Session& session) {
     ImGui::SameLine();
     if (ui::button("Save##preset", "Keeps the settings that differ from their defaults under this name",
                    !name_.empty()))
-        if (session.messages.check(save_preset(session.preset_folder, name_, session.document->settings())))
+        if (session.messages.check(save_preset(session.preset_folder, name_, session.document->settings()))) {
             session.messages.say("Saved the preset '" + name_ + "'");
+            loaded_.clear();
+        }
     for (const std::string& name : preset_names(session.preset_folder)) {
         const ui::Scope scope(name);
         if (ui::button("Apply", "One entry of the history"))
@@ -125,20 +137,62 @@ void Compare::presets(Session& session) {
     }
 }
 
-// Of the scene's settings and those kept.
-void Compare::differences(const Session& session) const {
-    ui::heading("Kept settings differ in");
-    const std::optional<gi::Settings>& kept = session.comparison->kept();
-    if (!kept)
+void Compare::choose_side(const Session& session, const char* name, std::string& side) {
+    ImGui::SetNextItemWidth(std::min(9.0f * ui::unit(), ImGui::GetContentRegionAvail().x));
+    const bool is_open = ImGui::BeginCombo((std::string("##") + name).c_str(), side.c_str());
+    ui::note(name, side);
+    ui::tooltip("Settings of the scene, those kept, or a preset");
+    if (!is_open)
+        return;
+    ui::close_by_escape();
+    std::vector<std::string> all = preset_names(session.preset_folder);
+    all.insert(all.begin(), {scene_side, kept_side});
+    for (const std::string& one : all)
+        if (ui::choice(one, one == side)) {
+            side = one;
+            loaded_.clear(); // files may have changed since
+        }
+    ImGui::EndCombo();
+}
+
+// Null: there are none.
+const gi::Settings* Compare::settings_of(Session& session, std::size_t which) {
+    std::string& side = sides_[which];
+    if (side == scene_side)
+        return &session.document->settings();
+    if (side == kept_side)
+        return session.comparison->kept() ? &*session.comparison->kept() : nullptr;
+    if (const auto known = loaded_.find(side); known != loaded_.end())
+        return &known->second;
+    auto settings = load_preset(session.preset_folder, side);
+    if (session.messages.check(settings ? Status() : Status(settings.error())))
+        return &loaded_.insert_or_assign(side, std::move(*settings)).first->second;
+    side = which == 0 ? scene_side : kept_side; // so that it is said once
+    return nullptr;
+}
+
+// Of two of: the scene's settings, those kept, presets.
+void Compare::differences(Session& session) {
+    ui::heading("Differences");
+    choose_side(session, "first", sides_[0]);
+    ImGui::TextDisabled("and");
+    ImGui::SameLine();
+    choose_side(session, "second", sides_[1]);
+    const gi::Settings *const one = settings_of(session, 0), *const two = settings_of(session, 1);
+    if (one == nullptr || two == nullptr)
         return ImGui::TextDisabled("None are kept");
+    const auto where = [](const std::string& side) {
+        return std::string(side == scene_side ? " here" : side == kept_side ? " kept" : " in " + side);
+    };
     bool any = false;
     for (const std::string_view name : gi::Settings::names()) {
-        const std::string here = session.document->settings().get(name), there = kept->get(name);
-        if (here == there)
+        const std::string first = one->get(name), second = two->get(name);
+        if (first == second)
             continue;
         any = true;
         std::string text = readable_name(name);
-        text.append(": ").append(here).append(" here, ").append(there).append(" kept");
+        text.append(": ").append(first).append(where(sides_[0])).append(", ");
+        text.append(second).append(where(sides_[1]));
         ui::text("difference " + std::string(name), text);
     }
     if (!any)

@@ -1,10 +1,10 @@
 // What the lighting counted in the frame that is shown.
 #include "editor/panels/panel.h"
+#include "editor/window/value_box.h"
 #include "gi_module/technique.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 namespace sunfleck::editor {
 namespace {
@@ -37,11 +37,8 @@ void budget_box(Session& session, const gi::Counter& counter, double count) {
     look.width = 10.0f * ui::unit();
     ImGui::TextDisabled("Amber above");
     ImGui::SameLine();
-    const ui::NumberEdit edit = ui::number_box("most", look);
-    if (edit.phase == ui::NumberEdit::Phase::dragged)
-        session.budgets.counters[name] = edit.value;
-    if (edit.phase == ui::NumberEdit::Phase::typed)
-        session.budgets.counters[name] = std::max(std::atof(edit.text.c_str()), 0.0);
+    if (const std::optional<double> most = value_box(session, "most", "Budget of " + name, look))
+        session.budgets.counters[name] = *most;
     if (ui::button("No budget", {}, has)) {
         session.budgets.counters.erase(name);
         ImGui::CloseCurrentPopup();
@@ -57,7 +54,7 @@ void value(Session& session, const gi::Counter& counter, double count) {
     ImGui::PushID(name.c_str());
     if (over)
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.66f, 0.4f, 1.0f));
-    if (ImGui::Selectable(text.c_str(), false, 0, ImVec2(ImGui::CalcTextSize(text.c_str()).x, 0.0f)))
+    if (ImGui::Selectable((text + "###value").c_str(), false, 0, ImVec2(ImGui::CalcTextSize(text.c_str()).x, 0.0f)))
         ImGui::OpenPopup("budget");
     if (over)
         ImGui::PopStyleColor();

@@ -58,6 +58,25 @@ std::string stem_of(const fs::path& path) {
     return name.substr(0, name.find('.'));
 }
 
+// The scene's own name, or with the lowest number behind it that makes it free: of a scene file, and of the geometry
+// beside it, which may be the glTF file that the scene came from.
+std::string free_name(const Session& session) {
+    const fs::path& path = session.document->path();
+    const std::string stem = path.empty() ? "scene" : stem_of(path);
+    const auto is_there = [](const fs::path& file) {
+        std::error_code code;
+        return fs::exists(fs::symlink_status(file, code));
+    };
+    std::string free = stem;
+    for (int number = 2;; ++number) {
+        const fs::path scene = choice().folder / (free + ".scene.json");
+        const bool is_own = is_there(scene) && !session.document->is_another_file(scene);
+        if (is_own || (!is_there(scene) && !is_there(choice().folder / (free + ".glb"))))
+            return scene.filename().string();
+        free = stem + " " + std::to_string(number);
+    }
+}
+
 void begin_choice(Session& session) {
     choice().replaces.clear();
     std::error_code code;
@@ -65,7 +84,7 @@ void begin_choice(Session& session) {
     list_folder(path.empty() || is_built_in(path) ? fs::current_path(code) : fs::absolute(path, code).parent_path());
     choice().name.clear();
     if (session.dialog == Dialog::save_as)
-        choice().name = path.empty() ? "scene.scene.json" : stem_of(path) + ".scene.json";
+        choice().name = free_name(session);
 }
 
 void folder_list() {
@@ -164,7 +183,7 @@ void unsaved_dialog(Session& session) {
 
 // What would be restored is said before it is.
 void recover_dialog(Session& session) {
-    const Recovered recovered = session.recovered.back();
+    const Recovered& recovered = session.recovered.back();
     const std::string file = recovered.file.empty() ? "a scene without a file" : recovered.file;
     ImGui::PushTextWrapPos(36.0f * ui::unit());
     ui::text("question", "The program ended while " + file + " had unsaved edits (" + std::to_string(recovered.count) +
@@ -178,25 +197,30 @@ void recover_dialog(Session& session) {
     ImGui::EndChild();
     if (!recovered.complete)
         ImGui::TextUnformatted("What was edited after these could not be kept.");
+    ImGui::PushTextWrapPos(36.0f * ui::unit());
+    if (recovered.user_file == UserFile::changed)
+        ui::text("fit",
+                 "The file was changed since, and the edits go on from what it was. Recover makes those that have "
+                 "a place in it as it is now. To have all of them: Later, put the old file back, start again.");
+    if (recovered.user_file == UserFile::gone)
+        ui::text("fit",
+                 "The file is gone, and the edits go on from it. To have them: Later, put it back, start again.");
+    ImGui::PopTextWrapPos();
     ImGui::TextDisabled("They open as a scene of their own; no file is changed.");
-    const auto next = [&] {
-        session.recovered.pop_back();
-        if (session.recovered.empty())
-            session.dialog = Dialog::none;
-    };
-    if (ui::button("Recover", {}, true, 8.0f * ui::unit())) {
+    const bool recover = ui::button("Recover", {}, recovered.user_file != UserFile::gone, 8.0f * ui::unit());
+    ImGui::SameLine();
+    const bool discard = ui::button("Discard", "The edits are lost", true, 8.0f * ui::unit());
+    ImGui::SameLine();
+    const bool later = ui::button("Later", "They are offered again at the next start", true, 8.0f * ui::unit());
+    if (recover)
         session.recover(recovered);
-        session.dialog = Dialog::none;
-        session.recovered.pop_back();
-    }
-    ImGui::SameLine();
-    if (ui::button("Discard", "The edits are lost", true, 8.0f * ui::unit())) {
+    if (discard)
         Recovery::discard(recovered);
-        next();
-    }
-    ImGui::SameLine();
-    if (ui::button("Later", "They are offered again at the next start", true, 8.0f * ui::unit()))
-        next();
+    if (!recover && !discard && !later)
+        return;
+    session.recovered.pop_back();
+    if (recover || session.recovered.empty())
+        session.dialog = Dialog::none;
 }
 
 const char* title_of(Dialog dialog) {

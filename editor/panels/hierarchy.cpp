@@ -1,6 +1,7 @@
 // The tree of entities: search, selection, names, and where they belong.
 #include "editor/panels/panel.h"
 #include "editor/window/commands.h"
+#include "editor/window/switches.h"
 
 #include <algorithm>
 #include <cctype>
@@ -31,6 +32,8 @@ public:
 
 private:
     void follow(Session& session);
+    void begin_renaming(Document& document, Entity entity);
+    void open_above(Document& document, Entity entity);
     void find_rows(Document& document);
     void add_rows(Document& document, Entity entity, int depth);
     bool is_open(Entity entity) const { return open_by_default_ != (toggled_.count(entity) > 0); }
@@ -47,11 +50,12 @@ private:
 
     std::string filter_, filter_of_rows_;
     std::vector<Row> rows_;
-    const Document* document_ = nullptr;
+    std::uint64_t document_ = 0; // its number
     std::uint64_t structure_revision_ = 0;
     std::unordered_set<Entity> toggled_;
     bool open_by_default_ = true, rows_are_old_ = true;
     bool is_tree_ = false; // some rows have others below them
+    int deepest_ = 0;      // of the rows
     Entity renaming_, anchor_, shown_;
     int rename_frames_ = 0;
     std::string new_name_;
@@ -75,8 +79,9 @@ void Hierarchy::add_rows(Document& document, Entity entity, int depth) {
 
 void Hierarchy::follow(Session& session) {
     Document& document = *session.document;
-    if (document_ != &document) {
-        document_ = &document;
+    if (document_ != document.number()) {
+        document_ = document.number();
+        renaming_ = anchor_ = shown_ = ecs::null_entity;
         toggled_.clear();
         open_by_default_ = document.entity_count() <= open_by_default;
         rows_are_old_ = true;
@@ -88,6 +93,29 @@ void Hierarchy::follow(Session& session) {
     filter_of_rows_ = filter_;
     find_rows(document);
     is_tree_ = std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return row.has_children; });
+    deepest_ = 0;
+    for (const Row& row : rows_)
+        deepest_ = std::max(deepest_, row.depth);
+}
+
+// So that its row is there.
+void Hierarchy::open_above(Document& document, Entity entity) {
+    std::size_t level = 0;
+    for (Entity above = document.parent(entity); !above.is_null(); above = document.parent(above)) {
+        if (++level > document.entity_count())
+            return; // a cycle in a damaged file
+        if (is_open(above))
+            continue;
+        if (!toggled_.erase(above))
+            toggled_.insert(above);
+        rows_are_old_ = true;
+    }
+}
+
+void Hierarchy::begin_renaming(Document& document, Entity entity) {
+    renaming_ = entity;
+    rename_frames_ = 0;
+    new_name_ = document.name(entity);
 }
 
 void Hierarchy::find_rows(Document& document) {
@@ -129,7 +157,7 @@ void Hierarchy::select(Session& session, std::size_t index) {
         Entities range;
         for (std::size_t i = first; i <= last; ++i)
             range.push_back(rows_[i].entity);
-        session.document->select(std::move(range));
+        session.document->select(range);
         shown_ = entity;
         return;
     } else {
@@ -181,30 +209,25 @@ void Hierarchy::context_menu(Session& session, Entity entity) {
     ui::close_by_escape();
     if (!session.document->selected(entity))
         session.document->select({entity});
-    if (ui::menu_item("Rename", "F2", true)) {
-        renaming_ = entity;
-        rename_frames_ = 0;
-        new_name_ = session.document->name(entity);
-    }
     session.commands->menu("Edit", session);
     ImGui::EndPopup();
 }
 
-// An eye: shown or hidden; a padlock, where it is locked.
+// An eye: shown, hidden, or, of a lamp that is muted, empty; a padlock, where it is locked.
 void Hierarchy::switches(Session& session, Entity entity) {
-    const bool hidden = session.hidden.count(entity) > 0, locked = session.locked.count(entity) > 0;
+    const bool hidden = session.hidden.count(entity) > 0, locked = session.locked.count(entity) > 0,
+               muted = session.muted.count(entity) > 0;
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const float side = ImGui::GetTextLineHeight();
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 centre(low.x + 0.5f * side, low.y + 0.5f * side);
-    if (ImGui::InvisibleButton("eye", ImVec2(side, side))) {
-        if (hidden)
-            session.hidden.erase(entity);
-        else
-            session.hidden.insert(entity);
-    }
-    ui::note("eye " + session.document->name(entity), hidden ? "hidden" : "shown");
-    ui::tooltip(hidden ? "Hidden: click to show" : locked ? "Locked (Ctrl+L)" : "Shown: click to hide");
+    if (ImGui::InvisibleButton("eye", ImVec2(side, side)))
+        set_hidden(session, {entity}, !hidden);
+    ui::note("eye " + session.document->name(entity), hidden ? "hidden" : muted ? "muted" : "shown");
+    ui::tooltip(std::string(hidden  ? "Hidden: click to show it and what is below it"
+                            : muted ? "Gives no light (Show, Mute lamps); click to hide it and what is below it"
+                                    : "Shown: click to hide it and what is below it") +
+                (locked ? "\n\nLocked (Show, Lock)" : ""));
     const ImU32 colour = ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_TextDisabled);
     if (locked)
         list->AddRectFilled(ImVec2(centre.x - 0.2f * side, centre.y - 0.1f * side),
@@ -212,6 +235,8 @@ void Hierarchy::switches(Session& session, Entity entity) {
     if (hidden)
         list->AddLine(ImVec2(centre.x - 0.28f * side, centre.y), ImVec2(centre.x + 0.28f * side, centre.y), colour,
                       1.5f);
+    else if (muted && !locked)
+        list->AddCircle(centre, 0.2f * side, colour, 0, 1.5f);
     else if (!locked)
         list->AddCircleFilled(centre, 0.2f * side, colour);
     ImGui::SameLine(0.0f, 0.1f * ui::unit());
@@ -219,13 +244,10 @@ void Hierarchy::switches(Session& session, Entity entity) {
 
 void Hierarchy::row_input(Session& session, std::size_t index, bool pressed) {
     const Entity entity = rows_[index].entity;
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
-        renaming_ = entity;
-        rename_frames_ = 0;
-        new_name_ = session.document->name(entity);
-    } else if (pressed) {
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
+        begin_renaming(*session.document, entity);
+    else if (pressed)
         select(session, index);
-    }
     drag_and_drop(session, entity);
     context_menu(session, entity);
 }
@@ -235,8 +257,10 @@ void Hierarchy::row(Session& session, std::size_t index) {
     const Row row = rows_[index];
     ImGui::PushID(int(row.entity.index));
     switches(session, row.entity);
-    const float indent = 0.8f * ui::unit() * float(std::min(row.depth, 40));
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + indent);
+    // Deep trees are indented less, so that there is room for names in the deepest rows.
+    const float room = std::max(ImGui::GetContentRegionAvail().x - 10.0f * ui::unit(), 0.0f);
+    const float level = std::min(0.8f * ui::unit(), room / float(std::max(deepest_, 1)));
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + level * float(row.depth));
     if (row.has_children) {
         const bool open = is_open(row.entity);
         if (ImGui::ArrowButton("open", open ? ImGuiDir_Down : ImGuiDir_Right)) {
@@ -278,35 +302,43 @@ void Hierarchy::row(Session& session, std::size_t index) {
     ImGui::PopID();
 }
 
-// What was selected elsewhere is scrolled to.
+// What was selected elsewhere, or is to be renamed, is scrolled to.
 void Hierarchy::show_selection(Session& session) {
     const std::vector<Entity>& selection = session.document->selection();
     const Entity last = selection.empty() ? ecs::null_entity : selection.back();
-    if (last == shown_)
+    const Entity to_rename = std::exchange(session.to_rename, ecs::null_entity);
+    if (session.document->exists(to_rename))
+        begin_renaming(*session.document, to_rename);
+    else if (last == shown_)
         return;
     shown_ = last;
+    open_above(*session.document, last);
+    follow(session);
     const auto found = std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return row.entity == last; });
     if (found != rows_.end())
-        ImGui::SetScrollFromPosY(ImGui::GetCursorStartPos().y - ImGui::GetScrollY() +
+        ImGui::SetScrollFromPosY(ImGui::GetCursorStartPos().y +
                                  float(found - rows_.begin()) * ImGui::GetTextLineHeightWithSpacing());
 }
 
 void Hierarchy::draw(Session& session) {
     const ui::Scope scope("hierarchy");
     ui::text_box("search", filter_, "Search names and components", -1.0f);
+    if (!session.to_rename.is_null())
+        filter_.clear(); // it may not be among what was found
+    const bool searched = filter_of_rows_ != filter_;
     follow(session);
     ImGui::TextDisabled(filter_.empty() ? "%zu entities" : "%zu found",
                         filter_.empty() ? session.document->entity_count() : rows_.size());
     drop(session, ecs::null_entity);
     ImGui::BeginChild("rows");
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f, 0.0f));
+    if (searched && filter_.empty())
+        shown_ = ecs::null_entity; // where what is selected is, is another place now
     show_selection(session);
-    const Entities& selection = session.document->selection();
-    if (ImGui::IsWindowFocused() && selection.size() == 1 && session.input->hit(app::key_f1 + 1)) {
-        renaming_ = selection[0];
-        rename_frames_ = 0;
-        new_name_ = session.document->name(renaming_);
-    }
+    if (searched && !filter_.empty())
+        ImGui::SetScrollY(0.0f);              // what is found begins at the top
+    if (!session.document->exists(renaming_)) // deleted meanwhile
+        renaming_ = ecs::null_entity;
     ImGuiListClipper clipper;
     clipper.Begin(int(rows_.size()), ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())

@@ -59,9 +59,10 @@ private:
     void overlay(Session& session);
     void toolbar(Session& session);
     static void play_buttons(Session& session);
+    static void step_boxes(Session& session);
     bool split(Session& session);
     Entity icon_at(Session& session, vec2 place);
-    void find_places(Document& document);
+    void find_places(Session& session);
     struct Icon {
         Entity entity;
         vec3 place; // in the world; or pixels and distance
@@ -69,8 +70,9 @@ private:
     std::vector<Icon> icons(Session& session);
     Gizmo gizmo_;
     SeenState places_state_;
-    std::vector<Icon> icon_places_; // in the world, of all that has one
-    std::vector<Placed> outlines_;  // of what is selected
+    std::shared_ptr<const PlayedPlaces> played_; // of those places
+    std::vector<Icon> icon_places_;              // in the world, of all that has one
+    std::vector<Placed> outlines_;               // of what is selected
     bool flying_ = false;
     ImVec2 pressed_{0, 0};
     ImVec2 toolbar_low_{0, 0}, toolbar_high_{0, 0}; // in the last frame; clicks there do not go through to the picture

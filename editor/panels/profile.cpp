@@ -1,5 +1,6 @@
 // What frames took: their history with median, 95th percentile and budget, and the stages and passes of one of them.
 #include "editor/panels/panel.h"
+#include "editor/window/value_box.h"
 #include "engine/core/file.h"
 #include "engine/statistics/summary.h"
 #include "viewer/trace.h"
@@ -103,14 +104,22 @@ void Profile::controls(Session& session) {
     ImGui::SameLine();
     if (ui::button("Save CSV", "A new file sunfleck_frames.csv in the current folder", !session.frames.empty()))
         save(session, false);
-    const float width = 7.0f * ui::unit();
+    ui::NumberLook look;
+    look.value = double(session.budgets.frame_ms);
+    look.minimum = double(Budgets::least_ms);
+    look.maximum = double(Budgets::most_ms);
+    look.unit = "ms";
+    look.width = 6.0f * ui::unit();
+    const char* const name = "Budget";
     ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < width) // in a narrow panel on a line of its own
-        ImGui::NewLine();
-    ImGui::SetNextItemWidth(width);
-    ImGui::DragFloat("##budget", &session.budgets.frame_ms, 0.1f, 1.0f, 1000.0f, "budget %.1f ms");
-    ui::note("budget", ui::number_text(double(session.budgets.frame_ms), false));
-    ui::tooltip("What a frame may take; the status bar and measured costs are held against it");
+    if (ImGui::GetContentRegionAvail().x < look.width + ImGui::CalcTextSize(name).x + ui::unit())
+        ImGui::NewLine(); // in a narrow panel on a line of its own
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine();
+    if (const std::optional<double> most = value_box(session, "budget", "Budget of a frame", look))
+        session.budgets.frame_ms = float(*most);
+    ui::tooltip("What a frame may take, 1 to 1,000 ms; the status bar and measured costs are held against it");
 }
 
 // Both frames' stages and passes, those that differ most first.
@@ -191,11 +200,11 @@ void Profile::history(const std::deque<ProfiledFrame>& frames, double budget) {
         list->AddRectFilled(ImVec2(from.x - 2.0f, from.y), ImVec2(from.x + text_size.x + 2.0f, from.y + text_size.y),
                             IM_COL32(16, 15, 14, 200));
         list->AddText(from, colour, text.c_str());
+        ui::note_place("line " + text, "", from, ImVec2(from.x + text_size.x, from.y + text_size.y));
     };
     line(budget, IM_COL32(240, 200, 90, 220), "budget", 0.0f);
     line(high, IM_COL32(200, 200, 200, 220), "95 % " + milliseconds(high), 1.0f);
-    if (high > 1.4 * middle)
-        line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.5f);
+    line(middle, IM_COL32(150, 200, 240, 220), "median " + milliseconds(middle), 0.5f);
     if (!ImGui::IsItemHovered())
         return;
     const auto index = std::size_t(std::max((ImGui::GetIO().MousePos.x - low.x) / wide, 0.0f));

@@ -1,6 +1,7 @@
 // One line: the newest message, what the lighting is doing, and what a frame takes.
 #include "editor/panels/panel.h"
 #include "editor/window/opening.h"
+#include "editor/window/saving.h"
 
 #include <cstdio>
 
@@ -10,6 +11,29 @@ namespace {
 void progress(const char* name, const std::string& text, float share) {
     ImGui::ProgressBar(share, ImVec2(14.0f * ui::unit(), 0.0f), text.c_str());
     ui::note(name, text);
+    ImGui::SameLine();
+}
+
+void stop_opening(Session& session) {
+    session.messages.say("'" + session.opening->path().filename().string() + "' was not opened" +
+                         (session.recovering ? "; its unsaved edits are offered by the next run" : ""));
+    session.opening.reset();
+    session.recovering.reset();
+}
+
+// Which file, and a way to leave it.
+void loading(Session& session) {
+    const std::string name = "Loading " + session.opening->path().filename().string();
+    const float room = 14.0f * ui::unit();
+    progress("loading", ui::fitted(name, room - ui::unit()), session.opening->share());
+    ui::tooltip(session.opening->path().string());
+    if (ui::button("Cancel##loading", "Leaves the file; the scene stays as it is"))
+        stop_opening(session);
+    ImGui::SameLine();
+}
+
+void saving(const Saving& now) {
+    ui::text("saving", "Saving " + now.path().filename().string() + " ...");
     ImGui::SameLine();
 }
 
@@ -56,9 +80,11 @@ void draw_status_bar(Session& session, const ScenePicture* picture) {
     const SceneStatus status = session.scene.status();
     ImGui::SetCursorPosX(0.5f * ui::unit());
     if (session.opening != nullptr)
-        progress("loading", "Loading", session.opening->share());
+        loading(session);
     else if (status.building)
         progress("building", "Lighting", status.share);
+    else if (session.saving != nullptr)
+        saving(*session.saving);
     const bool settled = picture != nullptr && picture->settled && !status.busy && session.opening == nullptr;
     const std::string frame = picture != nullptr ? frame_text(*picture) : "no picture yet";
     const float wide = ImGui::CalcTextSize(frame.c_str()).x + ui::unit();

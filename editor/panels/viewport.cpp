@@ -6,6 +6,7 @@
 #include "editor/window/comparison_overlay.h"
 #include "editor/window/field_parts.h"
 #include "editor/window/overlay.h"
+#include "editor/window/value_box.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,24 +117,30 @@ void say_how_to_begin(ImVec2 low, ImVec2 room) {
 
 } // namespace
 
-// What changes with edits and the selection alone, so that in other frames a large scene takes no longer.
-void Viewport::find_places(Document& document) {
-    if (!places_state_.follow(document))
+// What changes with edits, the selection and steps of a scene in motion alone, so that in other frames a large scene
+// takes no longer.
+void Viewport::find_places(Session& session) {
+    Document& document = *session.document;
+    const PlayedPlaces* const played = session.played.get();
+    const bool others_moved = std::exchange(played_, session.played) != session.played;
+    if (!places_state_.follow(document) && !others_moved)
         return;
     icon_places_.clear();
     for (const Entity entity : without_geometry(document))
-        icon_places_.push_back({entity, vec3(world_of(document, entity)[3])});
+        icon_places_.push_back({entity, vec3(world_of(document, entity, played)[3])});
     outlines_.clear();
     for (const Entity entity : document.selection()) {
         if (outlines_.size() == most_outlines)
             return;
-        if (const std::optional<Placed> placed = place_of(document, entity); placed && !placed->bounds.empty())
+        if (std::optional<Placed> placed = place_of(document, entity); placed && !placed->bounds.empty()) {
+            placed->world = world_of(document, entity, played);
             outlines_.push_back(*placed);
+        }
     }
 }
 
 std::vector<Viewport::Icon> Viewport::icons(Session& session) {
-    find_places(*session.document);
+    find_places(session);
     std::vector<Icon> result;
     for (const auto& [entity, where] : icon_places_) {
         if (result.size() == most_icons)
@@ -168,9 +175,11 @@ void Viewport::click(Session& session) {
     const vec2 place = pointer_in_viewport(session);
     Entity entity = icon_at(session, place);
     if (entity.is_null())
-        entity = pick(document, session.camera.view().position,
-                      ray_through(session.camera.view(), viewport_size(session), place),
-                      [&](Entity one) { return session.hidden.count(one) > 0 || session.locked.count(one) > 0; })
+        entity = pick(
+                     document, session.camera.view().position,
+                     ray_through(session.camera.view(), viewport_size(session), place),
+                     [&](Entity one) { return session.hidden.count(one) > 0 || session.locked.count(one) > 0; },
+                     session.played.get())
                      .entity;
     const ImGuiIO& io = ImGui::GetIO();
     if (entity.is_null()) {
@@ -210,14 +219,18 @@ void Viewport::navigate(Session& session, bool hovered) {
     if (io.MouseDown[0] && io.KeyAlt)
         session.camera.orbit(motion);
     if (io.MouseWheel != 0.0f)
-        session.camera.dolly(io.MouseWheel);
+        session.camera.dolly(io.MouseWheel, session.scene_size());
 }
 
-// Puts the switch of that name to the right of the last one, or on a line of its own where the picture ends before.
-void beside_or_below(const Session& session, const char* name, float gap) {
-    const float width = ImGui::CalcTextSize(name, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x;
+// Puts what is so wide to the right of the last one, or on a line of its own where the picture ends before.
+void beside_or_below(const Session& session, float width, float gap) {
     if (ImGui::GetItemRectMax().x + gap + width < session.viewport_area.x + session.viewport_area.z)
         ImGui::SameLine(0.0f, gap);
+}
+
+// A switch of that name.
+void beside_or_below(const Session& session, const char* name, float gap) {
+    beside_or_below(session, ImGui::CalcTextSize(name, nullptr, true).x + 2.0f * ImGui::GetStyle().FramePadding.x, gap);
 }
 
 // Switches in the picture's corner.
@@ -233,6 +246,29 @@ void Viewport::play_buttons(Session& session) {
         return;
     button(session.view.paused ? "Go on##pause" : "Pause##pause", "View/Pause");
     button("Step", "View/Step");
+}
+
+// How long the steps of handles are.
+void Viewport::step_boxes(Session& session) {
+    SnapSteps& steps = session.gizmo.steps;
+    const auto box = [&](const char* name, const char* unit, const SnapSteps::Range& range, float& step) {
+        ui::NumberLook look;
+        look.value = double(step);
+        look.minimum = double(range.least);
+        look.maximum = double(range.most);
+        look.unit = unit;
+        look.width = 4.2f * ui::unit();
+        beside_or_below(session, look.width, 2.0f);
+        const std::string meaning = std::string("Steps of ") + name;
+        if (const std::optional<double> value = value_box(session, "step of " + std::string(name), meaning, look))
+            step = float(*value);
+        ui::tooltip(meaning + ", " + ui::number_text(look.minimum, false) + " to " +
+                    ui::number_text(look.maximum, false) + (*unit == '\0' ? "" : " " + look.unit) +
+                    "; with Snap on, or Ctrl held");
+    };
+    box("moves", "m", SnapSteps::lengths, steps.length);
+    box("rotations", "\xc2\xb0", SnapSteps::angles, steps.angle);
+    box("scales", "x", SnapSteps::factors, steps.factor);
 }
 
 void Viewport::toolbar(Session& session) {
@@ -262,6 +298,7 @@ void Viewport::toolbar(Session& session) {
            "Axes of the handles (X)");
     toggle(session.gizmo.snap, session.gizmo.snap ? "Snap on##snap" : "Snap off##snap", 2.0f,
            "Movements in steps; holding Ctrl is the other way about");
+    step_boxes(session);
     play_buttons(session);
     ImGui::EndGroup();
     toolbar_low_ = ImGui::GetItemRectMin();
@@ -271,7 +308,7 @@ void Viewport::toolbar(Session& session) {
 void Viewport::overlay(Session& session) {
     if (session.view.show_grid)
         grid(session);
-    find_places(*session.document);
+    find_places(session);
     if (session.view.show_icons)
         for (const Icon& one : icons(session))
             icon(session, one.entity, one.place);

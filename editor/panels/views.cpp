@@ -1,11 +1,15 @@
 // What the viewport shows: the picture, a part of it, or false colours of the lighting, with their legends.
 #include "viewer/views.h"
 #include "editor/panels/panel.h"
+#include "editor/window/commands.h"
 #include "editor/window/fields.h"
+#include "editor/window/value_box.h"
 #include "gi_module/technique.h"
+#include "viewer/exposure.h"
 #include "viewer/overlays.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sunfleck::editor {
 namespace {
@@ -66,6 +70,52 @@ void lighting_views(Session& session) {
     }
 }
 
+// Rows of numbers that no description has: name, and a box for the new value.
+std::optional<double> number_row(Session& session, const std::string& name, const char* tip, ui::NumberLook look) {
+    const ui::Scope scope(name);
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ui::label(readable_name(name), tip);
+    ImGui::TableNextColumn();
+    look.width = ImGui::GetContentRegionAvail().x - ui::unit();
+    return value_box(session, "value", readable_name(name), look);
+}
+
+void exposure_rows(Session& session) {
+    const std::shared_ptr<ScenePicture> picture = session.scene.picture();
+    ui::NumberLook look;
+    look.value = double(session.view.ev100 ? *session.view.ev100 : picture ? picture->ev100 : viewer::default_exposure);
+    look.minimum = double(viewer::lowest_exposure);
+    look.maximum = double(viewer::highest_exposure);
+    look.unit = "EV";
+    if (const auto value = number_row(session, "exposure",
+                                      "Of the viewport, in place of the scene's or the picture's own: the higher, the "
+                                      "darker. -16 to 32 EV at ISO 100",
+                                      look))
+        session.view.ev100 = float(*value);
+    Command& again = *session.commands->find("View/Expose again");
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TableNextColumn();
+    if (ui::button(again.name, again.tooltip))
+        session.commands->run(again, session);
+}
+
+void resolution_row(Session& session) {
+    ui::NumberLook look;
+    look.value = std::round(100.0 * double(session.view.scale));
+    look.minimum = 25.0;
+    look.maximum = 100.0;
+    look.unit = "%";
+    look.whole = true;
+    if (const auto value =
+            number_row(session, "resolution",
+                       "Pixels of the viewport that are drawn, along each side: fewer take less time. 25 "
+                       "to 100 %",
+                       look))
+        session.view.scale = float(*value) / 100.0f;
+}
+
 // How light becomes the picture; of the viewport, not of the scene.
 void look(Session& session) {
     static const viewer::PictureSettings usual;
@@ -84,6 +134,8 @@ void look(Session& session) {
         };
         field_row(session, source);
     }
+    exposure_rows(session);
+    resolution_row(session);
     end_fields();
 }
 

@@ -15,8 +15,8 @@ public:
     void orbit(vec2 motion);
     // Sideways; `height`: of the viewport, pixels.
     void pan(vec2 motion, float height);
-    // Nearer by so many notches of the wheel.
-    void dolly(float notches);
+    // Nearer by so many notches of the wheel. Close to what it looks at, it goes on past that.
+    void dolly(float notches, float scene_size);
     // W A S D, Q and E down and up, shift faster. True if it moved.
     bool fly(const app::InputState& input, double seconds, float scene_size);
     // Looks at the whole of it from where it looks now.
@@ -25,6 +25,8 @@ public:
 
 private:
     void turn(vec2 motion, bool about_target);
+    // Where it looks; along -z where it stands on its target.
+    vec3 forward() const;
     scene::CameraView view_;
 };
 

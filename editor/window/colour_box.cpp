@@ -2,7 +2,7 @@
 
 #include "editor/document/lamp_flux.h"
 #include "editor/window/field_parts.h"
-#include "editor/window/widgets.h"
+#include "editor/window/value_box.h"
 #include "engine/io/gltf.h"
 
 #include <algorithm>
@@ -38,30 +38,45 @@ glm::dvec2 chromaticity(vec3 colour) {
 
 using Phase = ui::NumberEdit::Phase;
 
-// The box whose drag is the gesture that is open; 0: none is.
-ImGuiID dragged_box = 0;
+// What becomes of one object's value: where several differ, each goes on from its own.
+using Change = std::function<vec3(vec3 own)>;
+
+// The drag that is the gesture that is open, and the values before it; there is one pointer.
+struct ColourDrag {
+    ImGuiID box = 0; // 0: there is none
+    std::vector<vec3> before;
+};
+ColourDrag& the_drag() {
+    static ColourDrag only;
+    return only;
+}
 
 struct ColourBox {
     Session& session;
     const FieldSource& source;
-    vec3 value;
+    vec3 value; // the first object's
     float intensity;
     ImGuiID id;
 
-    bool is_dragged() const { return dragged_box == id; }
-    void type(vec3 colour) const {
-        apply_field_text(session, source, [&](const void*) { return colour_text(colour); });
+    bool is_dragged() const { return the_drag().box == id; }
+    void type(const Change& change) const {
+        apply_field_text(session, source,
+                         [&](const void* object) { return colour_text(change(colour_of(*source.field, object))); });
     }
     void begin() const {
-        dragged_box = id;
+        the_drag() = {id, {}};
+        for (const void* object : source.objects)
+            the_drag().before.push_back(colour_of(*source.field, object));
         session.document->begin(source.gesture);
     }
-    void drag(vec3 colour) const {
+    void drag(const Change& change) const {
         Document& document = *session.document;
-        if (!document.in_gesture()) // ended by something else: loss of focus, a value that cannot be
+        const std::vector<vec3>& before = the_drag().before;
+        // Ended by something else: loss of focus, a value that cannot be, another selection.
+        if (!document.in_gesture() || before.size() != source.objects.size())
             return;
-        for (std::size_t i = 0; i < source.objects.size(); ++i)
-            if (const Status status = source.set(i, colour_text(colour)); !status) {
+        for (std::size_t i = 0; i < before.size(); ++i)
+            if (const Status status = source.set(i, colour_text(change(before[i]))); !status) {
                 session.messages.check(status);
                 return document.cancel();
             }
@@ -69,15 +84,19 @@ struct ColourBox {
     void end(bool keep) const {
         if (!is_dragged())
             return;
-        dragged_box = 0;
+        the_drag() = {};
         if (keep)
             session.document->commit();
         else
             session.document->cancel();
     }
-    // `colour_at`: what a number stands for.
+    bool any(const std::function<bool(vec3 own)>& is_so) const {
+        return std::any_of(source.objects.begin(), source.objects.end(),
+                           [&](const void* object) { return is_so(colour_of(*source.field, object)); });
+    }
+    // `changed`: what a number makes of an object's own value.
     void number(const std::string& name, const ui::NumberLook& look,
-                const std::function<vec3(double number)>& colour_at) const {
+                const std::function<vec3(vec3 own, double number)>& changed) const {
         const ui::NumberEdit edit = ui::number_box(name, look);
         ImGui::SameLine();
         ImGui::TextUnformatted(name.c_str());
@@ -85,60 +104,54 @@ struct ColourBox {
         case Phase::began:
             return begin();
         case Phase::dragged:
-            return drag(colour_at(edit.value));
+            return drag([&](vec3 own) { return changed(own, edit.value); });
         case Phase::ended:
             return end(true);
         case Phase::cancelled:
             return end(false);
         case Phase::typed:
-            return type_number(name, edit.text, look, colour_at);
+            if (const std::optional<double> typed = typed_value(session, name, edit.text, look))
+                type([&](vec3 own) { return changed(own, *typed); });
+            return;
         case Phase::none:
             return;
         }
     }
-
-private:
-    void type_number(const std::string& name, const std::string& text, const ui::NumberLook& look,
-                     const std::function<vec3(double number)>& colour_at) const {
-        const std::optional<double> number = typed_number(text);
-        if (number && *number >= look.minimum && *number <= look.maximum)
-            return type(colour_at(*number));
-        const std::string most =
-            look.maximum < unbounded ? " to " + ui::number_text(look.maximum, look.whole) : std::string(" or more");
-        session.messages.say("'" + text + "' is not a value of '" + name +
-                                 "': " + ui::number_text(look.minimum, look.whole) + most + " " + look.unit,
-                             Message::Kind::error);
-    }
 };
 
 void hue_picker(const ColourBox& box) {
-    const bool is_light = !box.source.field->unit.empty();
+    const Field& field = *box.source.field;
     vec3 shown = encoded(glm::clamp(box.value / std::max(box.intensity, 1e-12f), 0.0f, 1.0f));
     const bool changed = ImGui::ColorPicker3("##picker", &shown.x,
                                              ImGuiColorEditFlags_PickerHueWheel | ImGuiColorEditFlags_NoSidePreview |
                                                  ImGuiColorEditFlags_DisplayRGB | ImGuiColorEditFlags_InputRGB);
     ui::note("picker");
     if (changed) {
+        const bool is_light = !field.unit.empty();
         vec3 chosen = decoded(shown);
         const float brightest = std::max({chosen.x, chosen.y, chosen.z});
         if (is_light && brightest > 0.0f)
             chosen /= brightest;
         if (!box.is_dragged())
             box.begin();
-        box.drag(chosen * (is_light ? box.intensity : 1.0f));
+        box.drag([&](vec3 own) { return chosen * intensity_of(field, own); });
     }
     if (!ImGui::IsAnyItemActive()) // a number says itself that its drag has ended
         box.end(true);
 }
 
 void amount_row(const ColourBox& box, const std::string& name, const std::string& unit, double factor) {
-    const vec3 colour = box.intensity > 0.0f ? box.value / box.intensity : vec3(1.0f);
+    const auto intensity = [&](vec3 own) { return intensity_of(*box.source.field, own); };
     ui::NumberLook look;
     look.value = double(box.intensity) * factor;
+    look.mixed = box.any([&](vec3 own) { return intensity(own) != box.intensity; });
     look.maximum = box.source.field->maximum * factor;
     look.unit = unit;
     look.width = 9.0f * ui::unit();
-    box.number(name, look, [&](double number) { return colour * float(number / factor); });
+    box.number(name, look, [&](vec3 own, double number) {
+        const float brightest = intensity(own);
+        return (brightest > 0.0f ? own / brightest : vec3(1.0f)) * float(number / factor);
+    });
     ui::tooltip("The brightest component; colours keep their ratios");
 }
 
@@ -155,17 +168,25 @@ void amount_rows(const ColourBox& box) {
 void temperature_row(const ColourBox& box) {
     constexpr double usual = 6500.0; // where a drag begins that begins at no temperature
     const std::optional<float> kelvin = colour_temperature(box.value);
+    const bool differ = box.any([&](vec3 own) {
+        const vec3 beside = own * box.intensity - box.value * intensity_of(*box.source.field, own);
+        const float whole = std::max(box.intensity * intensity_of(*box.source.field, own), 1e-30f);
+        const bool same_colour = glm::length(beside) < 1e-5f * whole; // which is quicker to see
+        return !same_colour && colour_temperature(own) != kelvin;
+    });
     ui::NumberLook look;
     look.value = kelvin ? double(*kelvin) : usual;
-    look.mixed = !kelvin;
-    look.instead = "none";
-    look.enabled = box.intensity > 0.0f;
+    look.mixed = !kelvin || differ;
+    look.instead = differ ? "mixed" : "none";
+    look.enabled = box.intensity > 0.0f || differ;
     look.minimum = double(coldest_body);
     look.maximum = double(hottest_body);
     look.unit = "K";
     look.whole = true;
     look.width = 9.0f * ui::unit();
-    box.number("Temperature", look, [&](double number) { return box.intensity * black_body_colour(float(number)); });
+    box.number("Temperature", look, [&](vec3 own, double number) {
+        return intensity_of(*box.source.field, own) * black_body_colour(float(number));
+    });
     ui::tooltip("Of the black body whose colour comes closest: candle 1,900 K, bulb 2,700 K, noon 5,500 K, blue sky "
                 "10,000 K");
 }

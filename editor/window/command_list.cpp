@@ -5,6 +5,7 @@
 #include "editor/window/comparison.h"
 #include "editor/window/fields.h"
 #include "editor/window/opening.h"
+#include "editor/window/switches.h"
 #include "editor/window/widgets.h"
 #include "engine/scene/entity_templates.h"
 #include "viewer/overlays.h"
@@ -29,14 +30,14 @@ vec3 place_ahead(Session& session) {
     const scene::CameraView& view = session.camera.view();
     const vec3 forward = glm::normalize(view.target - view.position);
     const float usual = 0.4f * session.scene_size();
-    const Picked hit = pick(*session.document, view.position, forward);
+    const Picked hit = pick(*session.document, view.position, forward, {}, session.played.get());
     return view.position + forward * (hit.entity.is_null() ? usual : std::min(usual, 0.75f * hit.distance));
 }
 
 void save(Session& session) {
     const std::filesystem::path& path = session.document->path();
     if (path.string().ends_with(".scene.json") && !is_built_in(path))
-        session.save(path);
+        session.save_behind();
     else
         session.dialog = Dialog::save_as;
 }
@@ -46,7 +47,7 @@ void select_all(Session& session) {
     for (const Entity root : session.document->roots())
         for (const Entity entity : session.document->family(root))
             all.push_back(entity);
-    session.document->select(std::move(all));
+    session.document->select(all);
 }
 
 void unparent(Session& session) {
@@ -68,53 +69,14 @@ void look_at_selection(Session& session) {
     for (const Entity top : session.selected_tops())
         for (const Entity entity : document.family(top))
             selected.insert(entity);
-    const Picked hit = pick(document, view.target, glm::normalize(back),
-                            [&](Entity one) { return selected.count(one) > 0 || session.hidden.count(one) > 0; });
+    const Picked hit = pick(
+        document, view.target, glm::normalize(back),
+        [&](Entity one) { return selected.count(one) > 0 || session.hidden.count(one) > 0; }, session.played.get());
     const float nearest = 0.1f * glm::length(bounds.extent()); // else something stands right before it
     if (hit.entity.is_null() || 0.95f * hit.distance > glm::length(back) || 0.95f * hit.distance < nearest)
         return;
     view.position = view.target + glm::normalize(back) * (0.95f * hit.distance);
     session.camera.set(view);
-}
-
-bool is_solo(const Session& session) {
-    return session.solo && session.solo->hidden == session.hidden;
-}
-
-// All lamps but the selected ones are hidden, and whatever was; once more: what was hidden before.
-void solo(Session& session) {
-    Document& document = *session.document;
-    Solo next;
-    next.before = next.hidden = is_solo(session) ? session.solo->before : session.hidden;
-    for (const Entity root : document.roots())
-        for (const Entity entity : document.family(root)) {
-            if (!emits(document, entity))
-                continue;
-            if (!document.selected(entity)) {
-                next.hidden.insert(entity);
-                continue;
-            }
-            next.lamps.insert(entity);
-            next.hidden.erase(entity);
-        }
-    if (is_solo(session) && (next.lamps.empty() || next.lamps == session.solo->lamps)) {
-        session.hidden = std::exchange(session.solo, std::nullopt)->before;
-        return;
-    }
-    session.hidden = next.hidden;
-    session.solo = std::move(next);
-}
-
-void hide_selection(Session& session) {
-    for (const Entity top : session.selected_tops())
-        for (const Entity entity : session.document->family(top))
-            session.hidden.insert(entity);
-}
-
-void lock_selection(Session& session) {
-    for (const Entity entity : session.document->selection())
-        if (session.locked.erase(entity) == 0)
-            session.locked.insert(entity);
 }
 
 } // namespace
@@ -144,10 +106,19 @@ void add_edit_commands(std::vector<Command>& list) {
                     [](Session& session) { return session.document->history().can_redo(); }});
     list.push_back({"Edit",
                     "Delete",
-                    "The selection, with all that is below it",
+                    "The selection, with all that is below it; what is locked stays",
                     {app::key_delete},
-                    [](Session& session) { remove(*session.document, session.document->selection()); },
+                    delete_selection,
                     has_selection});
+    list.push_back({"Edit",
+                    "Rename",
+                    "In the hierarchy, where a double click asks for a name, too",
+                    {app::key_f1 + 1},
+                    [](Session& session) {
+                        session.to_rename = session.document->selection()[0];
+                        session.front = "Hierarchy";
+                    },
+                    [](Session& session) { return session.document->selection().size() == 1; }});
     list.push_back({"Edit", "Duplicate", "", control('D'),
                     [](Session& session) { duplicate(*session.document, session.document->selection()); },
                     has_selection});
@@ -169,23 +140,36 @@ void add_show_commands(std::vector<Command>& list) {
                     "Hide",
                     "The selection and what is below it, light included; the file keeps it",
                     {'H'},
-                    hide_selection,
+                    [](Session& session) { set_hidden(session, session.document->selection(), true); },
                     has_selection});
     list.push_back({"Show",
                     "Show all",
-                    "",
+                    "Lamps that are muted, too",
                     {'H', false, with_shift},
-                    [](Session& session) { session.hidden.clear(); },
-                    [](Session& session) { return !session.hidden.empty(); }});
+                    [](Session& session) {
+                        session.hidden.clear();
+                        session.muted.clear();
+                    },
+                    [](Session& session) { return !session.hidden.empty() || !session.muted.empty(); }});
+    list.push_back({"Show",
+                    "Mute lamps",
+                    "Those of the selection and below give no light; they stay in the picture, and the file keeps them "
+                    "as they are. Once more: they shine",
+                    {'M'},
+                    toggle_mute,
+                    has_selection,
+                    is_muted});
     list.push_back({"Show",
                     "Solo lamps",
-                    "Light from the selection alone; once more: as before",
+                    "Light from the selection and what is below it alone; once more: as before",
                     {'L'},
-                    solo,
+                    toggle_solo,
                     [](Session& session) { return has_selection(session) || is_solo(session); },
                     is_solo});
-    list.push_back({"Show", "Lock", "Clicks in the picture leave locked entities alone; once more: not", control('L'),
-                    lock_selection, has_selection});
+    list.push_back({"Show", "Lock",
+                    "Clicks in the picture, handles and Delete leave the selection and what is below it alone; once "
+                    "more: not",
+                    control('L'), toggle_lock, has_selection, is_locked});
 }
 
 void add_gizmo_commands(std::vector<Command>& list) {
@@ -246,6 +230,14 @@ void add_overlay_commands(std::vector<Command>& list) {
 void add_view_commands(std::vector<Command>& list) {
     list.push_back(
         {"View", "Look at selection", "Or at the whole scene, if nothing is selected", {'F'}, look_at_selection});
+    list.push_back({"View",
+                    "Expose again",
+                    "By the picture as it is now; a scene that says its own exposure keeps that",
+                    {},
+                    [](Session& session) {
+                        session.view.ev100.reset();
+                        ++session.view.exposures;
+                    }});
     list.push_back({"View", "Look at everything", "", {app::key_home}, [](Session& session) {
                         session.camera.frame(bounds_of_all(*session.document));
                     }});

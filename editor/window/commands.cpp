@@ -42,6 +42,8 @@ Commands::Commands() {
     add_gizmo_commands(all_);
     add_camera_commands(all_);
     add_view_commands(all_);
+    for (Command& command : all_)
+        command.usual = command.shortcut;
 }
 
 Command* Commands::find(std::string_view path) {
@@ -53,6 +55,10 @@ void Commands::run(Command& command, Session& session) {
     if (!command.is_enabled(session))
         return;
     ++command.uses;
+    if (session.document->in_gesture()) { // a hand still drags: what it has done so far was not meant to stay
+        session.document->cancel();
+        session.messages.say("What was being dragged is where it was");
+    }
     command.run(session);
 }
 
@@ -62,6 +68,8 @@ void Commands::take_keys(const app::InputState& input, Session& session) {
     const bool shift = down(app::key_left_shift, app::key_right_shift),
                alt = down(app::key_left_alt, app::key_right_alt);
     for (const app::Key key : input.went_down) {
+        if (key == app::key_escape && session.document->in_gesture())
+            continue; // it is meant for what is being dragged
         const Shortcut pressed{key, control, shift, alt};
         for (Command& command : all_)
             if (command.shortcut == pressed)
@@ -69,19 +77,26 @@ void Commands::take_keys(const app::InputState& input, Session& session) {
     }
 }
 
-void Commands::bind(Command& command, const Shortcut& shortcut) {
+Command* Commands::bind(Command& command, const Shortcut& shortcut) {
+    Command* had = nullptr;
     for (Command& other : all_)
-        if (shortcut.key != app::no_key && other.shortcut == shortcut)
-            other.shortcut = {};
+        if (shortcut.key != app::no_key && &other != &command && other.shortcut == shortcut)
+            had = &other;
+    if (had != nullptr)
+        had->shortcut = {};
     command.shortcut = shortcut;
+    return had;
+}
+
+void Commands::use_usual_keys() {
+    for (Command& command : all_)
+        command.shortcut = command.usual;
 }
 
 std::map<std::string, std::string> Commands::changed_keys() const {
     std::map<std::string, std::string> result;
-    Commands usual;
     for (const Command& command : all_)
-        if (const Command* known = usual.find(command.path());
-            known == nullptr || !(known->shortcut == command.shortcut))
+        if (!(command.shortcut == command.usual))
             result[command.path()] = shortcut_text(command.shortcut);
     return result;
 }

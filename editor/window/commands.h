@@ -18,12 +18,13 @@ Shortcut shortcut_from_text(const std::string& text);
 struct Command {
     std::string group, name; // menu and entry, "/" between them in paths: "Edit", "Delete"
     std::string tooltip;
-    Shortcut shortcut;
+    Shortcut shortcut; // as it is used now
     std::function<void(Session&)> run;
     std::function<bool(Session&)> enabled{};      // none: always
     std::function<bool(Session&)> checked{};      // none: it is not a switch
     std::function<std::string(Session&)> title{}; // in menus, in place of the name; none: the name
     std::uint64_t uses = 0;
+    Shortcut usual{}; // where nobody has changed it
 
     std::string path() const { return group + "/" + name; }
     bool is_enabled(Session& session) const { return !enabled || enabled(session); }
@@ -39,8 +40,10 @@ public:
     void run(Command& command, Session& session);
     // Runs what the keys of this frame ask for.
     void take_keys(const app::InputState& input, Session& session);
-    // Gives a command other keys; what had them has none.
-    void bind(Command& command, const Shortcut& shortcut);
+    // Gives a command other keys; what had them has none, and is returned; null: nothing had them.
+    Command* bind(Command& command, const Shortcut& shortcut);
+    // Every command has its usual keys again.
+    void use_usual_keys();
     // Keys that are not the usual ones, as texts by the paths of their commands; and the inverse.
     std::map<std::string, std::string> changed_keys() const;
     void change_keys(const std::map<std::string, std::string>& keys);

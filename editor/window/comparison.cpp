@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace sunfleck::editor {
+namespace {
+
+using Hand = std::chrono::steady_clock;
+constexpr auto hand_pause = std::chrono::milliseconds(300); // longer than between the movements of one gesture
+
+} // namespace
 
 bool same_view(const ViewRequest& a, const ViewRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
@@ -12,6 +18,10 @@ bool same_view(const ViewRequest& a, const ViewRequest& b) {
            a.chosen_sample == b.chosen_sample && a.listing == b.listing && a.look.antialiasing == b.look.antialiasing &&
            a.look.glare == b.look.glare && a.ev100 == b.ev100 && a.playing == b.playing && a.paused == b.paused &&
            a.read_back == b.read_back;
+}
+
+void Comparison::note_hand() {
+    hand_rests_ = Hand::now() + hand_pause;
 }
 
 void Comparison::forget_device() {
@@ -53,9 +63,17 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
     wanted.ev100 = now != nullptr ? std::optional<float>(now->ev100) : view.ev100;
     const bool view_changed = !same_view(wanted, view_);
     view_ = wanted;
+    if (change)
+        revision_ = change->revision, hiding_ = change->hiding;
+    if (change || view_changed)
+        differences_->forget();
     const auto tell = [&](auto& thread, bool is_new, auto&& adapt) {
-        if (is_new || change)
-            thread.change(adapt(is_new ? everything() : *change));
+        SceneChange told;
+        if (is_new || change) {
+            told = is_new ? everything() : *change;
+            revision_ = told.revision, hiding_ = told.hiding;
+            thread.change(adapt(std::move(told)));
+        }
         if (is_new || view_changed)
             thread.show(wanted);
     };
@@ -63,18 +81,36 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
         const bool is_new = reference_ == nullptr;
         if (is_new)
             reference_ = std::make_unique<ReferenceThread>(
-                *device_, [this] { return scene_.busy(); }, wake_);
+                *device_, [this] { return scene_.busy() || Hand::now() < hand_rests_.load(); }, wake_);
         tell(*reference_, is_new, [](SceneChange all) { return all; });
     }
     if (needs_second()) {
-        const bool is_new = second_ == nullptr;
-        if (is_new)
+        const bool is_new = second_ == nullptr || second_->wants_everything();
+        if (second_ == nullptr)
             second_ = std::make_unique<SceneThread>(*device_, wake_);
         tell(*second_, is_new, [this](SceneChange all) { return with_kept_settings(std::move(all)); });
     }
     const std::shared_ptr<ScenePicture> a = one(now), b = other();
-    if (a != nullptr && b != nullptr)
+    const bool b_is_current = b != nullptr && (with == CompareWith::reference || is_current(*b));
+    if (a != nullptr && is_current(*a) && b_is_current && why_without_difference().empty())
         differences_->compare(a->pixels, b->pixels);
+}
+
+// It shows what was told last. The reference forgets its picture by itself.
+bool Comparison::is_current(const ScenePicture& picture) const {
+    return picture.revision == revision_ && picture.hiding == hiding_ &&
+           picture.camera.position == view_.camera.position && picture.camera.target == view_.camera.target &&
+           picture.camera.up == view_.camera.up &&
+           picture.camera.vertical_field_of_view == view_.camera.vertical_field_of_view;
+}
+
+std::string Comparison::why_without_difference() const {
+    if (view_.playing)
+        return "No figures while the scene plays";
+    const bool final_view = view_.view == shared::view_final && view_.lighting_view.empty() && view_.overlays.empty();
+    if (with == CompareWith::reference && !final_view)
+        return "No figures: the reference has no debug views and no overlays";
+    return {};
 }
 
 std::shared_ptr<ScenePicture> Comparison::one(const std::shared_ptr<ScenePicture>& now) const {
@@ -86,7 +122,10 @@ std::shared_ptr<ScenePicture> Comparison::other() const {
 }
 
 std::shared_ptr<const Difference> Comparison::difference() const {
-    return differences_ != nullptr ? differences_->difference() : nullptr;
+    const std::shared_ptr<const Difference> found = differences_ != nullptr ? differences_->difference() : nullptr;
+    const std::shared_ptr<ScenePicture> a = found != nullptr ? one(scene_.picture()) : nullptr;
+    const bool shown = a != nullptr && a->pixels == found->of && why_without_difference().empty();
+    return shown ? found : nullptr;
 }
 
 std::string Comparison::state_of_second() const {
@@ -106,7 +145,9 @@ std::string Comparison::name_of_other() const {
     if (reference_ == nullptr)
         return "reference";
     const std::string error = reference_->error();
-    return "reference, " + (error.empty() ? std::to_string(samples()) + " paths a pixel" : error);
+    return "reference, " + (!error.empty()  ? error
+                            : view_.playing ? "which waits until play ends"
+                                            : std::to_string(samples()) + " paths a pixel");
 }
 
 std::vector<app::Backdrop> Comparison::backdrops(const std::shared_ptr<ScenePicture>& now, VkRect2D area,

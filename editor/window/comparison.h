@@ -34,6 +34,8 @@ public:
     bool without_scene() const {
         return with == CompareWith::reference && what == CompareWhat::kept_settings && kept_.has_value();
     }
+    // Somebody points, types or flies: the reference waits until the hand rests, so that the window answers at once.
+    void note_hand();
     // Each frame of the GUI: `change` is what the scene thread is told, if anything, and `everything` makes all of it.
     void follow(const std::optional<SceneChange>& change, const std::function<SceneChange()>& everything,
                 const ViewRequest& view);
@@ -43,7 +45,11 @@ public:
     // What is compared, and what with; null until there is one. `now`: the scene's own picture.
     std::shared_ptr<ScenePicture> one(const std::shared_ptr<ScenePicture>& now) const;
     std::shared_ptr<ScenePicture> other() const;
+    // Of the two that are shown now (as the reference refines, of its last picture but one at most); null: there is
+    // none, as while the scene plays, or where debug views or overlays are shown, which the reference has not.
     std::shared_ptr<const Difference> difference() const;
+    // Why there never will be one; empty: it comes.
+    std::string why_without_difference() const;
     // Paths for each pixel of the reference.
     std::uint32_t samples() const { return reference_ != nullptr ? reference_->samples() : 0; }
     // What the two are, and how far: "kept settings, settling", "reference, 64 paths a pixel", or what went wrong.
@@ -53,15 +59,18 @@ public:
 private:
     bool needs_second() const { return kept_ && (with == CompareWith::kept_settings || without_scene()); }
     std::string state_of_second() const;
+    bool is_current(const ScenePicture& picture) const;
     SceneChange with_kept_settings(SceneChange change) const;
     gpu::Device* device_;
     SceneThread& scene_;
     const std::function<void()> wake_;
+    std::atomic<std::chrono::steady_clock::time_point> hand_rests_{}; // from then on
     std::unique_ptr<ReferenceThread> reference_;
     std::unique_ptr<SceneThread> second_;
     std::unique_ptr<DifferenceThread> differences_;
     std::optional<gi::Settings> kept_;
     ViewRequest view_;
+    std::uint64_t revision_ = 0, hiding_ = 0; // SceneChange::revision and hiding, as the threads were told
     std::pair<CompareWith, bool> sides_{CompareWith::nothing, false}; // what differences_ is of: with, without_scene()
 };
 

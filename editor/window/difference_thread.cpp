@@ -38,6 +38,15 @@ std::shared_ptr<const Difference> DifferenceThread::difference() const {
     return newest_;
 }
 
+void DifferenceThread::forget() {
+    const std::scoped_lock lock(mutex_);
+    newest_.reset();
+    a_.reset();
+    b_.reset();
+    news_ = false;
+    ++forgotten_;
+}
+
 Result<std::shared_ptr<Difference>> DifferenceThread::make(const io::Picture& a, const io::Picture& b,
                                                            std::unique_ptr<gpu::Submission>& submission) const {
     if (submission == nullptr) {
@@ -54,6 +63,7 @@ void DifferenceThread::run() {
     std::unique_ptr<gpu::Submission> submission;
     for (;;) {
         std::shared_ptr<const io::Picture> a, b;
+        std::uint64_t forgotten = 0;
         {
             std::unique_lock lock(mutex_);
             changed_.wait(lock, [this] { return ends_ || news_; });
@@ -62,6 +72,7 @@ void DifferenceThread::run() {
             news_ = false;
             a = a_;
             b = b_;
+            forgotten = forgotten_;
         }
         auto made = caught([&] { return make(*a, *b, submission); });
         if (!made) {
@@ -70,6 +81,9 @@ void DifferenceThread::run() {
         }
         {
             const std::scoped_lock lock(mutex_);
+            if (forgotten != forgotten_)
+                continue;
+            (*made)->of = std::move(a);
             newest_ = std::move(*made);
         }
         wake_();

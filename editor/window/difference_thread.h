@@ -10,6 +10,7 @@ struct Difference {
     std::shared_ptr<ScenePicture> map;  // eight times the difference, as display values
     std::shared_ptr<ScenePicture> heat; // heat_picture
     command_line::Metrics metrics;
+    std::shared_ptr<const io::Picture> of; // the first of the two
 };
 
 class DifferenceThread {
@@ -23,6 +24,8 @@ public:
     void compare(std::shared_ptr<const io::Picture> a, std::shared_ptr<const io::Picture> b);
     // The newest; null before the first one.
     std::shared_ptr<const Difference> difference() const;
+    // What was compared so far is of pictures that are no more.
+    void forget();
 
 private:
     void run();
@@ -34,6 +37,7 @@ private:
     std::condition_variable changed_;
     std::shared_ptr<const io::Picture> a_, b_;
     std::shared_ptr<const Difference> newest_;
+    std::uint64_t forgotten_ = 0; // so often
     bool news_ = false, ends_ = false;
     std::thread thread_;
 };

@@ -35,7 +35,7 @@ public:
                 SUNFLECK_TRY(caught([&] { return take_new_device(); }));
             return caught([&] { return loop(); });
         });
-        const bool edits_wait = !session_->quit && session_->document->unsaved(); // a signal, or an error
+        const bool edits_wait = !session_->quit && session_->still_unsaved(); // a signal, or an error
         if (edits_wait)
             recovery_->leave();
         Status finished = finish(bool(drawn), edits_wait);
@@ -56,7 +56,6 @@ private:
     bool something_new();
     void replace_document(const Loaded& loaded);
     void keep_edits();
-    void take_dropped(const app::InputState& input);
     void tell_scene();
     Status draw(const app::InputState& input);
     void ask_before_closing();
@@ -64,6 +63,8 @@ private:
     void tell_scripts();
     Status finish(bool whole, bool edits_wait);
     void keep_camera();
+    void note_state();
+    void keep_state(); // the end of the program need not be a regular one
     float scale() { return options_.scale > 0.0f ? options_.scale : usual_scale * window().scale(); }
 
     const Options& options_;
@@ -76,6 +77,7 @@ private:
     EditorState state_;
     std::filesystem::path state_path_; // empty: nothing is kept
     bool may_save_state_ = true;
+    StateKeeper state_keeper_;
     ChangeCollector collector_;
     HiddenFilter hidden_;
     std::unique_ptr<Recovery> recovery_;
@@ -98,7 +100,7 @@ Status Program::start() {
     SUNFLECK_TRY(try_outputs(outputs));
     std::string problem;
     state_path_ = options_.state_file.empty() ? usual_state_file() : std::filesystem::path(options_.state_file);
-    state_ = load_state(state_path_, problem, may_save_state_);
+    state_keeper_ = StateKeeper(state_ = load_state(state_path_, problem, may_save_state_));
     SUNFLECK_ASSIGN(display_, Display::create(options_));
     SUNFLECK_TRY(start_scene());
     if (!problem.empty())
@@ -130,6 +132,7 @@ Status Program::start_scene() {
     session_->capture_pointer = [this](bool on) { window().capture_pointer(on); };
     session_->recent_files = state_.recent_files;
     session_->budgets = state_.budgets;
+    session_->gizmo.steps = state_.steps;
     if (!options_.shaders.empty())
         session_->shaders =
             std::make_unique<ShaderWatch>(options_.shaders, viewer::SceneRenderer::shader_paths(), wakes);
@@ -161,7 +164,10 @@ bool Program::something_new() {
     if (window().event_count() != std::exchange(events_, window().event_count()) || window().has_more()) {
         frames_due_ = frames_after_event;
         frames_since_event_ = 0;
+        session_->comparison->note_hand();
     }
+    if (layout_->flying())
+        session_->comparison->note_hand();
     return frames_due_ > 0;
 }
 
@@ -170,12 +176,13 @@ Status Program::loop() {
         const bool quiet = ui::take_quiet_frame();
         if (!quiet && !something_new()) {
             tell_scripts();
+            keep_state();
             window().wait(longest_sleep);
             ++figures_.wake_ups;
         }
         const app::InputState& input = quiet ? (still_input_ = window().input().still()) : window().poll();
         session_->finish_opening([this](const Loaded& loaded) { replace_document(loaded); });
-        take_dropped(input);
+        session_->open_dropped(input.dropped);
         ask_before_closing();
         if (!something_new() && !quiet)
             continue;
@@ -191,9 +198,16 @@ void Program::replace_document(const Loaded& loaded) {
     keep_camera();
     session_->take(loaded.document);
     if (loaded.recovered) {
+        const Recovered& from = *loaded.recovered;
+        if (from.user_file == UserFile::changed && from.made != nullptr && from.made->names.size() < from.count)
+            return session_->messages.say("Recovered " + std::to_string(from.made->names.size()) + " of " +
+                                              std::to_string(from.count) +
+                                              " unsaved edits: the next one has no place in the file as it is now. All "
+                                              "are offered again at the next start",
+                                          Message::Kind::warning);
         recovered_from_ = loaded.recovered;
         writes_before_ = recovery_->writes();
-        return session_->messages.say("Recovered " + std::to_string(loaded.recovered->count) +
+        return session_->messages.say("Recovered " + std::to_string(from.count) +
                                       " unsaved edits; save them under a name of your choice");
     }
     if (const auto known = state_.cameras.find(full_name(loaded.path)); known != state_.cameras.end())
@@ -204,15 +218,6 @@ void Program::replace_document(const Loaded& loaded) {
 void Program::keep_camera() {
     if (const std::filesystem::path& path = session_->document->path(); !path.empty())
         state_.cameras[full_name(path)] = session_->camera.view();
-}
-
-void Program::take_dropped(const app::InputState& input) {
-    if (input.dropped.empty())
-        return;
-    if (input.dropped.size() > 1)
-        session_->messages.say(std::to_string(input.dropped.size()) + " files were dropped; only the first is opened",
-                               Message::Kind::warning);
-    session_->open(input.dropped.front());
 }
 
 void Program::ask_before_closing() {
@@ -233,14 +238,12 @@ void Program::keep_edits() {
         return;
     kept_revision_ = document.revision();
     kept_unsaved_ = unsaved;
+    const Recovery::Place place(full_name(document.path()), document.folder());
     if (!unsaved)
-        return recovery_->saved(document.path().string());
+        return recovery_->saved(place);
     constexpr std::size_t most_names = 20;
-    std::vector<std::string> names;
-    const std::size_t position = document.history().position();
-    for (std::size_t i = position - std::min(position, most_names); i < position; ++i)
-        names.push_back(document.history().entries()[i].name);
-    recovery_->unsaved(document.path().string(), std::move(names), std::max<std::size_t>(position, 1));
+    recovery_->unsaved(place, document.history().newest_names(most_names),
+                       std::max<std::size_t>(document.history().position(), 1));
 }
 
 // Edits and views go to the scene thread.
@@ -252,26 +255,32 @@ void Program::tell_scene() {
     if (change)
         recovery_->change(*change);
     keep_edits();
-    if (std::exchange(session_->rebuild, false)) // all that has been collected so far
+    const bool outgrown = scene_->wants_everything();
+    if (std::exchange(session_->rebuild, false) || outgrown) // all that has been collected so far
         change = ChangeCollector::everything(session_->document);
-    hidden_.apply(session_->document, session_->hidden, change);
+    hidden_.apply(session_->document, session_->hidden, session_->muted, change);
+    session_->hiding = hidden_.count();
     ViewRequest wanted = session_->view.request();
     wanted.camera = session_->camera.view();
     wanted.width = std::uint32_t(session_->viewport_area.z * session_->view.scale);
     wanted.height = std::uint32_t(session_->viewport_area.w * session_->view.scale);
+    wanted.exposures = session_->view.exposures;
     wanted.listing = std::exchange(session_->listing, {});
     wanted.read_back = session_->comparison->on();
+    if (session_->comparison->with == CompareWith::reference)
+        wanted.look.glare = 0.0f; // which the reference has not
     session_->comparison->follow(
         change,
         [this] {
             SceneChange everything = ChangeCollector::everything(session_->document);
-            HiddenFilter::hide(session_->hidden, everything);
+            HiddenFilter::hide(session_->hidden, session_->muted, everything);
+            everything.hiding = hidden_.count();
             return everything;
         },
         wanted);
     if (change)
         scene_->change(std::move(*change));
-    if (same_view(wanted, session_->shown))
+    if (same_view(wanted, session_->shown) && wanted.exposures == session_->shown.exposures)
         return;
     session_->shown = wanted;
     scene_->show(wanted);
@@ -330,6 +339,8 @@ void Program::after_frame() {
     if (title != title_)
         window().set_title(title_ = title);
     widgets_due_ = !options_.widgets.empty();
+    state_keeper_.note_frame();
+    keep_state();
     if (++frames_since_event_ > frames_after_event)
         tell_scripts();
 }
@@ -340,14 +351,27 @@ void Program::tell_scripts() {
         session_->messages.check(write_widgets(options_.widgets, ui::notes(), session_->input->mouse));
 }
 
-Status Program::finish(bool whole, bool edits_wait) {
+void Program::note_state() {
     keep_camera();
     state_.layout = layout_->state();
     window().size(state_.width, state_.height);
     state_.recent_files = session_->recent_files;
     state_.budgets = session_->budgets;
+    state_.steps = session_->gizmo.steps;
     state_.keys = session_->commands->changed_keys();
-    const Status kept = may_save_state_ ? save_state(state_path_, state_) : Status();
+}
+
+void Program::keep_state() {
+    if (!may_save_state_ || !state_keeper_.is_due())
+        return;
+    note_state();
+    if (!session_->messages.check(state_keeper_.keep(state_path_, state_)))
+        frames_due_ = std::max(frames_due_, 1);
+}
+
+Status Program::finish(bool whole, bool edits_wait) {
+    note_state();
+    const Status kept = may_save_state_ ? state_keeper_.finish(state_path_, state_) : Status();
     const Status reported = options_.report.empty()
                                 ? Status()
                                 : write_report(options_.report, figures_, *session_, display_->validation_messages());

@@ -23,9 +23,13 @@ std::string number(double value) {
     return text;
 }
 
-// Turns about x, y and z, in this order of nesting from the inside.
-vec3 angles_of(const quat& rotation) {
-    return glm::degrees(glm::eulerAngles(glm::normalize(rotation)));
+// A rotation of these angles, which are shown for it from now on.
+std::string text_of_angles(const Field& field, const Angles& angles) {
+    const quat turned = rotation_of(angles);
+    remember_angles(turned, angles);
+    Field whole = field;
+    whole.offset = 0;
+    return field_to_text(whole, &turned);
 }
 
 } // namespace
@@ -65,7 +69,7 @@ double read_part(const Field& field, const void* object, int part) {
     case FieldKind::vector3:
         return double(read<vec3>(field, object)[part]) * shown_factor(field);
     case FieldKind::quaternion:
-        return double(angles_of(read<quat>(field, object))[part]);
+        return shown_angles(read<quat>(field, object))[part];
     default:
         return 0.0;
     }
@@ -82,12 +86,23 @@ std::string text_with_part(const Field& field, const void* object, int part, dou
     }
     if (field.kind != FieldKind::quaternion)
         return number(stored);
-    vec3 angles = angles_of(read<quat>(field, object));
-    angles[part] = float(value);
-    const quat turned = glm::normalize(quat(glm::radians(angles)));
-    Field whole = field;
-    whole.offset = 0;
-    return field_to_text(whole, &turned);
+    Angles angles = shown_angles(read<quat>(field, object));
+    angles[part] = value;
+    return text_of_angles(field, angles);
+}
+
+PartDrag::PartDrag(const Field& field, const std::vector<const void*>& objects, int part) : part_(part) {
+    if (field.kind == FieldKind::quaternion)
+        for (const void* object : objects)
+            angles_.push_back(shown_angles(read<quat>(field, object)));
+}
+
+std::string PartDrag::text(const Field& field, const void* object, std::size_t index, double value) const {
+    if (index >= angles_.size())
+        return text_with_part(field, object, part_, value);
+    Angles angles = angles_[index];
+    angles[part_] = value;
+    return text_of_angles(field, angles);
 }
 
 std::string text_with_part(const Field& field, const void* object, int part, const std::string& text) {
@@ -122,6 +137,8 @@ std::string colour_text(vec3 colour) {
 
 std::string field_help(const Field& field, const void* defaults) {
     std::string help(field.tooltip);
+    if (field.kind == FieldKind::quaternion)
+        help += "\n\nDegrees: y is where it looks, x how far up, z how far it is tilted sideways";
     const std::string values = allowed_values(field);
     if (!values.empty())
         help += "\n\nValues: " + values;

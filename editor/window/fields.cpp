@@ -12,7 +12,8 @@ namespace sunfleck::editor {
 namespace {
 
 using Phase = ui::NumberEdit::Phase;
-constexpr float room_for_name = 6.5f; // of ui::unit()
+constexpr float room_for_name = 6.5f;     // of ui::unit()
+constexpr double degrees_per_pixel = 0.5; // of rotations that are dragged
 constexpr ImU32 changed_colour = IM_COL32(240, 178, 80, 255);
 
 bool same_in_all(const FieldSource& source) {
@@ -27,12 +28,12 @@ bool same_part(const FieldSource& source, int part) {
 }
 
 // All objects, within the gesture that is open.
-Status set_all(const FieldSource& source, const std::function<std::string(const void*)>& text) {
+Status set_all(const FieldSource& source, const std::function<std::string(std::size_t)>& text) {
     // Setting may move the objects: all texts come first.
     std::vector<std::string> texts;
     texts.reserve(source.objects.size());
-    for (const void* object : source.objects)
-        texts.push_back(text(object));
+    for (std::size_t i = 0; i < source.objects.size(); ++i)
+        texts.push_back(text(i));
     for (std::size_t i = 0; i < texts.size(); ++i)
         SUNFLECK_TRY(source.set(i, texts[i]));
     return {};
@@ -40,12 +41,10 @@ Status set_all(const FieldSource& source, const std::function<std::string(const 
 
 void edit_number(Session& session, const FieldSource& source, int part, const ui::NumberEdit& edit) {
     Document& document = *session.document;
-    const auto put = [&](double value) {
-        return set_all(source, [&](const void* object) { return text_with_part(*source.field, object, part, value); });
-    };
     // Values before the drag, of objects outside the document, whose gestures do not take them back. There is one
     // pointer.
     static std::vector<std::string> before;
+    static PartDrag drag;
     const auto put_back = [&] {
         for (std::size_t i = 0; i < before.size() && i < source.objects.size(); ++i)
             static_cast<void>(source.set(i, before[i]));
@@ -54,6 +53,7 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
     switch (edit.phase) {
     case Phase::began:
         before.clear();
+        drag = PartDrag(*source.field, source.objects, part);
         if (!source.in_document)
             for (const void* object : source.objects)
                 before.push_back(field_to_text(*source.field, object));
@@ -61,7 +61,8 @@ void edit_number(Session& session, const FieldSource& source, int part, const ui
     case Phase::dragged:
         // A value that the field does not take (a multiple is needed, say) leaves the one before.
         if (document.in_gesture())
-            static_cast<void>(put(edit.value));
+            static_cast<void>(set_all(
+                source, [&](std::size_t i) { return drag.text(*source.field, source.objects[i], i, edit.value); }));
         return;
     case Phase::ended:
         if (!document.in_gesture()) // given up already: loss of focus
@@ -99,6 +100,7 @@ void number_cells(Session& session, const FieldSource& source, int parts, float 
         const bool ranged = field.kind != FieldKind::quaternion && field.maximum < unbounded;
         look.minimum = ranged ? field.minimum * shown_factor(field) : 0.0;
         look.maximum = ranged ? field.maximum * shown_factor(field) : 0.0;
+        look.speed = field.kind == FieldKind::quaternion ? degrees_per_pixel : 0.0;
         look.whole = field.kind == FieldKind::integer || field.kind == FieldKind::unsigned_integer;
         look.mixed = !same && !same_part(source, part);
         look.unit = shown_unit(field);
@@ -138,8 +140,7 @@ void boolean_cell(Session& session, const FieldSource& source) {
 
 // Text is taken when it is complete: at Enter, or when something else is clicked.
 void text_cell(Session& session, const FieldSource& source, float width) {
-    static ImGuiID editing = 0;
-    static std::string text;
+    auto& [editing, text] = ui::text_edit();
     const ImGuiID id = ImGui::GetID("##value");
     const std::string now = same_in_all(source) ? field_to_text(*source.field, source.objects[0]) : std::string();
     std::string shown = editing == id ? text : now;
@@ -155,7 +156,7 @@ void text_cell(Session& session, const FieldSource& source, float width) {
     editing = 0;
     const bool escape = ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false) && !enter;
     if (!escape && text != now)
-        apply_field_text(session, source, [&](const void*) { return text; });
+        apply_field_text(session, source, [typed = text](const void*) { return typed; });
 }
 
 // A dot where the value is not the usual one; clicked, it is.
@@ -207,7 +208,7 @@ void apply_field_text(Session& session, const FieldSource& source,
                       const std::function<std::string(const void*)>& text) {
     Document& document = *session.document;
     document.begin(source.gesture);
-    const Status status = set_all(source, text);
+    const Status status = set_all(source, [&](std::size_t i) { return text(source.objects[i]); });
     if (session.messages.check(status))
         document.commit();
     else

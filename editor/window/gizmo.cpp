@@ -1,6 +1,7 @@
 #include "editor/window/gizmo.h"
 
 #include "editor/window/overlay.h"
+#include "editor/window/switches.h"
 #include "editor/window/widgets.h"
 
 #include <algorithm>
@@ -80,8 +81,9 @@ Gizmo::Pointer Gizmo::pointer_ray(Session& session, vec2 pixel) const {
 Gizmo::Frame Gizmo::find_frame(Session& session) {
     Frame frame;
     Document& document = *session.document;
-    if (tops_state_.follow(document)) { // in other frames a large selection takes no longer
-        tops_ = session.selected_tops();
+    const bool other_locks = std::exchange(locks_, session.lock_revision) != session.lock_revision;
+    if (tops_state_.follow(document) || other_locks) { // in other frames a large selection takes no longer
+        tops_ = free_tops(session);
         pivot_ = middle_of(document, tops_);
     }
     frame.pivot = pivot_;
@@ -180,7 +182,7 @@ void Gizmo::begin(Session& session, const Frame& frame, int handle) {
     start_pixel_ = pointer_in_viewport(session);
     start_ = pointer_ray(session, start_pixel_);
     angle_ = 0.0f;
-    entities_ = session.selected_tops();
+    entities_ = tops_;
     worlds_.clear();
     for (const Entity entity : entities_)
         worlds_.push_back(world_of(document, entity));
@@ -189,7 +191,7 @@ void Gizmo::begin(Session& session, const Frame& frame, int handle) {
 
 mat4 Gizmo::movement(Session& session, const Pointer& pointer) const {
     vec3 shift(0.0f);
-    const float step = session.gizmo.snap_length;
+    const float step = session.gizmo.steps.length;
     if (handle_ < 3) {
         const vec3 along = frame_.axes[handle_];
         float distance = nearest_on_line(frame_.pivot, along, pointer.origin, pointer.direction) -
@@ -223,7 +225,7 @@ mat4 Gizmo::rotation(Session& session, const Pointer& pointer) {
         angle_ = std::atan2(glm::dot(axis, glm::cross(from, to)), glm::dot(from, to));
     }
     if (snaps(session))
-        angle_ = snapped(angle_, glm::radians(session.gizmo.snap_angle));
+        angle_ = snapped(angle_, glm::radians(session.gizmo.steps.angle));
     const mat4 turn = glm::mat4_cast(glm::angleAxis(angle_, axis));
     return glm::translate(mat4(1.0f), frame_.pivot) * turn * glm::translate(mat4(1.0f), -frame_.pivot);
 }
@@ -240,7 +242,7 @@ vec3 Gizmo::scaling(Session& session, const Pointer& pointer) const {
         factor = std::abs(before) < 1e-12f ? 1.0f : std::max(now / before, 0.01f);
     }
     if (snaps(session))
-        factor = std::max(snapped(factor, session.gizmo.snap_factor), session.gizmo.snap_factor);
+        factor = std::max(snapped(factor, session.gizmo.steps.factor), session.gizmo.steps.factor);
     vec3 result(handle_ == middle ? factor : 1.0f);
     if (handle_ != middle)
         result[handle_] = factor;
@@ -311,7 +313,7 @@ bool Gizmo::draw(Session& session, bool hovered) {
             follow(session);
     }
     const Frame frame = find_frame(session);
-    if (frame.length <= 0.0f) // behind the camera
+    if (tops_.empty() || frame.length <= 0.0f) // all locked; behind the camera
         return dragging();
     const int hot = dragging() ? handle_ : hovered ? handle_under(session, frame, pointer_in_viewport(session)) : -1;
     paint(session, frame, hot);

@@ -42,8 +42,9 @@ private:
     float angle_ = 0.0f; // of a rotation, rad
     std::string said_;   // how far it went
     SeenState tops_state_;
-    Entities tops_;    // of what is selected
-    vec3 pivot_{0.0f}; // their middle
+    std::uint64_t locks_ = 0; // Session::lock_revision of these
+    Entities tops_;           // of what is selected, but for what is locked
+    vec3 pivot_{0.0f};        // their middle
     Entities entities_;
     std::vector<mat4> worlds_; // before
 };

@@ -129,6 +129,8 @@ void Layout::docks(Session& session, const ScenePicture* picture, ImVec2 room) {
 }
 
 void Layout::draw(Session& session, const ScenePicture* picture) {
+    if (std::exchange(document_, session.document->number()) != session.document->number())
+        ui::leave_boxes(); // what is being typed or dragged is of another document
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(all);

@@ -39,6 +39,7 @@ private:
     State state_;
     ImVec2 spacing_{0, 0}, padding_{0, 0}; // of panels
     bool restore_front_ = false;
+    std::uint64_t document_ = 0; // its number, in the last frame
 };
 
 } // namespace sunfleck::editor

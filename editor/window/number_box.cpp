@@ -58,7 +58,7 @@ NumberEdit typed_box(const std::string& name, const NumberLook& look) {
 double dragged_value(const NumberLook& look, double start, float pixels) {
     const double range = look.maximum - look.minimum;
     const bool bounded = range > 0.0 && range <= 400.0;
-    double speed = bounded ? range / 400.0 : std::max(std::abs(start), 1.0) * 0.01;
+    double speed = look.speed > 0.0 ? look.speed : bounded ? range / 400.0 : std::max(std::abs(start), 1.0) * 0.01;
     if (ImGui::GetIO().KeyShift)
         speed *= 0.1;
     const double value = start + speed * double(pixels);
@@ -124,6 +124,17 @@ void begin_number_boxes() {
     if (!box.seen)
         box.typing = box.dragging = 0;
     box.seen = box.to_next = false;
+}
+
+TextEdit& text_edit() {
+    static TextEdit only;
+    return only;
+}
+
+void leave_boxes() {
+    state() = {};
+    text_edit() = {};
+    ImGui::ClearActiveID();
 }
 
 bool editing_number() {

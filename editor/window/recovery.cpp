@@ -69,7 +69,7 @@ void add_journal(Recovered& result, const nlohmann::json& about) {
     result.base = *base;
 }
 
-// Nothing was kept yet but the journal: it goes on from the user's file, if that is as it was.
+// Nothing was kept yet but the journal: it goes on from the user's file.
 std::optional<Recovered> read_base(const fs::path& folder) {
     const nlohmann::json json = read_json(folder / base_name);
     if (!json.is_object() || !json.value("file", nlohmann::json()).is_string())
@@ -78,8 +78,10 @@ std::optional<Recovered> read_base(const fs::path& folder) {
     result.folder = folder;
     result.file = json["file"].get<std::string>();
     result.scene = result.file;
-    if (!result.file.empty() && (stamp_of(result.file).is_null() || stamp_of(result.file) != json["stamp"]))
-        return std::nullopt;
+    if (!result.file.empty())
+        result.user_file = stamp_of(result.file).is_null()          ? UserFile::gone
+                           : stamp_of(result.file) != json["stamp"] ? UserFile::changed
+                                                                    : UserFile::as_it_was;
     add_journal(result, json);
     return result.count > 0 ? std::optional(result) : std::nullopt;
 }
@@ -95,6 +97,8 @@ std::optional<Recovered> read_about(const fs::path& folder) {
     result.scene = folder / scene_names[slot];
     if (const auto file = json.find("file"); file != json.end() && file->is_string())
         result.file = file->get<std::string>();
+    if (const auto home = json.find("home"); home != json.end() && home->is_string())
+        result.home = home->get<std::string>();
     if (const auto count = json.find("count"); count != json.end() && count->is_number_unsigned())
         result.count = count->get<std::uint64_t>();
     if (const auto edits = json.find("edits"); edits != json.end() && edits->is_array())
@@ -184,7 +188,7 @@ void Recovery::note_edit(const std::string& name) {
         log_warning(kept.error().message);
 }
 
-void Recovery::unsaved(const std::string& file, std::vector<std::string> edits, std::uint64_t count) {
+void Recovery::unsaved(const Place& place, std::vector<std::string> edits, std::uint64_t count) {
     if (lock_ < 0)
         return;
     if (count > 0) {
@@ -200,7 +204,9 @@ void Recovery::unsaved(const std::string& file, std::vector<std::string> edits, 
         const std::scoped_lock lock(mutex_);
         about_.base.epoch = about_epoch_;
         about_.base.revision = revision_;
-        about_.file = file;
+        about_.file = place.file;
+        std::error_code code;
+        about_.home = place.folder.empty() ? std::string() : fs::absolute(place.folder, code).string();
         about_.edits = std::move(edits);
         about_.count = count;
         has_work_ = true;
@@ -253,13 +259,11 @@ void Recovery::write(std::unique_ptr<Copy>& copy) {
     JournalBase base = JournalBase::of(copy->registry);
     base.epoch = about.base.epoch;
     base.revision = copy_revision_;
-    io::SaveOptions options;
-    options.settings = viewer::unusual_lighting(copy->settings);
-    options.exact = true;
+    const io::SaveOptions options = Document::save_options(copy->settings, copy->encoded.get(), copy->link.get());
     // Whatever fails, about.json goes on naming what was whole before.
     const int slot = 1 - slot_;
-    const nlohmann::json json = {
-        {"file", about.file}, {"edits", about.edits}, {"count", about.count}, {"names", base.text()}, {"slot", slot}};
+    const nlohmann::json json = {{"file", about.file},   {"home", about.home},   {"edits", about.edits},
+                                 {"count", about.count}, {"names", base.text()}, {"slot", slot}};
     Status status = io::save_scene(own_ / scene_names[slot], copy->registry, copy->meshes, copy->textures, options);
     if (status)
         status = write_file(own_ / about_name, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -324,7 +328,14 @@ Result<std::unique_ptr<Document>> Recovery::load(const Recovered& recovered, con
     if (!recovered.scene.empty()) {
         SUNFLECK_ASSIGN(document, Document::open(recovered.scene, progress, allow_outside));
     }
-    static_cast<void>(replay(*document, recovered.journal, recovered.base));
+    // Names that the scene has or that were typed are meant from where it was.
+    if (!recovered.home.empty())
+        document->set_folder(recovered.home);
+    else if (!recovered.file.empty())
+        document->set_folder(fs::path(recovered.file).parent_path());
+    Replayed made = replay(*document, recovered.journal, recovered.base);
+    if (recovered.made != nullptr)
+        *recovered.made = std::move(made);
     document->forget_file();
     return document;
 }

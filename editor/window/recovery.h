@@ -21,14 +21,20 @@
 
 namespace sunfleck::editor {
 
+// The user's file, where edits go on from that.
+enum class UserFile { as_it_was, changed, gone };
+
 struct Recovered {
     std::filesystem::path folder, scene; // of the run; of its edits
     std::string file;                    // that was edited; empty: it had never been saved
+    std::string home;                    // the folder that names in the scene are meant from; empty: as the file's
     std::vector<std::string> edits;      // the last ones
     std::uint64_t count = 0;             // of all
     bool complete = true;                // false: an edit after them could not be kept
     std::string journal;                 // what was done since, as its lines
     JournalBase base;                    // the scene, for these
+    UserFile user_file = UserFile::as_it_was;
+    std::shared_ptr<Replayed> made; // where not null, what load() has made of the journal
 };
 
 class Recovery {
@@ -46,13 +52,21 @@ public:
     const std::string& problem() const { return problem_; }
     // All changes of the document, in order.
     void change(const SceneChange& change);
+    // Of the document: its file, if it has one, and the folder that its names are meant from.
+    struct Place {
+        std::string file;
+        std::filesystem::path folder;
+        Place(std::string the_file, std::filesystem::path the_folder = {})
+            : file(std::move(the_file)), folder(std::move(the_folder)) {}
+    };
     // What is unsaved now; nothing: what was kept is removed.
-    void unsaved(const std::string& file, std::vector<std::string> edits, std::uint64_t count);
-    void saved(const std::string& file) { unsaved(file, {}, 0); }
+    void unsaved(const Place& place, std::vector<std::string> edits, std::uint64_t count);
+    void saved(const Place& place) { unsaved(place, {}, 0); }
     // How often a scene was written.
     std::uint64_t writes() const { return writes_; }
 
-    // What runs that are gone have left, oldest first; what nothing can be made of is removed.
+    // What runs that are gone have left, oldest first; what has no edits is removed. Edits that go on from a file which
+    // is another now, or gone, are kept, and say so.
     static std::vector<Recovered> left_behind(const std::filesystem::path& folder);
     static void discard(const Recovered& recovered);
     // The scene with all edits, as a document without a file.

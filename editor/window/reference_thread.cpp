@@ -77,6 +77,7 @@ void ReferenceThread::change(const SceneChange& change) {
     {
         const std::scoped_lock lock(mutex_);
         next_.add(change);
+        newest_.reset();
         news_ = true;
     }
     changed_.notify_one();
@@ -86,6 +87,7 @@ void ReferenceThread::show(const ViewRequest& request) {
     {
         const std::scoped_lock lock(mutex_);
         next_view_ = request;
+        newest_.reset();
         news_ = true;
     }
     changed_.notify_one();
@@ -123,8 +125,8 @@ Status ReferenceThread::publish(Copy& copy) {
 
 // Until something is new; pictures come when the samples have doubled, or a second has passed.
 Status ReferenceThread::trace(Copy& copy) {
-    if (copy.tracer == nullptr || copy.view.width == 0 || !copy.view.ev100)
-        return {};
+    if (copy.tracer == nullptr || copy.view.width == 0 || !copy.view.ev100 || copy.view.playing)
+        return {}; // it has the scene as edited, without what play has moved
     ReferenceSettings settings;
     settings.width = copy.view.width;
     settings.height = copy.view.height;

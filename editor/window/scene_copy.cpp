@@ -1,6 +1,10 @@
 #include "editor/window/scene_copy.h"
 
+#include "editor/document/edits.h"
 #include "engine/core/user_folders.h"
+#include "engine/scene/simulation_components.h"
+
+#include <algorithm>
 
 namespace sunfleck::editor {
 
@@ -18,7 +22,11 @@ void SceneChange::add(SceneChange later) {
                     std::make_move_iterator(later.textures.end()));
     if (later.settings)
         settings = std::move(later.settings);
+    link = std::move(later.link);
+    if (later.encoded != nullptr)
+        encoded = std::move(later.encoded);
     revision = later.revision;
+    hiding = later.hiding;
     dragged = later.dragged;
 }
 
@@ -34,6 +42,20 @@ bool is_told_of_hidden(const ecs::PoolBase& pool) {
     const TypeDescription* type = pool.description();
     return type == &scene::Name::description() || type == &scene::Parent::description() ||
            type == &scene::Transform::description();
+}
+
+bool gives_light(const ecs::PoolBase& pool) {
+    return pool.description() != nullptr && pool.description() != &scene::LightSensor::description() &&
+           std::any_of(pool.description()->fields.begin(), pool.description()->fields.end(), is_power);
+}
+
+// Lamps are told of as if they were not there; of surfaces that glow, the surface stays.
+ecs::Value without_light(const Update& update) {
+    if (update.pool->description() != &scene::Material::description())
+        return nullptr;
+    auto dark = std::make_shared<scene::Material>(*static_cast<const scene::Material*>(update.value.get()));
+    dark->emission = vec3(0.0f);
+    return dark;
 }
 
 void tell_all(Document& document, Entity entity, SceneChange& change) {
@@ -73,34 +95,45 @@ void apply_updates(const std::vector<Update>& updates, ecs::Registry& registry) 
     scene::update_world_transforms(registry);
 }
 
-void HiddenFilter::hide(const std::unordered_set<Entity>& hidden, SceneChange& change) {
+void HiddenFilter::hide(const Set& hidden, const Set& muted, SceneChange& change) {
     for (Update& update : change.updates)
         if (hidden.count(update.entity) > 0 && !is_told_of_hidden(*update.pool))
             update.value = nullptr;
+        else if (muted.count(update.entity) > 0 && update.value != nullptr && gives_light(*update.pool))
+            update.value = without_light(update);
 }
 
-void HiddenFilter::apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
+void HiddenFilter::apply(const std::shared_ptr<Document>& document, const Set& hidden, const Set& muted,
                          std::optional<SceneChange>& change) {
-    if (hidden != hidden_ && !change)
+    const bool other = hidden != hidden_ || muted != muted_;
+    if (other && !change)
         change = ChangeCollector::nothing(document);
+    count_ += other ? 1 : 0;
     if (!change)
         return;
-    if (!change->everything) {
-        for (const Entity entity : hidden_)
-            if (hidden.count(entity) == 0)
+    change->hiding = count_;
+    const auto tell_those_of_one = [&](const Set& one, const Set& two) {
+        for (const Entity entity : one)
+            if (two.count(entity) == 0)
                 tell_all(*document, entity, *change);
-        for (const Entity entity : hidden)
-            if (hidden_.count(entity) == 0)
-                tell_all(*document, entity, *change);
+    };
+    if (other && !change->everything) {
+        tell_those_of_one(hidden_, hidden);
+        tell_those_of_one(hidden, hidden_);
+        tell_those_of_one(muted_, muted);
+        tell_those_of_one(muted, muted_);
     }
-    hide(hidden, *change);
+    hide(hidden, muted, *change);
     hidden_ = hidden;
+    muted_ = muted;
 }
 
 SceneChange ChangeCollector::nothing(const std::shared_ptr<Document>& document) {
     SceneChange change;
     change.source = document;
     change.handles = document->handle_count();
+    change.encoded = document->encoded_textures();
+    change.link = document->source();
     change.revision = document->revision();
     return change;
 }
@@ -150,6 +183,9 @@ void PlainCopy::apply(const SceneChange& change) {
         meshes.add(mesh);
     for (const scene::Texture& texture : change.textures)
         textures.add(texture);
+    if (change.encoded != nullptr)
+        encoded = change.encoded;
+    link = change.link;
     apply_updates(change.updates, registry);
     if (change.settings)
         settings = *change.settings;

@@ -13,11 +13,14 @@ struct SceneChange {
     bool everything = false;            // the copy starts from nothing
     std::uint32_t handles = 0;          // Document::handle_count
     std::vector<Update> updates;
-    std::vector<scene::Mesh> meshes;      // added since the last change
-    std::vector<scene::Texture> textures; // likewise
-    std::optional<gi::Settings> settings; // where they changed
-    std::uint64_t revision = 0;           // of the document
-    bool dragged = false;                 // the gesture that it is of has not ended
+    std::vector<scene::Mesh> meshes;              // added since the last change
+    std::vector<scene::Texture> textures;         // likewise
+    std::optional<gi::Settings> settings;         // where they changed
+    std::shared_ptr<io::EncodedTextures> encoded; // the document's textures, for who saves them
+    std::shared_ptr<const std::string> link;      // Document::source
+    std::uint64_t revision = 0;                   // of the document
+    std::uint64_t hiding = 0;                     // HiddenFilter::count
+    bool dragged = false;                         // the gesture that it is of has not ended
 
     void add(SceneChange later);
     // It tells of no change of the scene, only, perhaps, of the end of a gesture.
@@ -42,17 +45,23 @@ private:
     bool dragged_ = false;
 };
 
-// Hides entities from copies that show the scene: they are told where those are, and nothing else.
+// Hides entities from copies that show the scene: they are told where those are, and nothing else. Of muted ones they
+// are told everything but their light.
 class HiddenFilter {
 public:
-    // `change`: what the collector has found, if anything; then what a copy is to be told that does not show `hidden`.
-    // Whatever was hidden or shown again since the last call is told with it, also where nothing else has changed.
-    void apply(const std::shared_ptr<Document>& document, const std::unordered_set<Entity>& hidden,
+    using Set = std::unordered_set<Entity>;
+    // `change`: what the collector has found, if anything; then what a copy is to be told. Whatever was hidden or
+    // muted, or is so no longer, since the last call is told with it, also where nothing else has changed.
+    void apply(const std::shared_ptr<Document>& document, const Set& hidden, const Set& muted,
                std::optional<SceneChange>& change);
-    static void hide(const std::unordered_set<Entity>& hidden, SceneChange& change);
+    static void hide(const Set& hidden, const Set& muted, SceneChange& change);
+    // How often what is hidden or muted has changed: pictures of the same revision are of the same scene only if this
+    // is the same, too.
+    std::uint64_t count() const { return count_; }
 
 private:
-    std::unordered_set<Entity> hidden_;
+    Set hidden_, muted_;
+    std::uint64_t count_ = 0;
 };
 
 // Brings a registry up to the document, under the same handles, which must have been reserved. Movers that have gone
@@ -65,6 +74,8 @@ struct PlainCopy {
     scene::MeshStore meshes;
     scene::TextureStore textures;
     gi::Settings settings;
+    std::shared_ptr<io::EncodedTextures> encoded; // of `textures`
+    std::shared_ptr<const std::string> link;      // Document::source
 
     void apply(const SceneChange& change);
 

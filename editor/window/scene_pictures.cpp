@@ -4,12 +4,22 @@
 #include "editor/window/camera.h"
 #include "viewer/exposure.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sunfleck::editor {
 namespace {
 
 constexpr std::size_t most_pictures = 8;
 // Of a usual frame: light for which one took longer is made behind the frames from then on.
 constexpr double longest_share = 1.5;
+
+bool has_light(const io::Picture& radiance) {
+    return std::any_of(radiance.pixels.begin(), radiance.pixels.end(), [](const vec4& pixel) {
+        const float light = luminance(vec3(pixel));
+        return light > 0.0f && std::isfinite(light);
+    });
+}
 
 } // namespace
 
@@ -90,9 +100,11 @@ Status SceneThread::draw(const viewer::FrameRequest& request, ScenePicture* pict
     return renderer.collect_statistics();
 }
 
-// A scene that says no exposure is exposed by its first picture, and then left alone: an artist who turns a lamp up
-// wants to see it.
+// A scene that says no exposure is exposed by its first picture that has light, and then left alone until somebody asks
+// for it: an artist who turns a lamp up wants to see it.
 Status SceneThread::expose(viewer::FrameRequest& request) {
+    if (std::exchange(exposures_, view_.exposures) != view_.exposures)
+        exposure_is_old_ = true;
     const std::optional<float> given = view_.ev100 ? view_.ev100 : viewer::scene_exposure(copy_->renderer().registry());
     if (!given && exposure_is_old_) {
         viewer::FrameRequest linear = request;
@@ -102,7 +114,8 @@ Status SceneThread::expose(viewer::FrameRequest& request) {
         SUNFLECK_TRY(draw(linear, nullptr));
         SUNFLECK_ASSIGN(const io::Picture radiance, copy_->renderer().read_back());
         automatic_ev100_ = viewer::automatic_exposure(radiance);
-        exposure_is_old_ = frames_left_ > 1; // of the light as it is when it has settled
+        // Of the light as it is when it has settled, and not of darkness.
+        exposure_is_old_ = frames_left_ > 1 || !has_light(radiance);
     }
     request.ev100 = given.value_or(automatic_ev100_);
     return {};
@@ -143,7 +156,7 @@ Status SceneThread::look_into_pixel() {
 void SceneThread::follow_inspection() {
     if (!inspection_ || failed_ || frames_left_ > 0 || moves() || light_pending_)
         return;
-    const std::array<std::uint64_t, 4> now{inspection_->serial, revision_, steps(), status().builds};
+    const std::array<std::uint64_t, 5> now{inspection_->serial, revision_, hiding_, steps(), status().builds};
     if (now == inspected_state_)
         return;
     inspected_state_ = now;
@@ -160,8 +173,10 @@ Status SceneThread::draw_picture() {
     SUNFLECK_TRY(draw(request, picture.get()));
     picture->camera = view_.camera;
     picture->revision = revision_;
+    picture->hiding = hiding_;
     picture->number = ++number_;
     picture->step = steps();
+    picture->played = play_ != nullptr ? std::make_shared<PlayedPlaces>(copy_->renderer().registry()) : nullptr;
     if (was_behind && !copy_->renderer().geometry_outdated()) // shadows begin to follow
         frames_left_ = std::max(frames_left_, frames_after_edit);
     fill_listing();

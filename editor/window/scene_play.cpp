@@ -4,12 +4,15 @@
 #include "engine/simulation/path_movers.h"
 
 #include <algorithm>
+#include <cstring>
 
 namespace sunfleck::editor {
 namespace {
 
+// Also in the signs of zeros, which a body at rest may lose.
 bool same_bits(const scene::Transform& a, const scene::Transform& b) {
-    return a.position == b.position && a.rotation == b.rotation && a.scale == b.scale;
+    const auto same = [](const auto& one, const auto& other) { return std::memcmp(&one, &other, sizeof one) == 0; };
+    return same(a.position, b.position) && same(a.rotation, b.rotation) && same(a.scale, b.scale);
 }
 
 // What decides how bodies move: places, shapes, and who is there at all.
@@ -60,11 +63,15 @@ Status ScenePlay::edit(ecs::Registry& registry, const scene::MeshStore& meshes, 
     Places now = places(registry);
     const Places before = edited_;
     put(registry, edited_);
-    const Status status = change();
+    Status status = change();
     edited_ = places(registry);
     for (const auto& [entity, place] : edited_)
         if (const auto known = before.find(entity); known == before.end() || !same_bits(known->second, place))
             now[entity] = place;
+    // What is no body any more stands as edited; nothing would put it back at the end.
+    std::erase_if(now, [&](const auto& one) { return edited_.count(one.first) == 0; });
+    // A mover's path begins where it was edited to be, not where physics has brought it.
+    simulation::set_movers_to_step(registry, 0);
     put(registry, now);
     simulation::set_movers_to_step(registry, steps_);
     physics_ = edited_.empty() ? nullptr : std::make_unique<simulation::PhysicsWorld>(registry, meshes);

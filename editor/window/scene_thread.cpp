@@ -268,9 +268,13 @@ void SceneThread::note_light() {
 
 Status SceneThread::apply_change() {
     const SceneChange change = std::exchange(change_, {});
-    // Handles that the copy has no room for: the document has grown beyond all expectation.
-    if (copy_ != nullptr && !change.everything && !copy_->takes(change))
-        return Error{"the scene has grown too much to be followed; rebuild the lighting"};
+    // Handles that the copy has no room for: the picture stays as it is until everything is told.
+    if (copy_ != nullptr && !change.everything && !copy_->takes(change)) {
+        failed_ = true;
+        wants_everything_ = true;
+        wake_();
+        return {};
+    }
     if (change.everything) {
         light_.reset();
         play_.reset();
@@ -290,6 +294,7 @@ Status SceneThread::apply_change() {
     if (change.everything)
         use_shaders(std::vector(shaders_));
     revision_ = change.revision;
+    hiding_ = change.hiding;
     dragged_ = change.dragged;
     if (light_pending_ && !change.is_empty())
         put_light_off();

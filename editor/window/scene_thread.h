@@ -10,6 +10,7 @@
 // All functions may be called from the GUI thread; none of them waits for a frame.
 #pragma once
 
+#include "editor/document/played_places.h"
 #include "editor/window/scene_copy.h"
 #include "editor/window/scene_play.h"
 #include "editor/window/shader_watch.h"
@@ -35,10 +36,11 @@ struct ViewRequest {
     std::optional<std::uint32_t> chosen_sample;
     std::string listing; // of gi::all_listings(): is filled with each picture; empty: none
     viewer::PictureSettings look;
-    std::optional<float> ev100; // in place of the scene's, or of what the picture asks for
-    bool playing = false;       // the scene is in motion; when it ends, all stands as edited
-    bool paused = false;        // then: steps are made by step() alone
-    bool read_back = false;     // settled pictures have their pixels on the CPU, too
+    std::optional<float> ev100;  // in place of the scene's, or of what the picture asks for
+    std::uint32_t exposures = 0; // raised: it is exposed again by its picture
+    bool playing = false;        // the scene is in motion; when it ends, all stands as edited
+    bool paused = false;         // then: steps are made by step() alone
+    bool read_back = false;      // settled pictures have their pixels on the CPU, too
 };
 
 // A place of the picture that is looked into, as a ray in the world: it stays where it is when the camera moves.
@@ -74,13 +76,15 @@ struct ScenePicture {
     gpu::Image image;
     scene::CameraView camera;
     std::uint64_t revision = 0; // of the document
+    std::uint64_t hiding = 0;   // SceneChange::hiding
     std::uint64_t number = 0;   // of the frame
     std::uint64_t step = 0;     // of the simulation
     bool settled = false;       // nothing more comes unless something changes
     float ev100 = 0.0f;
     double frame_ms = 0.0;
     viewer::FrameStatistics statistics;
-    std::shared_ptr<const io::Picture> pixels; // display values, of settled pictures where they were asked for
+    std::shared_ptr<const io::Picture> pixels;  // display values, of settled pictures where they were asked for
+    std::shared_ptr<const PlayedPlaces> played; // where everything stands in it; null: as edited
 };
 
 // What the thread does, for the status bar and --report.
@@ -136,6 +140,8 @@ public:
     std::vector<FrameNote> frame_notes() const;
     // SceneStatus::busy, at once and from any thread.
     bool busy() const { return busy_; }
+    // The document has outgrown the copy, which is to be told everything: true once each time.
+    bool wants_everything() { return wants_everything_.exchange(false); }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -193,7 +199,7 @@ private:
     SceneStatus status_;
     std::vector<FrameNote> frame_notes_;
 
-    std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false};
+    std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false}, wants_everything_{false};
     // Of the thread alone.
     std::unique_ptr<SceneCopy> copy_;
     std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
@@ -207,10 +213,10 @@ private:
     ViewRequest view_;
     std::optional<InspectRequest> inspection_;
     // What the newest answer is of: request, document, step, lightings made so far.
-    std::array<std::uint64_t, 4> inspected_state_{};
+    std::array<std::uint64_t, 5> inspected_state_{};
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
     Clock::time_point build_began_, last_frame_, played_until_;
-    std::uint64_t revision_ = 0, number_ = 0;
+    std::uint64_t revision_ = 0, hiding_ = 0, number_ = 0;
     std::uint32_t asked_steps_ = 0; // by step()
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
@@ -222,6 +228,7 @@ private:
     std::atomic<bool> cancelled_{false};
     double told_ = 0.0; // s after the build began
     float automatic_ev100_ = 0.0f;
+    std::uint32_t exposures_ = 0; // ViewRequest::exposures of these
     std::thread thread_;
 };
 

@@ -1,9 +1,12 @@
 #include "editor/window/session.h"
 
+#include "editor/document/content_hash.h"
 #include "editor/window/commands.h"
 #include "editor/window/comparison.h"
 #include "editor/window/cost_thread.h"
 #include "editor/window/opening.h"
+#include "editor/window/saving.h"
+#include "engine/scene/entity_names.h"
 #include "viewer/scene_renderer.h"
 
 #include <algorithm>
@@ -11,16 +14,13 @@
 namespace sunfleck::editor {
 namespace {
 
-constexpr std::size_t most_messages = 500, most_recent = 12;
-
-bool is_gltf(const std::filesystem::path& path) {
-    const std::string ending = path.extension().string();
-    return ending == ".glb" || ending == ".gltf";
-}
+constexpr std::size_t most_messages = 500;
 
 } // namespace
 
 std::string full_name(const std::filesystem::path& path) {
+    if (path.empty())
+        return {};
     std::error_code code;
     const std::filesystem::path full = std::filesystem::absolute(path, code);
     return (code ? path : full).string();
@@ -57,19 +57,22 @@ Session::Session(SceneThread& the_scene)
 Session::~Session() = default;
 
 void Session::take(std::shared_ptr<Document> opened) {
+    end_saving();
     document = std::move(opened);
     size_revision_ = 0; // of another document
     opening.reset();    // what still loads is not wanted any more
     recovering.reset();
     view.playing = view.paused = false;
+    view.ev100.reset();
     hidden.clear();
+    muted.clear();
     solo.reset();
     locked.clear();
     reloading_.reset();
     if (cost != nullptr)
         cost->stop();
-    source_ = document->path();
-    source_content_ = FileContent::of(*document);
+    own_ = FollowedFile(document->path(), FileContent::of(*document));
+    find_import();
     if (inspecting)
         scene.inspect(std::nullopt);
     view.chosen_sample.reset();
@@ -80,6 +83,24 @@ void Session::take(std::shared_ptr<Document> opened) {
         messages.say(note, Message::Kind::warning);
     if (!document->path().empty())
         note_recent(document->path());
+}
+
+// The glTF file that the scene came from, in this session or an earlier one.
+void Session::find_import() {
+    imported_ = {};
+    import_was_changed_ = file_was_changed_ = false;
+    hashes_ = {};
+    if (own_.is_gltf()) // an edit that is kept for a crash takes it along
+        remember_source(document->folder());
+    if (document->source() == nullptr || own_.is_gltf())
+        return;
+    auto link = source_link_of(*document, *document->source(), document->folder(), hashes_);
+    if (!messages.check(link ? Status() : Status(link.error())))
+        return;
+    const bool newer = is_newer(*link, document->folder(), allow_outside);
+    imported_ = FollowedFile(link->file, std::move(link->content));
+    if (newer)
+        imported_.see(FileStamp()); // it was exported again meanwhile, which will be said
 }
 
 void Session::follow_focus(const app::InputState& now) {
@@ -94,6 +115,15 @@ void Session::open(const std::filesystem::path& path) {
 void Session::open_now(const std::filesystem::path& path) {
     recovering.reset();
     begin_opening(std::make_unique<Opening>(path, allow_outside, wake));
+}
+
+void Session::open_dropped(const std::vector<std::filesystem::path>& files) {
+    if (files.empty())
+        return;
+    if (files.size() > 1)
+        messages.say(std::to_string(files.size()) + " files were dropped; only the first is opened",
+                     Message::Kind::warning);
+    open(files.front());
 }
 
 void Session::begin_opening(std::unique_ptr<Opening> loads) {
@@ -149,7 +179,7 @@ void Session::measure_cost(const std::string& setting, const std::string& old_va
     if (cost == nullptr)
         cost = make_cost_thread();
     SceneChange everything = ChangeCollector::everything(document);
-    HiddenFilter::hide(hidden, everything);
+    HiddenFilter::hide(hidden, muted, everything);
     everything.settings = document->settings();
     gi::Settings old = document->settings();
     if (messages.check(old.set(setting, old_value)) && messages.check(old.validate()))
@@ -158,9 +188,10 @@ void Session::measure_cost(const std::string& setting, const std::string& old_va
 
 void Session::recover(const Recovered& one) {
     recovering = one;
+    recovering->made = std::make_shared<Replayed>();
     begin_opening(std::make_unique<Opening>(
         one.scene,
-        [one, outside = allow_outside](const std::function<bool(float)>& progress) {
+        [one = *recovering, outside = allow_outside](const std::function<bool(float)>& progress) {
             return Recovery::load(one, progress, outside);
         },
         wake));
@@ -174,21 +205,14 @@ void Session::note_recent(const std::filesystem::path& path) {
     recent_files.resize(std::min(recent_files.size(), most_recent));
 }
 
-bool Session::save(const std::filesystem::path& path, Replace replace) {
-    if (!messages.check(document->save(path, replace)))
-        return false;
-    messages.say("Saved " + path.string());
-    if (!is_gltf(source_)) {
-        source_ = path;
-        source_content_ = FileContent::of(*document);
-    }
-    note_recent(path);
-    return true;
-}
-
 void Session::reload_file() {
-    if (can_reload())
-        reloading_ = std::make_unique<Opening>(source_, allow_outside, wake);
+    end_saving();
+    if (!can_reload())
+        return;
+    const bool own = imported_.path().empty() || (own_.changed() && !imported_.changed());
+    reloaded_ = own ? &own_ : &imported_;
+    stamp_ = FileStamp::of(reloaded_->path());
+    reloading_ = std::make_unique<Opening>(reloaded_->path(), allow_outside, wake);
 }
 
 void Session::finish_reload() {
@@ -198,17 +222,27 @@ void Session::finish_reload() {
     reloading_.reset();
     if (!messages.check(now ? Status() : Status(now.error())))
         return;
-    const ReloadReport report = reload(*document, source_content_, **now);
-    document->saw_file();
-    messages.say(report.text(source_.filename().string()));
+    const ReloadReport report = reloaded_->reload(*document, **now);
+    reloaded_->see(stamp_);
+    if (reloaded_ == &own_)
+        document->saw_file(stamp_);
+    remember_source(document->folder()); // a crash must not make edits of what was taken over
+    messages.say(report.text(reloaded_->path().filename().string()));
+    if (const std::size_t skies = document->read_skies_again(); skies > 0)
+        messages.say("Pictures of the sky that are other ones now: " + std::to_string(skies));
     for (const std::string& name : report.lost)
         messages.say("'" + name + "' is no longer in the file; it was edited here, and undo brings it back",
                      Message::Kind::warning);
+    if (reloaded_ == &imported_ && own_.changed())
+        reload_file();
 }
 
 void Session::take_news() {
+    finish_saving();
     watch_file();
     finish_reload();
+    for (std::string& remark : document->take_remarks())
+        messages.say(std::move(remark), Message::Kind::warning);
     if (shaders == nullptr)
         return;
     ShaderWatch::News news = shaders->take();
@@ -224,19 +258,22 @@ void Session::take_news() {
     bad_shader_ = bad;
 }
 
-// Says so, once, when another program has written the document's file.
+// Says so, once, when another program has written the document's file or the one that it came from.
 void Session::watch_file() {
-    const bool changed = document->file_changed();
-    if (changed && !file_was_changed_)
-        messages.say("'" + document->path().string() +
-                         "' was changed by another program; File, Reload takes over what is new there, and keeps the "
-                         "edits made here",
-                     Message::Kind::warning);
-    file_was_changed_ = changed;
+    const auto watch = [this](bool changed, bool& was_changed, const std::filesystem::path& path) {
+        if (changed && !was_changed)
+            messages.say("'" + path.string() +
+                             "' was changed by another program; File, Reload takes over what is new there, and keeps "
+                             "the edits made here",
+                         Message::Kind::warning);
+        was_changed = changed;
+    };
+    watch(document->file_changed(), file_was_changed_, document->path());
+    watch(imported_.changed(), import_was_changed_, imported_.path());
 }
 
 void Session::unless_unsaved(std::function<void()> action) {
-    if (!document->unsaved())
+    if (!still_unsaved())
         return action();
     after_unsaved = std::move(action);
     dialog = Dialog::unsaved;
@@ -258,6 +295,7 @@ float Session::grid_step() {
 }
 
 void Session::note_frame(const ScenePicture* picture) {
+    played = picture != nullptr ? picture->played : nullptr;
     if (picture == nullptr || !profiling || (!frames.empty() && frames.back().number == picture->number))
         return;
     frames.push_back({picture->number, picture->statistics});

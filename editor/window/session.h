@@ -4,7 +4,8 @@
 // On the GUI thread only.
 #pragma once
 
-#include "editor/document/reload.h"
+#include "editor/document/followed_file.h"
+#include "editor/document/source_link.h"
 #include "editor/window/camera.h"
 #include "editor/window/recovery.h"
 #include "editor/window/scene_thread.h"
@@ -21,6 +22,7 @@ class Commands;
 class Comparison;
 class CostThread;
 class Opening;
+class Saving;
 
 struct Message {
     enum class Kind { note, warning, error } kind = Kind::note;
@@ -51,7 +53,8 @@ struct ViewOptions {
     bool show_grid = false, show_icons = true;
     float scale = 1.0f; // rendered pixels for each of the screen's, along a side
     viewer::PictureSettings look;
-    std::optional<float> ev100;
+    std::optional<float> ev100;  // in place of the scene's, or of the picture's own
+    std::uint32_t exposures = 0; // raised: the picture is exposed again
     bool playing = false, paused = false;
 
     bool has_overlay(const std::string& name) const {
@@ -65,12 +68,23 @@ struct ViewOptions {
     ViewRequest request() const;
 };
 
+// What movements of handles are multiples of.
+struct SnapSteps {
+    float length = 0.1f, angle = 15.0f, factor = 0.1f; // m, degrees, 1
+    struct Range {
+        float least, most;
+        bool has(float step) const { return step >= least && step <= most; }
+    };
+    static constexpr Range lengths{1e-4f, 1e4f}, angles{0.01f, 180.0f}, factors{0.001f, 10.0f};
+    bool operator==(const SnapSteps&) const = default;
+};
+
 enum class GizmoMode { none, move, rotate, scale, inspect };
 struct GizmoOptions {
     GizmoMode mode = GizmoMode::move;
-    bool local = false;                                               // along the axes of what is selected last
-    bool snap = false;                                                // always; holding Ctrl is the other way about
-    float snap_length = 0.1f, snap_angle = 15.0f, snap_factor = 0.1f; // m, degrees, 1
+    bool local = false; // along the axes of what is selected last
+    bool snap = false;  // always; holding Ctrl is the other way about
+    SnapSteps steps;
 };
 
 // A component that was copied.
@@ -88,6 +102,7 @@ struct ProfiledFrame {
 
 // What frames should stay below; shown where it is not so.
 struct Budgets {
+    static constexpr float least_ms = 1.0f, most_ms = 1000.0f;
     float frame_ms = 33.3f;
     std::map<std::string, double> counters; // by name
 };
@@ -129,13 +144,17 @@ public:
     std::unique_ptr<CostThread> cost;       // null before something was measured
     std::unique_ptr<ShaderWatch> shaders;   // null: none are watched
     std::unique_ptr<Opening> opening;       // a file that loads; null: none does
-    std::vector<std::string> recent_files;
-    std::deque<ProfiledFrame> frames; // newest last
-    bool profiling = true;            // further frames are kept
+    static constexpr std::size_t most_recent = 12;
+    std::vector<std::string> recent_files; // newest first
+    std::deque<ProfiledFrame> frames;      // newest last
+    bool profiling = true;                 // further frames are kept
     Budgets budgets;
-    std::unordered_set<Entity> hidden; // not shown, and not lit by; of no concern to the document
-    std::optional<Solo> solo;          // no longer on where something else was hidden or shown meanwhile
-    std::unordered_set<Entity> locked; // not selected by clicks in the picture
+    // Of no concern to the document (switches.h): not shown, and not lit by; lamps that give no light; what clicks,
+    // handles and Delete leave alone.
+    std::unordered_set<Entity> hidden, muted, locked;
+    std::uint64_t hiding = 0;        // HiddenFilter::count of what the scene was told
+    std::uint64_t lock_revision = 0; // raised with every change of `locked`
+    std::optional<Solo> solo;        // no longer on where something else was hidden or shown meanwhile
 
     Dialog dialog = Dialog::none;
     std::function<void()> after_unsaved; // what the user wanted when there were unsaved edits
@@ -150,6 +169,7 @@ public:
     bool keys_are_asked_for = false; // the next ones are no commands; a panel that waits for keys says so each frame
     std::string listing;             // that a panel wants to show in this frame; empty: none does
     std::string front;               // a panel that is to be brought to the front
+    Entity to_rename;                // its name is to be asked for; null: none is
 
     // Looks into the pixel at a place of the viewport: what is there, and what lights it.
     void inspect(vec2 place);
@@ -162,6 +182,8 @@ public:
     // Begins to load; asks first if there is something to lose.
     void open(const std::filesystem::path& path);
     void open_now(const std::filesystem::path& path);
+    // The first of them.
+    void open_dropped(const std::vector<std::filesystem::path>& files);
     // Once all is loaded it goes to `replace`; who has made edits meanwhile is asked first.
     void finish_opening(const std::function<void(const Loaded&)>& replace);
     // How much, and whether something was left out.
@@ -171,13 +193,20 @@ public:
     std::function<std::unique_ptr<CostThread>()> make_cost_thread; // from the program
     std::function<void()> wake; // from the program; from any thread: there is something new to draw
     std::function<void(bool on)> capture_pointer = [](bool) {}; // from the program
-    // Reads the file that the scene came from again, and takes over what has changed in it; edits stay.
+    // Reads the file that others have written again, the document's or the glTF file that it came from, and takes over
+    // what has changed in it; edits stay. Where neither was written the latter is read.
     void reload_file();
-    bool can_reload() const { return !source_.empty() && reloading_ == nullptr; }
+    bool can_reload() const { return !(own_.path().empty() && imported_.path().empty()) && reloading_ == nullptr; }
     // The unsaved edits of a run that is gone.
     void recover(const Recovered& recovered);
     // False: it was not saved, which has been said.
     bool save(const std::filesystem::path& path, Replace replace = Replace::own);
+    // The document's own file, while edits go on; that it is done, or why not, is said. Once more meanwhile: again
+    // then.
+    void save_behind();
+    // Whether something would be lost, once what is being saved is.
+    bool still_unsaved();
+    std::unique_ptr<Saving> saving; // null: nothing is being saved
     // Of files that other programs write: the document's, and shaders that are watched.
     void take_news();
     // Runs `action` now, or when the user has dealt with unsaved edits.
@@ -188,8 +217,9 @@ public:
     float grid_step();
     // "room.scene.json", or "untitled".
     std::string file_name() const;
-    // Keeps what the newest picture took.
+    // Keeps what the newest picture took, and where it shows things.
     void note_frame(const ScenePicture* picture);
+    std::shared_ptr<const PlayedPlaces> played; // of that picture; null: everything stands as edited
     // What is selected, without what is below something that is.
     Entities selected_tops() { return topmost(*document, document->selection()); }
 
@@ -200,15 +230,26 @@ private:
     void begin_opening(std::unique_ptr<Opening> loads);
     void note_recent(const std::filesystem::path& path);
     void watch_file();
+    void find_import();
+    void remember_source(const std::filesystem::path& folder);
     void finish_reload();
+    void finish_saving();
+    void end_saving(); // waits until nothing is being saved
+    void take_saved();
+    void note_saved(const std::filesystem::path& path, FileContent content);
 
     Edits given_up_; // what was there when loading began: all that it has may be lost
 
-    // Where the scene came from, and what was there: a glTF file, or the scene file that was read or written last.
-    std::filesystem::path source_;
-    FileContent source_content_;
+    // The document's own file, and the glTF file that was opened, in this session or an earlier one, once the scene is
+    // saved in another.
+    FollowedFile own_, imported_;
+    FollowedFile* reloaded_ = &own_; // that loads again
+    std::optional<FileStamp> stamp_; // of it, when that began
+    ContentHashes hashes_;           // of the document
     std::unique_ptr<Opening> reloading_;
-    bool file_was_changed_ = false;
+    FileContent saved_content_; // what `saving` writes
+    bool saves_again_ = false;
+    bool file_was_changed_ = false, import_was_changed_ = false;
     std::string bad_shader_;
     std::uint64_t size_revision_ = 0;
     float size_ = 1.0f;

@@ -66,6 +66,86 @@ void read_layout(const Json& json, Layout::State& layout) {
         layout.front[i] = front[i];
 }
 
+// Those that are in range.
+void read_steps(const Json& json, SnapSteps& steps) {
+    const auto found = json.find("snap");
+    if (found == json.end() || !found->is_object())
+        return;
+    SnapSteps read = steps;
+    read_number(*found, "length", read.length);
+    read_number(*found, "angle", read.angle);
+    read_number(*found, "factor", read.factor);
+    steps.length = SnapSteps::lengths.has(read.length) ? read.length : steps.length;
+    steps.angle = SnapSteps::angles.has(read.angle) ? read.angle : steps.angle;
+    steps.factor = SnapSteps::factors.has(read.factor) ? read.factor : steps.factor;
+}
+
+Json parsed(const std::string& text) {
+    const Json json = Json::parse(text, nullptr, false);
+    return json.is_object() ? json : Json::object();
+}
+
+// What this editor has opened, and then what others have. Where it has opened nothing new, theirs.
+Json merged_list(const Json& before, const Json& now, const Json& theirs) {
+    if (now == before)
+        return theirs;
+    Json result = now;
+    const auto has = [](const Json& list, const Json& one) {
+        return std::find(list.begin(), list.end(), one) != list.end();
+    };
+    for (const Json& one : theirs)
+        if (!has(now, one) && !has(before, one) && result.size() < Session::most_recent)
+            result.push_back(one);
+    return result;
+}
+
+// `theirs`, with what has changed from `before` to `now`.
+Json merged(const Json& before, const Json& now, const Json& theirs) {
+    if (now == before)
+        return theirs;
+    if (!now.is_object() || !theirs.is_object())
+        return now;
+    Json result = theirs;
+    if (before.is_object())
+        for (const auto& [name, value] : before.items())
+            if (!now.contains(name))
+                result.erase(name);
+    for (const auto& [name, value] : now.items()) {
+        const Json was = before.is_object() && before.contains(name) ? before[name] : Json();
+        const Json other = theirs.contains(name) ? theirs[name] : Json();
+        const bool are_lists = name == "recent" && value.is_array() && other.is_array();
+        const Json one =
+            are_lists ? merged_list(was.is_array() ? was : Json::array(), value, other) : merged(was, value, other);
+        if (!one.is_null()) // which others have removed
+            result[name] = one;
+    }
+    return result;
+}
+
+Status write_state(const std::filesystem::path& path, const Json& json) {
+    std::error_code code;
+    std::filesystem::create_directories(path.parent_path(), code);
+    return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+Json state_json(const EditorState& state) {
+    Json json;
+    json["layout"] = {{"left", state.layout.left},
+                      {"right", state.layout.right},
+                      {"bottom", state.layout.bottom},
+                      {"front", state.layout.front}};
+    json["width"] = state.width;
+    json["height"] = state.height;
+    json["recent"] = state.recent_files;
+    json["keys"] = state.keys;
+    json["snap"] = {{"length", state.steps.length}, {"angle", state.steps.angle}, {"factor", state.steps.factor}};
+    json["budget_ms"] = state.budgets.frame_ms;
+    json["counter_budgets"] = state.budgets.counters;
+    for (const auto& [file, camera] : state.cameras)
+        json["cameras"][file] = camera_json(camera);
+    return json;
+}
+
 } // namespace
 
 std::filesystem::path usual_state_file() {
@@ -105,7 +185,8 @@ EditorState load_state(const std::filesystem::path& path, std::string& problem, 
             if (keys.is_string())
                 state.keys[name] = keys.get<std::string>();
     read_number(json, "budget_ms", state.budgets.frame_ms);
-    state.budgets.frame_ms = std::clamp(state.budgets.frame_ms, 1.0f, 1000.0f);
+    state.budgets.frame_ms = std::clamp(state.budgets.frame_ms, Budgets::least_ms, Budgets::most_ms);
+    read_steps(json, state.steps);
     if (const auto found = json.find("counter_budgets"); found != json.end() && found->is_object())
         for (const auto& [name, most] : found->items())
             if (most.is_number() && most.get<double>() >= 0.0)
@@ -117,23 +198,38 @@ EditorState load_state(const std::filesystem::path& path, std::string& problem, 
     return state;
 }
 
+std::string state_text(const EditorState& state) {
+    return state_json(state).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Status save_state(const std::filesystem::path& path, const EditorState& state) {
-    Json json;
-    json["layout"] = {{"left", state.layout.left},
-                      {"right", state.layout.right},
-                      {"bottom", state.layout.bottom},
-                      {"front", state.layout.front}};
-    json["width"] = state.width;
-    json["height"] = state.height;
-    json["recent"] = state.recent_files;
-    json["keys"] = state.keys;
-    json["budget_ms"] = state.budgets.frame_ms;
-    json["counter_budgets"] = state.budgets.counters;
-    for (const auto& [file, camera] : state.cameras)
-        json["cameras"][file] = camera_json(camera);
+    return write_state(path, state_json(state));
+}
+
+Status save_changes(const std::filesystem::path& path, const std::string& before, const EditorState& state) {
     std::error_code code;
-    std::filesystem::create_directories(path.parent_path(), code);
-    return write_file(path, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    if (!std::filesystem::exists(path, code))
+        return save_state(path, state);
+    // What cannot be read may be fine, and is not replaced.
+    SUNFLECK_ASSIGN(const std::string text, read_file(path, 1u << 20));
+    const Json theirs = Json::parse(text, nullptr, false);
+    // As equal states have equal texts, this compares what would be written.
+    return write_state(path, theirs.is_object() ? merged(parsed(before), parsed(state_text(state)), theirs)
+                                                : state_json(state));
+}
+
+Status StateKeeper::keep(const std::filesystem::path& path, const EditorState& state, Clock::time_point now) {
+    is_old_ = false;
+    kept_ = now;
+    std::string text = state_text(state);
+    if (text == text_)
+        return {};
+    text_ = std::move(text);
+    const Status saved = save_changes(path, written_, state);
+    if (saved)
+        written_ = text_;
+    std::string problem = saved ? std::string() : saved.error().message;
+    return std::exchange(problem_, problem) == problem ? Status() : saved;
 }
 
 } // namespace sunfleck::editor

@@ -69,6 +69,7 @@ bool take_quiet_frame();
 // --- Numbers: dragged, or clicked and typed --------------------------------------------------------------------------
 struct NumberLook {
     double value = 0.0, minimum = 0.0, maximum = 0.0; // in the unit that is shown
+    double speed = 0.0;                               // of a drag, per pixel; 0: by the range, or the value
     bool whole = false, mixed = false, enabled = true;
     std::string unit;
     const char* instead = "mixed"; // of a number, where it is mixed
@@ -80,6 +81,14 @@ struct NumberEdit {
     std::string text;   // of `typed`
 };
 NumberEdit number_box(const std::string& name, const NumberLook& look);
+// What is being typed or dragged is given up, without an edit.
+void leave_boxes();
+// Which text box of a document's value is being typed into, and what; 0: none is.
+struct TextEdit {
+    ImGuiID box = 0;
+    std::string text;
+};
+TextEdit& text_edit();
 // At the start of a frame: boxes that are not drawn any more are left.
 void begin_number_boxes();
 // A number is being typed or dragged.

@@ -1,6 +1,9 @@
 #include "engine/io/gltf_animation.h"
 
+#include "engine/io/gltf_writer.h"
+
 #include <algorithm>
+#include <cmath>
 
 namespace sunfleck::io {
 namespace {
@@ -47,7 +50,8 @@ Status read_values(const tinygltf::Model& model, int accessor, scene::AnimationC
             const float length = glm::length(value);
             if (length < 1e-6f)
                 return Error{"a rotation is zero"};
-            value /= length;
+            if (std::abs(length - 1.0f) > 1e-6f) // else it stays to the bit, however often it is saved
+                value /= length;
         }
         curve.values.push_back(value);
     }
@@ -88,6 +92,15 @@ Status read_channel(const tinygltf::Model& model, const tinygltf::AnimationChann
     return {};
 }
 
+// The file of this program says where an entity repeats later than the rest of the animation does.
+void read_duration(const tinygltf::AnimationChannel& channel, float& stated) {
+    if (!channel.extras.IsObject() || !channel.extras.Has(duration_key) || !channel.extras.Get(duration_key).IsNumber())
+        return;
+    const double seconds = channel.extras.Get(duration_key).GetNumberAsDouble();
+    if (std::isfinite(seconds) && seconds < 1e6)
+        stated = std::max(stated, float(seconds));
+}
+
 } // namespace
 
 Result<std::map<int, scene::Animation>> read_animation(const tinygltf::Model& model, int index) {
@@ -96,6 +109,7 @@ Result<std::map<int, scene::Animation>> read_animation(const tinygltf::Model& mo
         return result;
     const tinygltf::Animation& source = model.animations[std::size_t(index)];
     float duration = 0.0f;
+    std::map<int, float> stated;
     for (std::size_t i = 0; i < source.channels.size(); ++i) {
         const tinygltf::AnimationChannel& channel = source.channels[i];
         if (channel.target_node < 0 || channel.target_path == "pointer")
@@ -111,9 +125,14 @@ Result<std::map<int, scene::Animation>> read_animation(const tinygltf::Model& mo
             !status)
             return failure(status.error().message);
         duration = std::max(duration, animation.duration);
+        read_duration(channel, stated[channel.target_node]);
     }
-    for (auto& [node, animation] : result)
-        animation.duration = duration;
+    for (auto& [node, animation] : result) {
+        // An own one may be shorter than what is longest, but not than the entity's curves.
+        animation.duration = stated[node] > 0.0f ? std::max(stated[node], animation.duration) : duration;
+        animation.name = source.name;
+        animation.number = std::uint32_t(index);
+    }
     return result;
 }
 

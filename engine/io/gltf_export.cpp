@@ -1,14 +1,9 @@
 #include "engine/core/file.h"
+#include "engine/io/encoded_textures.h"
 #include "engine/io/gltf.h"
-#include "engine/io/image.h"
-
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE
-#define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
-#include <tiny_gltf.h>
+#include "engine/io/gltf_motion_export.h"
 
 #include <cmath>
-#include <map>
-#include <set>
 #include <sstream>
 
 namespace sunfleck::io {
@@ -38,11 +33,10 @@ public:
         : registry_(registry), meshes_(meshes), textures_(textures) {
         model_.asset.version = "2.0";
         model_.asset.generator = "sunfleck";
-        model_.buffers.emplace_back();
     }
 
-    Result<tinygltf::Model> run() {
-        SUNFLECK_TRY(add_textures());
+    Result<tinygltf::Model> run(EncodedTextures& encoded) {
+        SUNFLECK_TRY(add_textures(encoded));
         for (const ecs::Entity entity : registry_.entities())
             if (registry_.has<scene::Name>(entity))
                 node_of_[entity] = add_node(entity);
@@ -58,7 +52,8 @@ public:
             else
                 model_.scenes[0].nodes.push_back(node);
         }
-        for (const std::string& name : used_extensions_)
+        SUNFLECK_TRY(motion_.finish(node_of_));
+        for (const std::string& name : file_.extensions)
             model_.extensionsUsed.push_back(name);
         if (model_.buffers[0].data.empty())
             model_.buffers.clear(); // nor empty buffers
@@ -66,29 +61,16 @@ public:
     }
 
 private:
-    int add_view(const void* bytes, std::size_t size, int target) {
-        std::vector<unsigned char>& data = model_.buffers[0].data;
-        data.resize((data.size() + 3) / 4 * 4); // accessors begin at multiples of their components' size
-        tinygltf::BufferView view;
-        view.buffer = 0;
-        view.byteOffset = data.size();
-        view.byteLength = size;
-        view.target = target;
-        const auto* first = static_cast<const unsigned char*>(bytes);
-        data.insert(data.end(), first, first + size);
-        model_.bufferViews.push_back(view);
-        return int(model_.bufferViews.size() - 1);
-    }
-
     // Every texture of the store with its own sampler, under its own index.
-    Status add_textures() {
+    Status add_textures(EncodedTextures& encoded) {
+        SUNFLECK_ASSIGN(const auto pictures, encoded.of(textures_));
         for (std::uint32_t i = 0; i < textures_.size(); ++i) {
             const scene::Texture& source = textures_[i];
-            SUNFLECK_ASSIGN(const std::string png, encode_png(source.width, source.height, source.pixels));
+            const std::string& png = *pictures[i];
             tinygltf::Image image;
             image.name = source.name;
             image.mimeType = "image/png";
-            image.bufferView = add_view(png.data(), png.size(), 0);
+            image.bufferView = file_.add_view(png.data(), png.size(), 0);
             model_.images.push_back(image);
             tinygltf::Sampler sampler;
             sampler.wrapS = wrap_mode(source.wrap_u);
@@ -109,21 +91,10 @@ private:
                                                              : TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     }
 
-    template <typename T>
-    int add_accessor(const std::vector<T>& values, int type, int component, int target) {
-        tinygltf::Accessor accessor;
-        accessor.bufferView = add_view(values.data(), values.size() * sizeof(T), target);
-        accessor.componentType = component;
-        accessor.type = type;
-        accessor.count = values.size();
-        model_.accessors.push_back(accessor);
-        return int(model_.accessors.size() - 1);
-    }
-
     void add_optional_attributes(const scene::Mesh& mesh, tinygltf::Primitive& primitive) {
         const auto add = [&](const char* name, const auto& values, int type) {
             primitive.attributes[name] =
-                add_accessor(values, type, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+                file_.add_accessor(values, type, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
         };
         if (!mesh.texture_coordinates.empty()) {
             std::vector<vec2> sets[2];
@@ -140,29 +111,33 @@ private:
             add("COLOR_0", mesh.colours, TINYGLTF_TYPE_VEC4);
     }
 
-    // One glTF mesh for each pair of mesh and material.
-    int add_mesh(std::uint32_t index, int material) {
-        const scene::Mesh& mesh = meshes_[index];
-        if (!geometry_.count(index)) {
-            tinygltf::Primitive primitive;
-            primitive.mode = TINYGLTF_MODE_TRIANGLES;
-            primitive.attributes["POSITION"] = add_accessor(
-                mesh.positions, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
-            const Bounds bounds = meshes_.bounds(index);
-            for (int c = 0; c < 3; ++c) {
-                model_.accessors.back().minValues.push_back(double(bounds.minimum[c]));
-                model_.accessors.back().maxValues.push_back(double(bounds.maximum[c]));
-            }
-            primitive.attributes["NORMAL"] = add_accessor(mesh.normals, TINYGLTF_TYPE_VEC3,
-                                                          TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
-            add_optional_attributes(mesh, primitive);
-            primitive.indices = add_accessor(mesh.indices, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                                             TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
-            geometry_[index] = primitive;
+    tinygltf::Primitive primitive_of(const scene::Mesh& mesh) {
+        tinygltf::Primitive primitive;
+        primitive.mode = TINYGLTF_MODE_TRIANGLES;
+        const int positions = file_.add_accessor(mesh.positions, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                                                 TINYGLTF_TARGET_ARRAY_BUFFER);
+        file_.add_bounds(positions, mesh.positions, 3);
+        primitive.attributes["POSITION"] = positions;
+        primitive.attributes["NORMAL"] = file_.add_accessor(
+            mesh.normals, TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TARGET_ARRAY_BUFFER);
+        add_optional_attributes(mesh, primitive);
+        primitive.indices = file_.add_accessor(mesh.indices, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                                               TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
+        return primitive;
+    }
+
+    // One glTF mesh for each entity, whose material it has. Meshes that deform are written in their rest pose.
+    int add_mesh(std::uint32_t index, const scene::Deformation* deformation, int material) {
+        const scene::Mesh& mesh = deformation != nullptr ? deformation->source->rest : meshes_[index];
+        const auto [known, is_new] = geometry_.try_emplace(&mesh);
+        if (is_new) {
+            known->second = primitive_of(mesh);
+            if (deformation != nullptr)
+                motion_.add_deformation(*deformation->source, known->second);
         }
         tinygltf::Mesh target;
         target.name = mesh.name;
-        target.primitives.push_back(geometry_[index]);
+        target.primitives.push_back(known->second);
         target.primitives[0].material = material;
         model_.meshes.push_back(target);
         return int(model_.meshes.size() - 1);
@@ -185,7 +160,7 @@ private:
         transform["scale"] = pair(use.scale);
         transform["rotation"] = tinygltf::Value(double(use.rotation));
         target.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
-        used_extensions_.insert("KHR_texture_transform");
+        file_.extensions.insert("KHR_texture_transform");
     }
 
     void set_extension(tinygltf::ExtensionMap& extensions, const std::string& name, const std::string& key,
@@ -193,7 +168,28 @@ private:
         tinygltf::Value::Object object;
         object[key] = std::move(value);
         extensions[name] = tinygltf::Value(object);
-        used_extensions_.insert(name);
+        file_.extensions.insert(name);
+    }
+
+    void add_transmission(const scene::Material& source, const scene::MaterialTextures* textures,
+                          tinygltf::Material& material) {
+        const bool has_texture = textures != nullptr && textures->transmission;
+        if (source.transmission <= 0.0f && !has_texture)
+            return;
+        tinygltf::Value::Object object;
+        object["transmissionFactor"] = tinygltf::Value(double(source.transmission));
+        if (has_texture) {
+            tinygltf::TextureInfo info;
+            set_texture(info, textures->transmission);
+            tinygltf::Value::Object texture;
+            texture["index"] = tinygltf::Value(info.index);
+            texture["texCoord"] = tinygltf::Value(info.texCoord);
+            if (!info.extensions.empty())
+                texture["extensions"] = tinygltf::Value(info.extensions);
+            object["transmissionTexture"] = tinygltf::Value(texture);
+        }
+        material.extensions["KHR_materials_transmission"] = tinygltf::Value(object);
+        file_.extensions.insert("KHR_materials_transmission");
     }
 
     int add_material(const scene::Material& source, const scene::MaterialTextures* textures, const std::string& name) {
@@ -207,7 +203,7 @@ private:
         material.alphaCutoff = double(source.alpha_cutoff);
         if (source.unlit) {
             material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-            used_extensions_.insert("KHR_materials_unlit");
+            file_.extensions.insert("KHR_materials_unlit");
         }
         if (textures != nullptr) {
             set_texture(material.pbrMetallicRoughness.baseColorTexture, textures->base_colour);
@@ -226,9 +222,7 @@ private:
         }
         if (!source.specular)
             set_extension(material.extensions, "KHR_materials_specular", "specularFactor", tinygltf::Value(0.0));
-        if (source.transmission > 0.0f)
-            set_extension(material.extensions, "KHR_materials_transmission", "transmissionFactor",
-                          tinygltf::Value(double(source.transmission)));
+        add_transmission(source, textures, material);
         if (source.index_of_refraction != 1.5f)
             set_extension(material.extensions, "KHR_materials_ior", "ior",
                           tinygltf::Value(double(source.index_of_refraction)));
@@ -251,24 +245,34 @@ private:
         set_extension(node.extensions, "KHR_lights_punctual", "light", tinygltf::Value(int(model_.lights.size() - 1)));
     }
 
+    void place(const scene::Transform& transform, tinygltf::Node& node) {
+        const vec3 p = transform.position, s = transform.scale;
+        const quat q = transform.rotation;
+        node.translation = {double(p.x), double(p.y), double(p.z)};
+        node.rotation = {double(q.x), double(q.y), double(q.z), double(q.w)};
+        node.scale = {double(s.x), double(s.y), double(s.z)};
+    }
+
     int add_node(ecs::Entity entity) {
         tinygltf::Node node;
         node.name = registry_.get<scene::Name>(entity).name;
-        if (const auto* transform = registry_.try_get<scene::Transform>(entity)) {
-            const vec3 p = transform->position, s = transform->scale;
-            const quat q = transform->rotation;
-            node.translation = {double(p.x), double(p.y), double(p.z)};
-            node.rotation = {double(q.x), double(q.y), double(q.z), double(q.w)};
-            node.scale = {double(s.x), double(s.y), double(s.z)};
-        }
-        if (const auto* instance = registry_.try_get<scene::MeshInstance>(entity)) {
+        const auto* instance = registry_.try_get<scene::MeshInstance>(entity);
+        const auto* deformation = instance != nullptr ? deformation_of(registry_, entity) : nullptr;
+        const bool skinned = deformation != nullptr && deformation->source->influences > 0;
+        // Other programs ignore the places of nodes with skins, which the format's validator warns of.
+        const auto* transform = registry_.try_get<scene::Transform>(entity);
+        if (transform != nullptr && !(skinned && transform->matrix() == mat4(1.0f)))
+            place(*transform, node);
+        if (instance != nullptr) {
             const auto* material = registry_.try_get<scene::Material>(entity);
             node.mesh =
-                add_mesh(instance->mesh,
+                add_mesh(instance->mesh, deformation,
                          material != nullptr
                              ? add_material(*material, registry_.try_get<scene::MaterialTextures>(entity), node.name)
                              : -1);
         }
+        if (deformation != nullptr)
+            motion_.add_node(*deformation, int(model_.nodes.size()), node);
         if (const auto* camera = registry_.try_get<scene::Camera>(entity)) {
             tinygltf::Camera target;
             target.name = node.name;
@@ -289,30 +293,36 @@ private:
         return int(model_.nodes.size() - 1);
     }
 
-    struct ByIndex {
-        bool operator()(ecs::Entity a, ecs::Entity b) const { return a.index < b.index; }
-    };
     ecs::Registry& registry_;
     const scene::MeshStore& meshes_;
     const scene::TextureStore& textures_;
-    tinygltf::Model model_;
-    std::map<ecs::Entity, int, ByIndex> node_of_;
-    std::map<std::uint32_t, tinygltf::Primitive> geometry_;
-    std::set<std::string> used_extensions_;
+    GltfWriter file_;
+    tinygltf::Model& model_ = file_.model;
+    MotionExport motion_{file_, registry_};
+    NodeNumbers node_of_;
+    std::map<const scene::Mesh*, tinygltf::Primitive> geometry_;
 };
 
 } // namespace
 
-Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
-                   const scene::TextureStore& textures) {
-    auto model = Exporter(registry, meshes, textures).run();
-    if (!model)
-        return Error{"cannot write '" + path.string() + "': " + model.error().message};
+Result<std::string> gltf_bytes(ecs::Registry& registry, const scene::MeshStore& meshes,
+                               const scene::TextureStore& textures, EncodedTextures* encoded) {
+    EncodedTextures once;
+    SUNFLECK_ASSIGN(tinygltf::Model model,
+                    Exporter(registry, meshes, textures).run(encoded != nullptr ? *encoded : once));
     std::ostringstream stream;
     tinygltf::TinyGLTF writer;
-    if (!writer.WriteGltfSceneToStream(&*model, stream, false, true))
-        return Error{"cannot write '" + path.string() + "' as glTF"};
-    return write_file(path, stream.str());
+    if (!writer.WriteGltfSceneToStream(&model, stream, false, true))
+        return Error{"it cannot be expressed as glTF"};
+    return std::move(stream).str();
+}
+
+Status export_gltf(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
+                   const scene::TextureStore& textures) {
+    const auto bytes = gltf_bytes(registry, meshes, textures);
+    if (!bytes)
+        return Error{"cannot write '" + path.string() + "': " + bytes.error().message, bytes.error().code};
+    return write_file(path, *bytes);
 }
 
 } // namespace sunfleck::io

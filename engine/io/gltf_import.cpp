@@ -6,6 +6,8 @@
 #include "engine/io/gltf_materials.h"
 #include "engine/io/gltf_meshes.h"
 #include "engine/io/gltf_nodes.h"
+#include "engine/io/gltf_writer.h"
+#include "engine/io/uri.h"
 
 #include <algorithm>
 #include <exception>
@@ -152,6 +154,33 @@ Result<int> choose_scene(const tinygltf::Model& model, const ImportOptions& opti
     return model.defaultScene >= 0 ? model.defaultScene : 0;
 }
 
+Result<int> choose_animation(const tinygltf::Model& model, const ImportOptions& options, ImportReport& report) {
+    for (std::size_t i = 0; i < model.animations.size(); ++i) {
+        const std::string& name = model.animations[i].name;
+        report.animations.push_back(name.empty() ? "animation " + std::to_string(i) : name);
+    }
+    if (options.animation >= int(model.animations.size()) && options.animation > 0)
+        return Error{"it has no animation " + std::to_string(options.animation) + " (it has " +
+                     std::to_string(model.animations.size()) + ")"};
+    // What had been played is no longer in the scene that was saved.
+    if (options.animation == 0 && !model.animations.empty() && is_marked(model.animations[0].extras, mark_not_played))
+        return -1;
+    return options.animation;
+}
+
+// Animations that nothing plays need not be whole.
+void read_other_animations(const tinygltf::Model& model, int played, GltfContent& content, ImportReport& report) {
+    content.for_saving = true;
+    for (int i = 0; i < int(model.animations.size()); ++i) {
+        if (i == played)
+            continue;
+        if (auto other = read_animation(model, i))
+            content.other_animations.push_back(std::move(*other));
+        else
+            report.notes.push_back(other.error().message + "; it is not played, and is not kept");
+    }
+}
+
 void note_extensions(const tinygltf::Model& model, ImportReport& report) {
     for (const std::string& name : model.extensionsUsed)
         if (!is_known_extension(name))
@@ -208,14 +237,10 @@ Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& r
     SUNFLECK_TRY(read_meshes(document, content, report, part_of(options.progress, 0.5f)));
     SUNFLECK_TRY(read_skins(document, content));
     SUNFLECK_TRY(check_skinned_nodes(model, content));
-    for (std::size_t i = 0; i < model.animations.size(); ++i) {
-        const std::string& name = model.animations[i].name;
-        report.animations.push_back(name.empty() ? "animation " + std::to_string(i) : name);
-    }
-    if (options.animation >= int(model.animations.size()) && options.animation > 0)
-        return Error{"it has no animation " + std::to_string(options.animation) + " (it has " +
-                     std::to_string(model.animations.size()) + ")"};
-    SUNFLECK_ASSIGN(content.animations, read_animation(model, options.animation));
+    SUNFLECK_ASSIGN(const int played, choose_animation(model, options, report));
+    SUNFLECK_ASSIGN(content.animations, read_animation(model, played));
+    if (options.for_saving)
+        read_other_animations(model, played, content, report);
     add_tangents(content);
     SUNFLECK_ASSIGN(NodeImport nodes, NodeImport::read(model, std::move(content)));
     const std::uint32_t first_texture = textures.size();
@@ -229,20 +254,10 @@ Result<ImportReport> import_document(Result<GltfDocument> read, ecs::Registry& r
     report.counts["cameras"] = model.cameras.size();
     report.counts["lights"] = model.lights.size();
     count_content(nodes.content(), textures, first_texture, report);
-    if (model.animations.size() > 1 && options.animation >= 0)
+    if (model.animations.size() > 1 && played >= 0)
         report.notes.push_back("of " + std::to_string(model.animations.size()) + " animations, '" +
-                               report.animations[std::size_t(options.animation)] + "' is played");
+                               report.animations[std::size_t(played)] + "' is played");
     return report;
-}
-
-// Libraries' messages, reduced to one line of bounded length.
-std::string one_line(std::string message) {
-    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
-        message.pop_back();
-    for (std::size_t at = message.find('\n'); at != std::string::npos; at = message.find('\n', at))
-        message.replace(at, 1, "; ");
-    constexpr std::size_t most = 300;
-    return message.size() > most ? message.substr(0, most) + "..." : message;
 }
 
 template <typename Import>

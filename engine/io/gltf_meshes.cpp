@@ -7,6 +7,7 @@
 #include "engine/scene/procedural.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace sunfleck::io {
@@ -230,6 +231,8 @@ Status read_influences(const tinygltf::Model& model, const tinygltf::Primitive& 
         for (const FloatElements& set : weights)
             for (std::size_t i = 0; i < 4; ++i)
                 sum += std::max(set[v][i], 0.0f);
+        if (std::abs(sum - 1.0f) < 1e-6f)
+            sum = 1.0f; // weights stay to the bit, however often they are saved
         for (std::size_t set = 0; set < joints.size(); ++set)
             for (std::size_t i = 0; i < 4; ++i) {
                 mesh.joints.push_back(joints[set][v * 4 + i]);

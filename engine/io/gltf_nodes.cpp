@@ -1,6 +1,7 @@
 #include "engine/io/gltf_nodes.h"
 
 #include "engine/io/gltf.h"
+#include "engine/io/gltf_writer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -206,20 +207,16 @@ void NodeImport::add_to(ecs::Registry& registry, scene::MeshStore& meshes, scene
         if (const int parent = places_[i].parent; parent >= 0)
             registry.emplace<scene::Parent>(entities_[i], {entities_[std::size_t(parent)]});
     bind_skins();
-    for (auto& [node, animation] : content_.animations) {
-        const ecs::Entity entity = entities_[std::size_t(node)];
-        if (entity.is_null())
-            continue;
-        if (!animation.curves.empty())
-            registry.emplace_or_replace<scene::Mover>(entity, {});
-        registry.emplace<scene::Animation>(entity, std::move(animation));
-    }
+    add_animations();
+    give_weights_back();
 }
 
 // Names nodes by the tree: of equal names, the node that is reached first has it.
 void NodeImport::reach(int index, int parent, bool visible) {
     const tinygltf::Node& node = model_->nodes[std::size_t(index)];
     Place& place = places_[std::size_t(index)];
+    if (is_marked(node.extras, mark_no_entity))
+        return;
     if (place.name.empty()) // a scene may also name what lies below another of its nodes
         place.name = unique_name(own_name(node, index));
     place.reached = true;
@@ -272,7 +269,7 @@ void NodeImport::add_mesh(int index, ecs::Entity entity) {
         const bool skinned = node.skin >= 0 && primitives[p].mesh.influences > 0;
         ecs::Entity owner = entity;
         // Further primitives become children, because an entity has one material. Skinned ones are in world space.
-        if (taken || skinned)
+        if (taken || (skinned && !is_marked(node.extras, mark_own_mesh)))
             owner = child_of(skinned ? ecs::null_entity : entity,
                              registry_->get<scene::Name>(entity).name + " part " + std::to_string(p + 1), {});
         else
@@ -317,6 +314,9 @@ void NodeImport::deform(int node, const ImportedPrimitive& primitive, ecs::Entit
         const std::vector<double>& given =
             source.weights.empty() ? model_->meshes[std::size_t(source.mesh)].weights : source.weights;
         const std::vector<float> weights(given.begin(), given.end());
+        if (content_.for_saving && !mesh.targets.empty())
+            notes.push_back("node " + std::to_string(node) + " ('" + source.name +
+                            "'): no animation that is played moves its morph targets: their shape is kept, not they");
         registry_->emplace<scene::MeshInstance>(entity, {meshes_->add(scene::deformed(mesh, {}, weights))});
         return;
     }
@@ -325,22 +325,6 @@ void NodeImport::deform(int node, const ImportedPrimitive& primitive, ecs::Entit
     deformation.source = std::make_shared<scene::DeformableMesh>(std::move(mesh));
     registry_->emplace<scene::Deformation>(entity, std::move(deformation));
     registry_->emplace_or_replace<scene::Mover>(entity, {});
-}
-
-void NodeImport::bind_skins() {
-    for (const auto& [entity, number] : skinned_) {
-        const ImportedSkin& skin = content_.skins[std::size_t(number)];
-        const auto outside = std::count_if(skin.joints.begin(), skin.joints.end(),
-                                           [&](int joint) { return entities_[std::size_t(joint)].is_null(); });
-        if (outside > 0)
-            notes.push_back("skin " + std::to_string(number) + ": " + std::to_string(outside) +
-                            " of its joints are not in the scene: their transforms are left out");
-        registry_->patch<scene::Deformation>(entity, [&](scene::Deformation& deformation) {
-            for (const int joint : skin.joints)
-                deformation.joints.push_back(entities_[std::size_t(joint)]);
-            deformation.inverse_bind_matrices = skin.inverse_bind_matrices;
-        });
-    }
 }
 
 void NodeImport::add_camera(const tinygltf::Camera& camera, ecs::Entity entity, const std::string& name) {

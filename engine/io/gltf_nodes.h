@@ -20,7 +20,9 @@ struct GltfContent {
     MaterialImport materials;
     std::vector<std::vector<ImportedPrimitive>> meshes;
     std::vector<ImportedSkin> skins;
-    std::map<int, scene::Animation> animations; // by node
+    std::map<int, scene::Animation> animations;                    // by node
+    std::vector<std::map<int, scene::Animation>> other_animations; // that are not played, and kept all the same
+    bool for_saving = false;                                       // ImportOptions::for_saving
     int variant = -1;
 };
 
@@ -49,6 +51,11 @@ private:
     void note_left_out(int index);
     void add_light(const tinygltf::Light& light, ecs::Entity entity);
     void bind_skins();
+    ecs::Entity joint_entity(int joint) const;
+    void add_animations();
+    void give_weights_back();
+    template <typename T, typename Move, typename IsEmpty>
+    void move_animated_weights(ecs::Entity from, ecs::Entity to, const Move& move, const IsEmpty& is_empty);
     std::string unique_name(const std::string& wanted);
     ecs::Entity child_of(ecs::Entity parent, const std::string& name, const scene::Transform& transform);
 

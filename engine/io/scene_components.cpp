@@ -1,5 +1,7 @@
 #include "engine/io/scene_components.h"
 
+#include "engine/scene/animation.h"
+#include "engine/scene/deformation.h"
 #include "engine/scene/environment_map.h"
 #include "engine/scene/simulation_components.h"
 
@@ -143,6 +145,16 @@ Status apply_entity(ecs::Registry& registry, const std::string& name, const json
     return {};
 }
 
+namespace {
+
+// The import makes a mover of it.
+bool moves_in_gltf(const ecs::Registry& registry, ecs::Entity entity) {
+    const auto* animation = registry.try_get<scene::Animation>(entity);
+    return (animation != nullptr && !animation->curves.empty()) || registry.has<scene::Deformation>(entity);
+}
+
+} // namespace
+
 json entities_json(ecs::Registry& registry, bool overridden, bool exact) {
     json entities = json::object();
     for (const ecs::Entity entity : registry.entities()) {
@@ -167,6 +179,8 @@ json entities_json(ecs::Registry& registry, bool overridden, bool exact) {
             entities[name->name][std::string(scene::Transform::description().name)] = nullptr;
         if (has_geometry && !registry.has<scene::Material>(entity))
             entities[name->name][std::string(scene::Material::description().name)] = nullptr;
+        if (moves_in_gltf(registry, entity) && !registry.has<scene::Mover>(entity))
+            entities[name->name][std::string(scene::Mover::description().name)] = nullptr;
         if (!has_geometry)
             add(*find_component(std::string(scene::Material::description().name)));
         const std::string_view lights[] = {scene::PointLight::description().name, scene::SpotLight::description().name,

@@ -9,7 +9,9 @@
 
 namespace sunfleck::io {
 
-inline constexpr int scene_file_version = 2; // version 1 had no checksums and no settings
+// Version 1 had no checksums and no settings, version 2 no source. Files without one stay readable for programs that
+// know version 2.
+inline constexpr int scene_file_version = 3, version_without_source = 2;
 
 // Access to one component type by name.
 struct ComponentAccess {

@@ -3,11 +3,11 @@
 #include "engine/core/file.h"
 #include "engine/core/hash.h"
 #include "engine/core/output.h"
+#include "engine/io/encoded_textures.h"
 #include "engine/io/gltf_checks.h"
-#include "engine/io/image.h"
 #include "engine/io/scene_components.h"
+#include "engine/io/sky_pictures.h"
 #include "engine/scene/deformation.h"
-#include "engine/scene/summer_sky.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,11 +46,11 @@ Status check_file(const json& file) {
     }
     for (const auto& [key, value] : file.items())
         if (key != "sunfleck_scene" && key != "checksum" && key != "gltf" && key != "gltf_checksum" &&
-            key != "entities" && key != "settings" && key != "default_light")
+            key != "entities" && key != "settings" && key != "default_light" && key != "source")
             return Error{"it has an unknown key '" + key + "'"};
     if (!file.contains("gltf") || !file["gltf"].is_string())
         return Error{"it names no glTF file"};
-    for (const char* key : {"entities", "settings"})
+    for (const char* key : {"entities", "settings", "source"})
         if (file.contains(key) && !file[key].is_object())
             return Error{fmt::format("'{}' must be an object", key)};
     if (file.contains("default_light") && !file["default_light"].is_boolean())
@@ -68,24 +68,6 @@ Status check_gltf_file(const json& file, const std::filesystem::path& gltf, File
     if (*expected != checksum_of(bytes))
         return Error{"'" + gltf.filename().string() +
                      "' is damaged, or was changed (then remove the line \"gltf_checksum\")"};
-    return {};
-}
-
-Status load_environment_maps(const std::filesystem::path& folder, const FileAccess& access, ecs::Registry& registry) {
-    std::vector<ecs::Entity> entities;
-    registry.view<scene::EnvironmentMap>().each(
-        [&](ecs::Entity entity, const scene::EnvironmentMap&) { entities.push_back(entity); });
-    for (const ecs::Entity entity : entities) {
-        const std::string file = registry.get<scene::EnvironmentMap>(entity).file;
-        std::shared_ptr<const scene::EnvironmentImage> image;
-        if (file == scene::summer_sky_name)
-            image = scene::summer_sky();
-        else {
-            SUNFLECK_ASSIGN(image, load_environment_image(folder / file, access));
-        }
-        registry.patch<scene::EnvironmentMap>(entity,
-                                              [&](scene::EnvironmentMap& map) { map.image = std::move(image); });
-    }
     return {};
 }
 
@@ -118,12 +100,14 @@ Result<ImportReport> load_scene_file(const std::filesystem::path& path, ecs::Reg
     for (const auto& [name, components] : entities.items())
         if (const Status status = apply_entity(registry, name, components); !status)
             return failure(status.error().message);
-    if (const Status status = load_environment_maps(folder, access, registry); !status)
+    if (const Status status = load_sky_pictures(folder, access, registry, options.for_saving, report->notes); !status)
         return failure(status.error().message);
     const json& settings = file.contains("settings") ? file["settings"] : nothing;
     for (const auto& [name, value] : settings.items())
         report->settings[name] = settings_text(value);
     report->default_light = file.value("default_light", true);
+    if (file.contains("source"))
+        report->source = file["source"].dump();
     return report;
 }
 
@@ -156,16 +140,26 @@ std::string stem_of(const std::filesystem::path& path) {
     return encoded.substr(0, 240); // names of files have 255 bytes at most
 }
 
+// What is written.
+struct Content {
+    ecs::Registry& registry;
+    const scene::MeshStore& meshes;
+    const scene::TextureStore& textures;
+    EncodedTextures* encoded;
+};
+
 // Writes the .glb file beside the scene file at `path` and names it in `file`. Never overwrites the file `previous`
 // that the existing scene file refers to: until the new scene file is written, the old pair must stay valid.
-Status save_geometry(const std::filesystem::path& path, const std::string& previous, ecs::Registry& registry,
-                     const scene::MeshStore& meshes, const scene::TextureStore& textures, json& file) {
+Status save_geometry(const std::filesystem::path& path, const std::string& previous, const Content& content,
+                     json& file) {
     const std::string stem = stem_of(path);
     file["gltf"] = previous == stem + ".glb" ? stem + ".2.glb" : stem + ".glb";
     const std::filesystem::path gltf = path.parent_path() / file["gltf"].get<std::string>();
-    SUNFLECK_TRY(export_gltf(gltf, registry, meshes, textures));
-    SUNFLECK_ASSIGN(const std::string bytes, read_file(gltf));
-    file["gltf_checksum"] = checksum_of(bytes);
+    auto bytes = gltf_bytes(content.registry, content.meshes, content.textures, content.encoded);
+    if (!bytes)
+        return Error{"cannot write '" + gltf.string() + "': " + bytes.error().message, bytes.error().code};
+    SUNFLECK_TRY(write_file(gltf, *bytes));
+    file["gltf_checksum"] = checksum_of(*bytes);
     return {};
 }
 
@@ -206,7 +200,7 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
     const auto previous = named_gltf(path);
     if (!previous)
         return failure(previous.error().message);
-    json file = {{"sunfleck_scene", scene_file_version}};
+    json file = {{"sunfleck_scene", options.source.empty() ? version_without_source : scene_file_version}};
     if (!options.gltf_reference.empty()) {
         const std::filesystem::path folder = real_folder(path);
         if (const Status status = FileAccess{folder}.check(folder / options.gltf_reference); !status)
@@ -215,11 +209,15 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
             return failure("the name of '" + options.gltf_reference + "' is not UTF-8, and JSON holds nothing else");
         file["gltf"] = options.gltf_reference;
     } else {
-        SUNFLECK_TRY(save_geometry(path, *previous, registry, meshes, textures, file));
+        SUNFLECK_TRY(save_geometry(path, *previous, {registry, meshes, textures, options.encoded}, file));
     }
     file["entities"] = entities_json(registry, !options.gltf_reference.empty(), options.exact);
+    if (const Status status = save_sky_pictures(path, registry, file["entities"]); !status)
+        return failure(status.error().message);
     for (const auto& [setting, value] : options.settings)
         file["settings"][setting] = value;
+    if (!options.source.empty())
+        file["source"] = json::parse(options.source);
     if (options.exact && !has_light(registry))
         file["default_light"] = false;
     file["checksum"] = checksum_of(file.dump());
@@ -230,23 +228,6 @@ Status save_scene(const std::filesystem::path& named, ecs::Registry& registry, c
     if (*previous != file["gltf"] && (*previous == stem + ".glb" || *previous == stem + ".2.glb"))
         std::filesystem::remove(path.parent_path() / *previous, code);
     return {};
-}
-
-Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path,
-                                                                              const FileAccess& access) {
-    SUNFLECK_ASSIGN(const std::string bytes, access.read(path));
-    const auto kind = sniff_picture(bytes);
-    auto picture = decode_picture(bytes);
-    if (!picture)
-        return Error{"environment map '" + path.string() + "': " + picture.error().message};
-    std::vector<vec3> texels;
-    texels.reserve(picture->pixels.size());
-    const bool display = kind == PictureKind::png || kind == PictureKind::jpeg;
-    for (const vec4& pixel : picture->pixels)
-        texels.push_back(display ? vec3(scene::linear_from_srgb(pixel.x), scene::linear_from_srgb(pixel.y),
-                                        scene::linear_from_srgb(pixel.z))
-                                 : vec3(pixel));
-    return std::make_shared<const scene::EnvironmentImage>(picture->width, picture->height, std::move(texels));
 }
 
 } // namespace sunfleck::io

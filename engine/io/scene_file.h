@@ -27,17 +27,23 @@ struct SaveOptions {
     // Also what glTF cannot say: that an entity has no place, geometry no material, a material no geometry, several
     // lights of one entity, and that there are no lights at all, so that none are added.
     bool exact = false;
+    EncodedTextures* encoded = nullptr; // of this store, from earlier saves
+    // A JSON object on the file that the scene was made from, for editors: ImportReport::source of the scene that is
+    // read again. Empty: none.
+    std::string source;
 };
 
 // Writes `path` (.scene.json) and, without a reference, a .glb file of the same name (or with `.2`, so that the files
 // of the last save stay valid until the new ones are complete). Names of entities must be unique. At any moment, even
-// if the process is killed or the disk is full, either the old or the new scene can be loaded.
+// if the process is killed or the disk is full, either the old or the new scene can be loaded. Pictures of the sky that
+// were loaded for saving (ImportOptions::for_saving) are copied beside it.
 Status save_scene(const std::filesystem::path& path, ecs::Registry& registry, const scene::MeshStore& meshes,
                   const scene::TextureStore& textures, const SaveOptions& options = {});
 
 // Scene-linear for EXR and HDR; PNG and JPEG are assumed to be sRGB and linearised.
 Result<std::shared_ptr<const scene::EnvironmentImage>> load_environment_image(const std::filesystem::path& path,
-                                                                              const FileAccess& access = {{}, true});
+                                                                              const FileAccess& access = {{}, true},
+                                                                              bool for_saving = false);
 
 // JSON schema of scene files, from the descriptions of components.
 std::string scene_file_schema();

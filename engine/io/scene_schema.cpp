@@ -79,6 +79,10 @@ std::string scene_file_schema() {
           {"default_light",
            {{"description", "Whether a sky and a sun are added where the scene has no lights; usually true"},
             {"type", "boolean"}}},
+          {"source",
+           {{"description", "What the editor remembers of the glTF file that the scene came from, to take over what is "
+                            "new in it when it has been exported again"},
+            {"type", "object"}}},
           {"settings", {{"description", "Lighting settings by name, as sunfleck info lists them"}, {"type", "object"}}},
           {"entities",
            {{"description",

@@ -87,4 +87,13 @@ Result<std::string> read_uri(std::string_view uri, const fs::path& folder, const
     return access.read(folder / name);
 }
 
+std::string one_line(std::string message) {
+    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
+        message.pop_back();
+    for (std::size_t at = message.find('\n'); at != std::string::npos; at = message.find('\n', at))
+        message.replace(at, 1, "; ");
+    constexpr std::size_t most = 300;
+    return message.size() > most ? message.substr(0, most) + "..." : message;
+}
+
 } // namespace sunfleck::io

@@ -14,5 +14,7 @@ Result<std::string> read_uri(std::string_view uri, const std::filesystem::path& 
 
 // A URI shortened to one line for messages.
 std::string shortened(std::string_view uri);
+// A message of a library, or with a long name in it, reduced to one line of bounded length.
+std::string one_line(std::string message);
 
 } // namespace sunfleck::io

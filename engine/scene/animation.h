@@ -3,6 +3,7 @@
 
 #include "engine/scene/components.h"
 
+#include <string>
 #include <vector>
 
 namespace sunfleck::scene {
@@ -37,11 +38,19 @@ struct Animation {
     std::vector<AnimationCurve> curves;
     WeightCurve weights;
     float duration = 0.0f; // s
+    // Of the clip in its file.
+    std::string name;
+    std::uint32_t number = 0;
 
     // Sets the animated properties; the rest of `transform` is unchanged.
     void apply(double seconds, Transform& transform) const;
     // Weights of morph targets at that time; empty if they are not animated.
     std::vector<float> weights_at(double seconds) const;
+};
+
+// What clips of the entity's file that are not played do to it. Nothing plays them: they are kept for files.
+struct OtherAnimations {
+    std::vector<Animation> clips;
 };
 
 } // namespace sunfleck::scene

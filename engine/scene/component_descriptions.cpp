@@ -200,6 +200,7 @@ void register_components(ecs::Registry& registry) {
     registry.register_component<SpotLight>();
     registry.register_component<DirectionalLight>();
     registry.register_component<Environment>();
+    registry.register_component<EnvironmentMap>();
     registry.register_component<Mover>();
     registry.register_component<SurfacePattern>();
     registry.register_component<ShadowCasting>();

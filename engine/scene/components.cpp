@@ -1,5 +1,7 @@
 #include "engine/scene/components.h"
 
+#include <cstring>
+
 namespace sunfleck::scene {
 namespace {
 // A hierarchy deeper than this is treated as a cycle.
@@ -36,7 +38,8 @@ void update_world_transforms(ecs::Registry& registry) {
     registry.view<Transform>().each([&](ecs::Entity entity, const Transform&) {
         const mat4 matrix = world_matrix(registry, entity);
         const WorldTransform* stored = registry.try_get<WorldTransform>(entity);
-        if (stored == nullptr || stored->matrix != matrix)
+        // By their bits: which zeros are negative must not depend on what was there before.
+        if (stored == nullptr || std::memcmp(&stored->matrix, &matrix, sizeof matrix) != 0)
             changed.emplace_back(entity, matrix);
     });
     for (const auto& [entity, matrix] : changed)

@@ -12,9 +12,9 @@ struct EntityTemplate {
     std::string_view name; // "Point light"
     std::string_view tooltip;
     std::string_view group; // heading in menus
-    // Gives `entity`, which has nothing yet, its components, a Transform among them; geometry goes to `meshes`. `size`:
-    // m, of something that one sees well in the scene, for example a fifth of a room's height; light reaches some sizes
-    // far.
+    // Gives `entity`, which has nothing yet, its components, a Transform among them; geometry goes to `meshes`. What it
+    // is made of, if it has parts, are other entities below it, with names of their own. `size`: m, of something that
+    // one sees well in the scene, for example a fifth of a room's height; light reaches some sizes far.
     void (*make)(ecs::Registry& registry, ecs::Entity entity, MeshStore& meshes, float size);
 };
 

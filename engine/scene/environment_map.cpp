@@ -26,8 +26,9 @@ void make_smaller(std::uint32_t& width, std::uint32_t& height, std::vector<vec3>
 
 } // namespace
 
-EnvironmentImage::EnvironmentImage(std::uint32_t width, std::uint32_t height, std::vector<vec3> texels)
-    : width_(width), height_(height), texels_(std::move(texels)) {
+EnvironmentImage::EnvironmentImage(std::uint32_t width, std::uint32_t height, std::vector<vec3> texels,
+                                   std::shared_ptr<const PictureFile> file)
+    : width_(width), height_(height), texels_(std::move(texels)), file_(std::move(file)) {
     for (vec3& texel : texels_)
         texel = is_finite(texel) ? glm::max(texel, vec3(0.0f)) : vec3(0.0f);
     make_smaller(width_, height_, texels_);

@@ -43,7 +43,9 @@ const TypeDescription& LightSwitch::description() {
         "LightSwitch",
         1,
         "Switches lamps on and off.",
-        {SUNFLECK_FIELD(LightSwitch, lamps, "", 0, 0, "Names of the lamps, separated by commas"),
+        {SUNFLECK_FIELD(LightSwitch, lamps, "", 0, 0,
+                        "Names of the lamps, separated by commas; a name with a comma stands in quotation marks")
+             .flagged(names_entities),
          SUNFLECK_FIELD(LightSwitch, on, "", 0, 1, "Whether the lamps are on")}};
     return type;
 }
@@ -75,10 +77,12 @@ const TypeDescription& LightSensor::description() {
                         "How often the strongest colour that is not needed is subtracted from those that are"),
          SUNFLECK_FIELD(LightSensor, opens, "", 0, 0,
                         "Names of movers with activation 'sensor', separated by commas; a mover that several sensors "
-                        "name opens while all of them are open"),
+                        "name opens while all of them are open")
+             .flagged(names_entities),
          SUNFLECK_FIELD(LightSensor, shows, "", 0, 0,
                         "Names of movers with activation 'sensor' that show its share, separated by commas: at rest at "
-                        "0, at their far end at 1.5"),
+                        "0, at their far end at 1.5")
+             .flagged(names_entities),
          SUNFLECK_FIELD(LightSensor, keeps_open, "", 0, 1, "Stays open once it has opened")}};
     return type;
 }
@@ -114,17 +118,6 @@ SensorReading next_reading(const LightSensor& sensor, const SensorReading& befor
     next.share = sensor_share(sensor, irradiance);
     next.open = next.share >= (before.open ? sensor_closes_below : 1.0f) || (before.open && sensor.keeps_open);
     return next;
-}
-
-std::vector<std::string> split_names(const std::string& list) {
-    std::vector<std::string> names;
-    for (std::size_t begin = 0; begin < list.size();) {
-        const std::size_t end = std::min(list.find(',', begin), list.size());
-        if (end > begin)
-            names.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return names;
 }
 
 void register_simulation_components(ecs::Registry& registry) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/scene/components.h"
+#include "engine/scene/entity_names.h"
 
 #include <vector>
 
@@ -43,7 +44,7 @@ struct PlayerStart {
     static const TypeDescription& description();
 };
 
-// A lamp that a person can pick up, carry and put down.
+// A lamp that a person can pick up, carry and put down, with all that is below it; no obstacle.
 struct Lantern {
     bool carried = false;
     static const TypeDescription& description();
@@ -60,7 +61,7 @@ struct LightSensor {
     static const TypeDescription& description();
 };
 
-// A part of a game's level: the box of half_size about the entity's origin.
+// A part of a game's level: the box of half_size about the entity's origin, in its own space.
 struct GameArea {
     vec3 half_size{3.0f, 2.0f, 3.0f};     // m
     std::string title;                    // shown on entering
@@ -88,9 +89,6 @@ inline constexpr float sensor_gauge_end = 1.5f;
 float sensor_share(const LightSensor& sensor, vec3 irradiance);
 // What a sensor reads now that it had read `before`.
 SensorReading next_reading(const LightSensor& sensor, const SensorReading& before, vec3 irradiance);
-
-// The elements of a list of names separated by commas.
-std::vector<std::string> split_names(const std::string& list);
 
 // Progress of an activated mover; set by the simulation.
 struct MoverState {

@@ -19,13 +19,19 @@ constexpr float strength = 40.0f;                              // N, greatest pu
 } // namespace
 
 Character::Character(vec3 foot, float yaw, float standing_height)
-    : standing_height_(standing_height), yaw_(yaw), safe_(foot) {
+    : standing_height_(standing_height), yaw_(yaw), safe_(foot), home_(foot) {
     capsule_.foot = foot;
     capsule_.height = standing_height;
 }
 
+void Character::place(vec3 foot, float yaw) {
+    const vec3 home = home_;
+    *this = Character(foot, yaw, standing_height_);
+    home_ = home;
+}
+
 CharacterState Character::state() const {
-    return {capsule_.foot, velocity_, safe_, capsule_.height, yaw_, pitch_, falling_, eye_lag_, grounded_};
+    return {capsule_.foot, velocity_, safe_, capsule_.height, yaw_, pitch_, falling_, eye_lag_, falls_, grounded_};
 }
 
 void Character::restore(const CharacterState& state) {
@@ -37,6 +43,7 @@ void Character::restore(const CharacterState& state) {
     pitch_ = state.pitch;
     falling_ = state.falling;
     eye_lag_ = state.eye_lag;
+    falls_ = state.falls;
     grounded_ = state.grounded;
     ground_ = ecs::null_entity;
 }
@@ -184,6 +191,7 @@ void Character::fall(PhysicsWorld& world, ecs::Entity ignored) {
         ground_ = hit->entity;
         falling_ = 0.0f;
         safe_ = capsule_.foot;
+        falls_ = 0;
         return;
     }
     if (grounded_) {
@@ -211,6 +219,8 @@ void Character::rescue(const PhysicsWorld& world) {
     if (is_finite(capsule_.foot) && capsule_.foot.y > world.bounds().minimum.y - 1.0f)
         return;
     ++rescued_;
+    if (++falls_ > falls_before_home) // there is no floor
+        safe_ = home_;
     capsule_.foot = safe_ + vec3(0.0f, 0.1f, 0.0f);
     velocity_ = vec3(0.0f);
     falling_ = 0.0f;

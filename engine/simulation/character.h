@@ -20,16 +20,22 @@ struct CharacterInput {
 struct CharacterState {
     vec3 foot{0.0f}, velocity{0.0f}, safe{0.0f};
     float height = 0.0f, yaw = 0.0f, pitch = 0.0f, falling = 0.0f, eye_lag = 0.0f;
+    std::uint32_t falls = 0;
     bool grounded = false;
 };
 
 class Character {
 public:
+    static constexpr std::uint32_t falls_before_home = 2;
+
     Character() = default;
     Character(vec3 foot, float yaw, float standing_height);
 
     // One fixed step, after that of the physics world.
     void step(PhysicsWorld& world, const CharacterInput& input, ecs::Entity ignored = ecs::null_entity);
+
+    // Stands there from now on, at rest; home is where it was.
+    void place(vec3 foot, float yaw);
 
     CharacterState state() const;
     void restore(const CharacterState& state);
@@ -44,7 +50,8 @@ public:
     bool grounded() const { return grounded_; }
     bool crouching() const { return capsule_.height < standing_height_ - 0.05f; }
     ecs::Entity stands_on() const { return ground_; }
-    // How often the person fell out of the level and was put back where they last stood.
+    // How often the person fell out of the level and was put back where they last stood; after falls_before_home in a
+    // row, where they began.
     std::uint64_t rescued() const { return rescued_; }
 
 private:
@@ -64,8 +71,9 @@ private:
     float falling_ = 0.0f; // m/s, downwards
     bool grounded_ = false;
     ecs::Entity ground_;
-    vec3 safe_{0.0f};
-    float eye_lag_ = 0.0f; // m by which the eye lags below its position after a step up
+    vec3 safe_{0.0f}, home_{0.0f};
+    std::uint32_t falls_ = 0; // out of the level, since the person stood last
+    float eye_lag_ = 0.0f;    // m by which the eye lags below its position after a step up
     std::uint64_t rescued_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "engine/simulation/physics_world.h"
 
 #include "engine/scene/simulation_components.h"
+#include "engine/simulation/parent_space.h"
 #include "engine/simulation/path_movers.h"
 
 #include <algorithm>
@@ -173,13 +174,7 @@ struct PhysicsWorld::Implementation {
         const btQuaternion q = place.getRotation();
         const vec3 position = from_bullet(place.getOrigin());
         const quat rotation(float(q.w()), float(q.x()), float(q.y()), float(q.z()));
-        const scene::Transform& had = registry.get<scene::Transform>(body.entity);
-        if (had.position == position && had.rotation == rotation)
-            return;
-        registry.patch<scene::Transform>(body.entity, [&](scene::Transform& t) {
-            t.position = position;
-            t.rotation = rotation;
-        });
+        registry.update<scene::Transform>(body.entity, transform_at(registry, body.entity, position, rotation));
     }
 };
 
@@ -200,6 +195,9 @@ PhysicsWorld::PhysicsWorld(ecs::Registry& registry, const scene::MeshStore& mesh
         const std::uint32_t mesh = registry.get<scene::MeshInstance>(entity).mesh;
         if (mesh >= meshes.size() || meshes[mesh].indices.empty() ||
             (described != nullptr && described->shape == scene::BodyShape::none))
+            continue;
+        // A lantern is carried past everything and put down anywhere: neither it nor what is below it is in the way.
+        if (!owner_of<scene::Lantern>(registry, entity).is_null())
             continue;
         const mat4& matrix = registry.get<scene::WorldTransform>(entity).matrix;
         auto body = std::make_unique<Implementation::Body>();
@@ -223,6 +221,8 @@ void PhysicsWorld::step(ecs::Registry& registry) {
     for (auto& body : self.bodies)
         if (body->kinematic && registry.alive(body->entity))
             self.move_kinematic(*body, registry.get<scene::WorldTransform>(body->entity).matrix);
+        else
+            body->previous = body->body->getWorldTransform();
     self.world.stepSimulation(float(step_seconds), 0);
     for (auto& body : self.bodies)
         if (!body->kinematic && body->body->getInvMass() > 0.0f && registry.alive(body->entity))
@@ -337,7 +337,7 @@ void PhysicsWorld::place(ecs::Registry& registry, ecs::Entity entity, const scen
     const auto found = implementation_->by_entity.find(entity);
     if (found == implementation_->by_entity.end())
         return;
-    btTransform now = rigid_transform(transform.matrix());
+    btTransform now = rigid_transform(in_world(registry, entity, transform));
     now.setOrigin(now * to_bullet(found->second->offset));
     found->second->previous = now;
     btRigidBody& body = *found->second->body;
@@ -355,6 +355,16 @@ vec3 PhysicsWorld::displacement_at(ecs::Entity entity, vec3 point) const {
     const btTransform& now = found->second->body->getWorldTransform();
     const btVector3 local = found->second->previous.inverse() * to_bullet(point);
     return from_bullet(now * local) - point;
+}
+
+vec3 PhysicsWorld::motion_at(ecs::Entity entity, vec3 point) const {
+    const auto found = implementation_->by_entity.find(entity);
+    if (found == implementation_->by_entity.end() ||
+        found->second->body->getWorldTransform() == found->second->previous)
+        return vec3(0.0f);
+    if (found->second->kinematic)
+        return displacement_at(entity, point);
+    return from_bullet(found->second->body->getWorldTransform().getOrigin() - found->second->previous.getOrigin());
 }
 
 const Bounds& PhysicsWorld::bounds() const {

@@ -1,6 +1,6 @@
 // Rigid bodies by Bullet: static meshes are fixed, movers on paths push, entities with a RigidBody fall, roll and
-// slide. One thread and a fixed step: on one machine, the same calls in the same order give the same world, bit for
-// bit.
+// slide; a Lantern and what is below it are no bodies. One thread and a fixed step: on one machine, the same calls in
+// the same order give the same world, bit for bit.
 #pragma once
 
 #include "engine/scene/components.h"
@@ -47,10 +47,12 @@ public:
     std::optional<SweepHit> ray(vec3 origin, vec3 motion, ecs::Entity ignored = ecs::null_entity) const;
     // Applies an impulse, N s, at a world point. Has no effect on entities that are not bodies.
     void push(ecs::Entity entity, vec3 momentum, vec3 point);
-    // Teleports a body, at rest.
+    // Teleports a body, at rest; `transform`: relative to its parent, if it has one.
     void place(ecs::Registry& registry, ecs::Entity entity, const scene::Transform& transform);
     // Displacement in the last step of a point that moves with the entity; zero for static entities and free bodies.
     vec3 displacement_at(ecs::Entity entity, vec3 point) const;
+    // The same, of free bodies, too, and of those that of their middle: a ball rolls on below what stands on it.
+    vec3 motion_at(ecs::Entity entity, vec3 point) const;
     // Box around all static geometry.
     const Bounds& bounds() const;
     // Bodies that left the level and were put back at their start.

@@ -1,5 +1,6 @@
 #include "engine/simulation/simulation.h"
 
+#include "engine/simulation/parent_space.h"
 #include "engine/simulation/path_movers.h"
 
 #include <algorithm>
@@ -8,29 +9,15 @@
 namespace sunfleck::simulation {
 namespace {
 
-constexpr float arm = 2.2f;                 // m, a person's reach
-constexpr float aim = 0.85f;                // cosine: targets farther from the centre of view are ignored
-constexpr float squeeze_limit = 0.04f;      // m, penetration depth at which a door reverses
-constexpr vec3 hand(0.30f, -0.36f, -0.62f); // of the carried lantern, from the eye: right, up, back
+constexpr float arm = 2.2f;            // m, a person's reach
+constexpr float aim = 0.85f;           // cosine: targets farther from the centre of view are ignored
+constexpr float at_centre = 0.9976f;   // cosine of 4 degrees: a lantern that is looked at
+constexpr float squeeze_limit = 0.04f; // m, penetration depth at which a door reverses
 
 // The intensity of a lamp that is on.
 struct LampMemory {
     vec3 area{0.0f}, emission{0.0f}, point{0.0f}, spot{0.0f};
 };
-
-// The entity itself or the nearest ancestor that has the component.
-template <typename T>
-ecs::Entity owner_of(const ecs::Registry& registry, ecs::Entity entity) {
-    for (int depth = 0; depth < 16 && registry.alive(entity); ++depth) {
-        if (registry.has<T>(entity))
-            return entity;
-        const scene::Parent* parent = registry.try_get<scene::Parent>(entity);
-        if (parent == nullptr)
-            break;
-        entity = parent->parent;
-    }
-    return ecs::null_entity;
-}
 
 std::vector<ecs::Entity> sensors_in_order(ecs::Registry& registry) {
     std::vector<ecs::Entity> sensors;
@@ -93,11 +80,12 @@ void apply_switch(ecs::Registry& registry, const scene::LightSwitch& state) {
 }
 
 Simulation::Simulation(ecs::Registry& registry, const scene::MeshStore& meshes)
-    : physics_(prepared(registry), meshes), player_(find_start(registry, physics_.bounds())) {
+    : physics_(prepared(registry), meshes), start_(find_start(registry, physics_.bounds())), player_(start_) {
     registry.view<scene::Lantern>().each([&](ecs::Entity entity, const scene::Lantern& lantern) {
         if (lantern.carried && carried_.is_null())
             carried_ = entity;
     });
+    find_lanterns(registry, meshes);
     link_sensors(registry);
     carry(registry);
     scene::update_world_transforms(registry);
@@ -167,6 +155,7 @@ void Simulation::step(ecs::Registry& registry, const StepInput& input) {
     show_readings(registry);
     set_movers_to_step(registry, steps_);
     physics_.step(registry);
+    move_standing(registry);
     CharacterInput person;
     person.forward = float(input.forward) / 100.0f;
     person.right = float(input.right) / 100.0f;
@@ -194,7 +183,8 @@ void Simulation::advance_movers(ecs::Registry& registry, bool back) {
             scene::MoverState next = state;
             const scene::MoverOrigin* origin = registry.try_get<scene::MoverOrigin>(entity);
             if (mover.activation == scene::MoverActivation::near && origin != nullptr)
-                next.open = glm::length(origin->transform.position - person) < mover.reach;
+                next.open =
+                    glm::length(from_parent(registry, entity, origin->transform.position) - person) < mover.reach;
             if (mover.activation == scene::MoverActivation::sensor)
                 next.open = sensors_open(registry, entity);
             float by = float(step_seconds) / (0.5f * mover.period) * (next.open ? 1.0f : -1.0f);
@@ -208,33 +198,39 @@ void Simulation::advance_movers(ecs::Registry& registry, bool back) {
         registry.emplace_or_replace<scene::MoverState>(entity, state);
 }
 
+// What the centre of the view is on, if a person can use it.
+Simulation::Target Simulation::find_used(const ecs::Registry& registry, ecs::Entity seen) {
+    if (const ecs::Entity plate = owner_of<scene::LightSwitch>(registry, seen); !plate.is_null())
+        return {Interaction::switch_lamps, plate};
+    const ecs::Entity mover = owner_of<scene::MoverState>(registry, seen);
+    if (mover.is_null() || registry.get<scene::Mover>(mover).activation != scene::MoverActivation::use)
+        return {};
+    return {registry.get<scene::MoverState>(mover).open ? Interaction::close : Interaction::open, mover};
+}
+
+// A lantern about where the person looks is taken, unless they look at something else that can be used.
 Simulation::Target Simulation::find_target(ecs::Registry& registry) const {
     const vec3 eye = player_.eye(), ahead = player_.forward();
     const auto hit = physics_.ray(eye, arm * ahead, carried_);
     const float free = hit ? hit->fraction * arm : arm;
-    Target target;
-    if (carried_.is_null()) {
-        float best = aim;
-        registry.view<scene::Lantern, scene::WorldTransform>().each(
-            [&](ecs::Entity entity, const scene::Lantern&, const scene::WorldTransform& world) {
-                const vec3 to = vec3(world.matrix[3]) - eye;
-                const float distance = glm::length(to), cosine = glm::dot(to, ahead) / std::max(distance, 1e-6f);
-                if (distance < std::min(arm, free + 0.4f) && cosine > best) {
-                    best = cosine;
-                    target = {Interaction::take, entity};
-                }
-            });
-        if (target.interaction != Interaction::none)
-            return target;
-    }
-    if (!hit)
-        return target;
-    if (const ecs::Entity plate = owner_of<scene::LightSwitch>(registry, hit->entity); !plate.is_null())
-        return {Interaction::switch_lamps, plate};
-    const ecs::Entity mover = owner_of<scene::MoverState>(registry, hit->entity);
-    if (mover.is_null() || registry.get<scene::Mover>(mover).activation != scene::MoverActivation::use)
-        return target;
-    return {registry.get<scene::MoverState>(mover).open ? Interaction::close : Interaction::open, mover};
+    const Target used = hit ? find_used(registry, hit->entity) : Target();
+    if (!carried_.is_null())
+        return used;
+    Target lantern;
+    float best = aim;
+    registry.view<scene::Lantern, scene::WorldTransform>().each(
+        [&](ecs::Entity entity, const scene::Lantern&, const scene::WorldTransform& world) {
+            const vec3 to = vec3(world.matrix[3]) - eye;
+            const float distance = glm::length(to), cosine = glm::dot(to, ahead) / std::max(distance, 1e-6f);
+            if (distance < std::min(arm, free + 0.4f) && cosine > best) {
+                best = cosine;
+                lantern = {Interaction::take, entity};
+            }
+        });
+    if (lantern.interaction == Interaction::none)
+        return used;
+    const bool looked_at = cosine_to_lantern(registry, lantern.entity) > at_centre;
+    return looked_at || used.interaction == Interaction::none ? lantern : used;
 }
 
 Interaction Simulation::possible_interaction(ecs::Registry& registry) const {
@@ -255,36 +251,9 @@ void Simulation::use(ecs::Registry& registry) {
         apply_switch(registry, scene::LightSwitch(registry.get<scene::LightSwitch>(target.entity)));
         break;
     case Interaction::take:
-        carried_ = target.entity;
-        registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = true; });
+        take(registry, target.entity);
         break;
     }
-}
-
-// On whatever lies one step ahead, or at the person's feet if nothing does.
-void Simulation::put_down(ecs::Registry& registry) {
-    if (carried_.is_null())
-        return;
-    const vec3 middle = player_.capsule().foot + vec3(0.0f, 0.6f * player_.capsule().height, 0.0f);
-    const vec3 ahead(-std::sin(player_.yaw()), 0.0f, -std::cos(player_.yaw()));
-    float reach = 0.7f;
-    if (const auto wall = physics_.ray(middle, (reach + 0.15f) * ahead, carried_))
-        reach = std::max(0.0f, wall->fraction * (reach + 0.15f) - 0.15f);
-    const vec3 above = middle + reach * ahead;
-    const auto ground = physics_.ray(above, vec3(0.0f, -2.5f, 0.0f), carried_);
-    if (!ground)
-        return;
-    const vec3 place = ground->point;
-    scene::Transform transform = registry.get<scene::Transform>(carried_);
-    transform.position = place;
-    transform.rotation = glm::angleAxis(player_.yaw(), vec3(0.0f, 1.0f, 0.0f));
-    let_go(registry, transform);
-}
-
-void Simulation::let_go(ecs::Registry& registry, const scene::Transform& transform) {
-    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& lantern) { lantern.carried = false; });
-    physics_.place(registry, carried_, transform);
-    carried_ = ecs::null_entity;
 }
 
 void Simulation::restore(ecs::Registry& registry, const SimulationState& state) {
@@ -292,6 +261,7 @@ void Simulation::restore(ecs::Registry& registry, const SimulationState& state) 
     held_buttons_ = state.held_buttons;
     player_.restore(state.person);
     carried_ = state.carried;
+    standing_ = state.standing;
     std::vector<scene::LightSwitch> switches;
     registry.view<scene::LightSwitch>().each(
         [&](ecs::Entity, const scene::LightSwitch& lamps) { switches.push_back(lamps); });
@@ -308,39 +278,11 @@ void Simulation::restore(ecs::Registry& registry, const SimulationState& state) 
 }
 
 void Simulation::place_player(vec3 foot, vec3 ahead) {
-    player_ = Character(foot, std::atan2(-ahead.x, -ahead.z), player_.standing_height());
+    player_.place(foot, std::atan2(-ahead.x, -ahead.z));
 }
 
-void Simulation::hand_lantern(ecs::Registry& registry, ecs::Entity lantern) {
-    if (carried_ == lantern)
-        return;
-    if (!carried_.is_null())
-        let_go(registry, scene::Transform(registry.get<scene::Transform>(carried_)));
-    carried_ = lantern;
-    registry.patch<scene::Lantern>(carried_, [](scene::Lantern& state) { state.carried = true; });
-}
-
-void Simulation::put_lantern(ecs::Registry& registry, ecs::Entity lantern, const scene::Transform& transform) {
-    if (carried_ == lantern)
-        let_go(registry, transform);
-    else
-        physics_.place(registry, lantern, transform);
-}
-
-// In the hand it hangs upright, lags slightly behind the view, and stays out of walls.
-void Simulation::carry(ecs::Registry& registry) {
-    if (carried_.is_null())
-        return;
-    const quat turned = glm::angleAxis(player_.yaw(), vec3(0.0f, 1.0f, 0.0f));
-    const vec3 eye = player_.eye();
-    vec3 way = turned * hand;
-    way.y += 0.25f * player_.forward().y;
-    if (const auto hit = physics_.ray(eye, 1.3f * way, carried_))
-        way *= std::min(1.0f, std::max(0.0f, hit->fraction * 1.3f - 0.3f));
-    scene::Transform held = registry.get<scene::Transform>(carried_);
-    held.position = eye + way - vec3(0.0f, 0.12f, 0.0f);
-    held.rotation = turned;
-    registry.update<scene::Transform>(carried_, held);
+void Simulation::place_player_at_start() {
+    player_ = start_;
 }
 
 std::uint64_t Simulation::world_hash(ecs::Registry& registry) const {

@@ -51,6 +51,16 @@ bool CheckpointFiles::any() const {
     return std::filesystem::exists(newest_, code) || std::filesystem::exists(older_, code);
 }
 
+Status CheckpointFiles::clear() const {
+    for (const std::filesystem::path& path : {older_, newest_}) {
+        std::error_code code;
+        std::filesystem::remove(path, code);
+        if (code)
+            return Error{"cannot remove '" + path.string() + "': " + code.message()};
+    }
+    return {};
+}
+
 bool CheckpointFiles::load(GameWorld& world, std::string& message) const {
     std::error_code code;
     for (const std::filesystem::path& path : {newest_, older_}) {

@@ -23,6 +23,8 @@ public:
     // `message` says so, in one line.
     bool load(GameWorld& world, std::string& message) const;
     bool any() const;
+    // Removes them: the game has ended, and there is nothing to go on with.
+    Status clear() const;
     // Its identity, by which saved games name it.
     const std::string& level() const { return level_; }
 

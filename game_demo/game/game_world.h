@@ -27,10 +27,16 @@ public:
     simulation::Simulation& simulation() const { return *simulation_; }
     const gi::LightSensors& sensors() const { return *sensors_; }
     bool has_sensors() const { return has_sensors_; }
+    // Of the level as it was loaded (level_contents.h).
+    const std::string& contents() const { return contents_; }
 
+    // Whether the level is a game: it has areas or a goal.
+    bool is_game() const { return !areas_.empty(); }
     // The area that the person is in, or was in last; null before the first.
     const scene::GameArea* area() const;
     ecs::Entity area_entity() const { return area_; }
+    // Whether a point of the world lies in the area's box, which turns and grows with its entity.
+    bool is_in(ecs::Entity area, vec3 point) const;
     // The goal was reached.
     bool finished() const { return finished_; }
     // Sensors that are open, or were once.
@@ -40,19 +46,23 @@ public:
         ecs::Entity area;
         bool finished = false;
         std::vector<ecs::Entity> opened; // sensors
+        ecs::Entity lantern;             // that the person carried last; null: none so far
     };
-    Progress progress() const { return {area_, finished_, opened_}; }
+    Progress progress() const { return {area_, finished_, opened_, lantern_}; }
     // After the simulation was restored; see saved_game.h.
     void restore(const Progress& progress);
 
-    // Puts the person at the entry of the area, and what the area holds where it began: bodies, what is used, lamps.
-    // The lantern is there where it began, or else in the person's hand. What sensors keep open stays open.
+    // Puts the person at the entry of the area (where nobody can stand there, on the floor below its centre, or where
+    // the level begins), and what the area holds where it began: bodies, what is used, lamps. A lantern that began
+    // there is there, the one that was carried last otherwise in the person's hand; all others stay. What sensors keep
+    // open stays open.
     void reset_room();
 
 private:
     struct Start {
         ecs::Entity entity;
         scene::Transform transform;
+        vec3 place{0.0f}; // in the world
     };
 
     GameWorld(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures);
@@ -60,19 +70,22 @@ private:
     Status renew_sensors();
     void find_area();
     void note_open_sensors();
-    void reset_bodies(const Bounds& box);
-    void reset_used(const Bounds& box);
-    Bounds box_of(ecs::Entity area) const;
+    void note_lantern();
+    void reset_bodies();
+    void reset_used();
+    void reset_person();
+    std::optional<vec3> floor_below(vec3 foot) const;
 
+    const std::string contents_;
     ecs::Registry* registry_;
     const scene::MeshStore* meshes_;
     const scene::TextureStore* textures_;
-    std::vector<Start> starts_; // of free bodies and the lantern
+    std::vector<Start> starts_; // of free bodies and lanterns
     std::vector<std::pair<ecs::Entity, bool>> switches_;
     std::unique_ptr<simulation::Simulation> simulation_;
     std::unique_ptr<gi::LightSensors> sensors_;
     std::vector<ecs::Entity> areas_, opened_;
-    ecs::Entity area_;
+    ecs::Entity area_, lantern_;
     std::uint32_t held_ = 0;
     bool has_sensors_ = false, finished_ = false;
 };

@@ -14,8 +14,8 @@ std::function<std::string()> keep_game(const GameWorld& world, const std::string
 // The text without its line breaks, as recordings begin with it.
 std::string on_one_line(std::string saved);
 // Into a world of the same level; its world hash is then what it was when the text was made. An error says what is
-// wrong with the text (damage, another level, a later version); the world may be half of each then and must be
-// restarted.
+// wrong with the text (damage, another level or one that was changed since, another version); the world may be half of
+// each then and must be restarted.
 Status load_game(GameWorld& world, const std::string& level, const std::string& text);
 
 } // namespace sunfleck::demo

@@ -127,11 +127,14 @@ void LightSensors::find_sensors(ecs::Registry& registry) {
                                         [&, e = entity](const Sensor& sensor) { return sensor.entity == e; });
         sensors_.push_back(known != before.end() ? std::move(*known) : Sensor());
         Sensor& sensor = sensors_.back();
-        sensor.fresh = sensor.fresh || forget_ || !same_place(sensor.place, place);
+        sensor.fresh = sensor.fresh || forget_;
+        const bool moved = !sensor.fresh && !same_place(sensor.place, place);
         sensor.entity = entity;
         sensor.place = place;
         sensor.paths.resize(paths_per_sensor);
         sensor.pending.resize(paths_per_sensor, 0);
+        for (std::size_t i = 0; moved && i < sensor.paths.size(); ++i)
+            mark(sensor, i);
     }
     forget_ = false;
 }

@@ -37,7 +37,8 @@ public:
     Status set_settings(const SensorSettings& settings);
     const SensorSettings& settings() const { return settings_; }
 
-    // Follows the registry and writes the readings. Sensors that are new, or were moved, are evaluated at once.
+    // Follows the registry and writes the readings. Sensors that are new are evaluated at once; one that moves costs no
+    // more than others around which something moves.
     Status step(ecs::Registry& registry, const scene::MeshStore& meshes, const scene::TextureStore* textures = nullptr);
     // From now on the world is another registry with other stores, which hold the same entities, meshes and textures:
     // readings go on as if nothing had happened. World transforms must be up to date.

@@ -65,11 +65,12 @@ protected:
         click(box_ + "colour");
     }
     vec3 now() { return document().registry().get<scene::PointLight>(lamp_).intensity; }
-    void set(vec3 value) {
+    void set(vec3 value) { set_of(lamp_, value); }
+    void set_of(Entity lamp, vec3 value) {
         document().begin("Set");
-        auto light = document().registry().get<scene::PointLight>(lamp_);
+        auto light = document().registry().get<scene::PointLight>(lamp);
         light.intensity = value;
-        document().set(lamp_, pool_of<scene::PointLight>(document()), std::make_shared<scene::PointLight>(light));
+        document().set(lamp, pool_of<scene::PointLight>(document()), std::make_shared<scene::PointLight>(light));
         document().commit();
     }
     std::size_t new_entries() { return document().history().entries().size() - entries_; }
@@ -134,6 +135,57 @@ TEST_F(EditorColourBox, TheTemperatureIsTheLampsOwn) {
     set(40.0f * black_body_colour(5500.0f));
     frames(3);
     EXPECT_EQ(shown("Temperature"), "5500");
+}
+
+// A red lamp and a blue one, twice as bright: each keeps what is not changed.
+TEST_F(EditorColourBox, SeveralLampsKeepWhatIsNotChanged) {
+    const Entity other = add("Point light");
+    const auto set_both = [&] {
+        set(vec3(40.0f, 0.0f, 0.0f));
+        set_of(other, vec3(0.0f, 0.0f, 80.0f));
+        document().select({lamp_, other});
+        frames(3);
+    };
+    const auto others = [&] { return document().registry().get<scene::PointLight>(other).intensity; };
+    set_both();
+    if (!is_open()) {
+        ASSERT_NO_FATAL_FAILURE(click(box_ + "colour"));
+    }
+    frames(3);
+    EXPECT_EQ(shown("Intensity"), "mixed");
+    ASSERT_NO_FATAL_FAILURE(enter(box_ + "Intensity", "5"));
+    EXPECT_EQ(now(), vec3(5.0f, 0.0f, 0.0f));
+    EXPECT_EQ(others(), vec3(0.0f, 0.0f, 5.0f));
+
+    set_both();
+    ASSERT_NO_FATAL_FAILURE(enter(box_ + "Temperature", "2700"));
+    EXPECT_NEAR(glm::length(now() - 40.0f * black_body_colour(2700.0f)), 0.0f, 1e-3f);
+    EXPECT_NEAR(glm::length(others() - 80.0f * black_body_colour(2700.0f)), 0.0f, 1e-3f);
+    frames(2);
+    EXPECT_EQ(shown("Temperature"), "2700") << "both have it";
+
+    // A drag: one entry, from each one's own colour, also where it passes zero.
+    set_both();
+    ASSERT_NO_FATAL_FAILURE(point_at(box_ + "Intensity"));
+    press();
+    for (const float by : {-60.0f, -2000.0f, 2300.0f})
+        move(vec2(by, 0.0f));
+    EXPECT_GT(now().x, 0.0f);
+    EXPECT_EQ(vec3(now().x, 0.0f, 0.0f), now());
+    EXPECT_EQ(vec3(0.0f, 0.0f, now().x), others());
+    ASSERT_NO_FATAL_FAILURE(key("Escape"));
+    let_go();
+    EXPECT_EQ(now(), vec3(40.0f, 0.0f, 0.0f));
+    EXPECT_EQ(others(), vec3(0.0f, 0.0f, 80.0f));
+
+    // Another hue.
+    ASSERT_NO_FATAL_FAILURE(begin_drag("picker"));
+    let_go();
+    frames(2);
+    const auto brightest = [](vec3 colour) { return std::max({colour.x, colour.y, colour.z}); };
+    EXPECT_NEAR(brightest(now()), 40.0f, 1e-3f);
+    EXPECT_NEAR(brightest(others()), 80.0f, 1e-3f);
+    EXPECT_NEAR(glm::length(2.0f * now() - others()), 0.0f, 1e-2f) << "and the same for both";
 }
 
 TEST_F(EditorColourBox, ADragIsOneEntry) {

@@ -33,6 +33,7 @@ TEST_F(EditorCommands, KeysThatAreAskedForRunNothing) {
     EXPECT_EQ(document().entity_count(), 1u) << "nothing is duplicated";
     EXPECT_EQ(keys_of("View/Flip"), "Ctrl+D");
     EXPECT_EQ(keys_of("Edit/Duplicate"), "") << "keys are one command's";
+    EXPECT_EQ(newest_message(), "Ctrl+D is now 'View: Flip'; 'Edit: Duplicate', which had it, has no keys");
     EXPECT_FALSE(waits_for("View/Flip"));
 
     ASSERT_NO_FATAL_FAILURE(ask_for_keys("Edit/Duplicate"));
@@ -47,6 +48,23 @@ TEST_F(EditorCommands, KeysThatAreAskedForRunNothing) {
     EXPECT_EQ(document().entity_count(), 1u);
     ASSERT_NO_FATAL_FAILURE(key("Ctrl+Shift+F3"));
     EXPECT_EQ(document().entity_count(), 2u);
+}
+
+TEST_F(EditorCommands, UsualKeysComeBack) {
+    ASSERT_NO_FATAL_FAILURE(ask_for_keys("View/Flip"));
+    EXPECT_EQ(find("commands/View/Flip/Usual"), nullptr);
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+D"));
+    frames(2);
+    ASSERT_NO_FATAL_FAILURE(click("commands/View/Flip/Usual"));
+    EXPECT_EQ(keys_of("View/Flip"), "T");
+    frames(2);
+    EXPECT_EQ(find("commands/View/Flip/Usual"), nullptr);
+    EXPECT_EQ(keys_of("Edit/Duplicate"), "") << "which is a change of its own";
+    ASSERT_NO_FATAL_FAILURE(click("commands/Usual keys"));
+    EXPECT_EQ(keys_of("Edit/Duplicate"), "Ctrl+D");
+    EXPECT_TRUE(session_.commands->changed_keys().empty());
+    frames(2);
+    EXPECT_EQ(value("commands/Usual keys"), "disabled");
 }
 
 TEST_F(EditorCommands, WhoeverTurnsAwayIsAskedForKeysNoLonger) {
@@ -130,6 +148,24 @@ TEST(EditorShortcut, ChangedKeysAreKeptFromRunToRun) {
     for (std::size_t i = 0; i < before.all().size(); ++i)
         EXPECT_EQ(after.all()[i].shortcut, before.all()[i].shortcut) << before.all()[i].path();
     EXPECT_EQ(after.changed_keys(), state.keys);
+}
+
+// While a hand drags: what it did so far leaves no entry, and the command works on what was there before.
+TEST_F(EditorCommands, ACommandInTheMiddleOfADragTakesTheDragBack) {
+    const Entity box = add("Box");
+    document().select({box});
+    const vec3 before = document().registry().get<scene::Transform>(box).position;
+    const std::size_t entries = document().history().position();
+    document().begin("Move");
+    auto moved = std::make_shared<scene::Transform>(document().registry().get<scene::Transform>(box));
+    moved->position.x += 3.0f;
+    document().set(box, pool_of<scene::Transform>(document()), std::move(moved));
+    ASSERT_NO_FATAL_FAILURE(run("Edit/Delete"));
+    EXPECT_FALSE(document().exists(box));
+    EXPECT_EQ(document().history().position(), entries + 1);
+    EXPECT_EQ(newest_message(), "What was being dragged is where it was");
+    ASSERT_TRUE(document().undo());
+    EXPECT_EQ(document().registry().get<scene::Transform>(box).position, before);
 }
 
 TEST_F(EditorCommands, SoloEndsWithWhatWasHiddenBefore) {

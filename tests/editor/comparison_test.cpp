@@ -32,9 +32,10 @@ protected:
     // As the GUI does at each frame, until it is as wanted.
     bool follow_until(const std::function<bool()>& wanted) {
         for (const auto end = Clock::now() + std::chrono::seconds(120); Clock::now() < end;) {
-            const auto change = collector_.collect(document_);
+            auto change = collector_.collect(document_);
+            filter_.apply(document_, hidden_, {}, change);
             comparison_->follow(
-                change, [&] { return ChangeCollector::everything(document_); }, view(*document_));
+                change, [&] { return everything(); }, view(*document_));
             if (change)
                 scene_->change(*change);
             if (wanted())
@@ -43,6 +44,12 @@ protected:
         }
         ADD_FAILURE() << "no such picture within two minutes";
         return false;
+    }
+    SceneChange everything() const {
+        SceneChange all = ChangeCollector::everything(document_);
+        HiddenFilter::hide(hidden_, {}, all);
+        all.hiding = filter_.count();
+        return all;
     }
     static bool at_rest(const std::shared_ptr<ScenePicture>& picture) {
         return picture != nullptr && picture->settled && picture->pixels != nullptr;
@@ -66,6 +73,8 @@ protected:
     std::shared_ptr<Document> document_;
     gi::Settings kept_ = viewer::usual_lighting();
     ChangeCollector collector_;
+    HiddenFilter filter_;
+    HiddenFilter::Set hidden_;
     std::unique_ptr<SceneThread> scene_;
     std::unique_ptr<Comparison> comparison_;
     std::shared_ptr<ScenePicture> now_;
@@ -144,6 +153,90 @@ TEST_F(EditorComparison, AnEditRestartsTheReference) {
     document_->undo();
     ASSERT_TRUE(follow_until([&] { return comparison_->samples() < now; }));
     ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= most; }));
+}
+
+// What was worked out of pictures that are shown no more is not shown either.
+TEST_F(EditorComparison, FiguresAreOfWhatIsShown) {
+    comparison_->with = CompareWith::kept_settings;
+    comparison_->as = CompareAs::difference;
+    std::vector<std::shared_ptr<ScenePicture>> held;
+    const auto shows_map = [&] {
+        held.clear();
+        const VkRect2D area{{0, 0}, {width, height}};
+        static_cast<void>(comparison_->backdrops(scene_->picture(), area, held));
+        const auto found = comparison_->difference();
+        return found != nullptr && held.size() == 1 && held[0] == found->map;
+    };
+    ASSERT_TRUE(follow_until(shows_map));
+    document_->begin("Set");
+    ASSERT_TRUE(document_->set_setting("bounces", "1"));
+    document_->commit();
+    // From the edit until both are drawn anew.
+    const std::uint64_t revision = document_->revision();
+    ASSERT_TRUE(follow_until([&] {
+        const bool is_new = scene_->picture()->revision == revision && comparison_->other() != nullptr &&
+                            comparison_->other()->revision == revision;
+        EXPECT_TRUE(is_new || !shows_map());
+        return is_new && shows_map();
+    }));
+    EXPECT_EQ(comparison_->difference()->of, scene_->picture()->pixels);
+
+    // While it plays, and where the reference has no such picture.
+    ViewRequest other = view(*document_);
+    other.playing = other.paused = true;
+    comparison_->follow(
+        {}, [&] { return ChangeCollector::everything(document_); }, other);
+    EXPECT_FALSE(shows_map());
+    EXPECT_EQ(comparison_->why_without_difference(), "No figures while the scene plays");
+    other.playing = other.paused = false;
+    other.view = shared::view_albedo;
+    comparison_->with = CompareWith::reference;
+    comparison_->follow(
+        {}, [&] { return ChangeCollector::everything(document_); }, other);
+    EXPECT_NE(comparison_->why_without_difference(), "");
+    comparison_->with = CompareWith::kept_settings;
+    EXPECT_EQ(comparison_->why_without_difference(), "") << "both have debug views";
+}
+
+// The document is as it was, but not what is seen of it: pictures from before are of another scene.
+TEST_F(EditorComparison, FiguresAreOfWhatIsNotHidden) {
+    comparison_->with = CompareWith::reference;
+    ASSERT_TRUE(follow_until([&] { return comparison_->difference() != nullptr; }));
+    const Entity block = document_->find("short block");
+    ASSERT_TRUE(document_->exists(block));
+    hidden_ = {block};
+    // The scene hears of it later than the comparison, as a long frame would have it.
+    std::optional<SceneChange> change;
+    filter_.apply(document_, hidden_, {}, change);
+    ASSERT_TRUE(change);
+    comparison_->follow(
+        change, [&] { return everything(); }, view(*document_));
+    for (int i = 0; i < 100; ++i) {
+        comparison_->follow(
+            {}, [&] { return everything(); }, view(*document_));
+        ASSERT_EQ(comparison_->difference(), nullptr) << "of the scene with the block";
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_GT(comparison_->samples(), 0u);
+    scene_->change(*change);
+    ASSERT_TRUE(follow_until([&] { return comparison_->difference() != nullptr; }));
+    EXPECT_EQ(scene_->picture()->hiding, filter_.count());
+}
+
+// A hand goes before paths.
+TEST_F(EditorComparison, TheReferenceWaitsWhileAHandMoves) {
+    comparison_->with = CompareWith::reference;
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() >= 4; }));
+    comparison_->note_hand();
+    std::this_thread::sleep_for(std::chrono::milliseconds(100)); // what was being traced ends
+    comparison_->note_hand();
+    const std::uint32_t before = comparison_->samples();
+    for (int i = 0; i < 20; ++i) {
+        comparison_->note_hand();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    EXPECT_EQ(comparison_->samples(), before);
+    ASSERT_TRUE(follow_until([&] { return comparison_->samples() > before; }));
 }
 
 TEST_F(EditorComparison, HeatGrowsWithTheError) {

@@ -96,7 +96,7 @@ class EditorHidden : public EditorComponents {
 protected:
     void tell() {
         std::optional<SceneChange> change = collector_.collect(document_);
-        filter_.apply(document_, hidden_, change);
+        filter_.apply(document_, hidden_, {}, change);
         if (change)
             copy_->apply(*change);
     }
@@ -154,7 +154,7 @@ TEST_F(EditorHidden, IsToldWhereItIsAndNothingElse) {
 
     // What begins anew knows, too; and what is gone hides nothing.
     SceneChange everything = ChangeCollector::everything(document_);
-    HiddenFilter::hide(hidden_, everything);
+    HiddenFilter::hide(hidden_, {}, everything);
     copy_ = std::make_unique<PlainCopy>();
     copy_->apply(everything);
     expect_shown(all_[0], true);

@@ -2,6 +2,7 @@
 #include "tests/editor/random_edits.h"
 
 #include "engine/core/file.h"
+#include "engine/scene/summer_sky.h"
 #include "tests/support/folder.h"
 #include "tests/support/test_size.h"
 
@@ -301,6 +302,33 @@ TEST_F(EditorDocument, UndoAndRedoRestoreEveryByte) {
     }
 }
 
+// However much is selected.
+TEST_F(EditorDocument, EntriesShareASelectionThatStays) {
+    Document document;
+    std::vector<Entity> all;
+    document.begin("Add");
+    for (int i = 0; i < 10'000; ++i) {
+        auto named = std::make_shared<scene::Name>();
+        named->name = "entity " + std::to_string(i);
+        all.push_back(document.create());
+        document.set(all.back(), pool_of<scene::Name>(document), std::move(named));
+    }
+    document.commit();
+    const std::size_t before = document.history().overhead();
+    document.select(all);
+    ASSERT_EQ(document.selection().size(), all.size());
+    constexpr std::size_t edits = 100;
+    for (std::size_t i = 0; i < edits; ++i) {
+        document.begin("Set");
+        ASSERT_TRUE(document.set_setting("lights", std::to_string(100 + i)));
+        ASSERT_TRUE(document.commit());
+    }
+    EXPECT_LT(document.history().overhead() - before, edits * 2048 + all.size() * sizeof(Entity));
+    document.select({});
+    ASSERT_TRUE(document.undo());
+    EXPECT_EQ(document.selection(), all);
+}
+
 std::int64_t heap_in_use() {
     const struct mallinfo2 heap = mallinfo2();
     return std::int64_t(heap.uordblks + heap.hblkhd);
@@ -328,6 +356,7 @@ std::int64_t bytes_of_deleted(Document& document) {
 // All that edits leave behind once they are undone: entries with their values, handles, meshes of lamps.
 TEST_F(EditorDocument, AnEditTakesTwoKilobytesAtMost) {
     constexpr int edits_wanted = 10000;
+    const auto sky = scene::summer_sky(); // which edits name, and which is there but once
     for (const std::uint32_t seed : {3u, 4u}) {
         Document document;
         fill(document);

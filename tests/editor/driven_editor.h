@@ -46,7 +46,7 @@ public:
         answers_ = true;
         wait_until([&] { return find("viewport/picture").has_value(); });
         window_ = display_.window("Sunfleck");
-        run("xdotool windowfocus --sync " + window_);
+        display_.focus(window_);
     }
 
     // As they are once all events have been shown.
@@ -189,6 +189,7 @@ public:
     pid_t process() const { return editor_; }
     // As xdotool names it.
     const std::string& window() const { return window_; }
+    bool focus() const { return display_.focus(window_); }
     // It has not ended by itself.
     bool runs() const {
         siginfo_t info{};
@@ -197,13 +198,12 @@ public:
     }
 
 private:
-    // In builds with sanitizers the driver stays loaded to the end, so that leak reports can tell its leaks from ours
-    // by module (tests/leak_suppressions.txt). Not the validation layer: its functions have the loader's names.
+    // In builds with sanitizers driver and validation layer stay loaded to the end (tests/support/pinned_driver.cpp).
     static std::vector<std::string> environment() {
         if (!sanitized())
             return {};
         const char* const options = std::getenv("ASAN_OPTIONS");
-        return {"env", "LD_PRELOAD=libvulkan_lvp.so",
+        return {"env", "LD_PRELOAD=" SUNFLECK_PINNED_DRIVER,
                 "ASAN_OPTIONS=verify_asan_link_order=0:" + std::string(options == nullptr ? "" : options)};
     }
     nlohmann::json report() const {

@@ -173,9 +173,10 @@ void EditorWindowFirst::undo_redo_and_save() {
     EXPECT_FALSE(editor->find("hierarchy/ceiling lights").has_value());
     editor->run("xdotool key --delay 40" + std::regex_replace(all, std::regex("ctrl.z"), "ctrl+shift+z"));
     EXPECT_TRUE(editor->appears("hierarchy/ceiling lights"));
-    editor->key("ctrl+shift+s");
-    ASSERT_NO_FATAL_FAILURE(name_file(editor->file("mine.scene.json")));
-    ASSERT_TRUE(editor->wait_for("menu/title", "mine.scene.json")) << editor->value("status/message");
+    editor->key("ctrl+s");
+    ASSERT_TRUE(editor->wait_for("dialog/name", "room 2.scene.json"));
+    editor->key("Return"); // what is proposed
+    ASSERT_TRUE(editor->wait_for("menu/title", "room 2.scene.json")) << editor->value("status/message");
     ASSERT_TRUE(editor->settles());
     icon_ = editor->find("viewport/icon point light");
     ASSERT_TRUE(icon_.has_value());
@@ -185,7 +186,7 @@ void EditorWindowFirst::undo_redo_and_save() {
 
 // The tab in front, recent files, the scene, and the camera: the lamp is seen where it was.
 void EditorWindowFirst::open_again() {
-    editor->start({editor->file("mine.scene.json")});
+    editor->start({editor->file("room 2.scene.json")});
     EXPECT_TRUE(editor->appears("hierarchy/ceiling lights"));
     EXPECT_TRUE(editor->wait_for("tab Compare", "open"));
     EXPECT_TRUE(editor->wait_for("tab Lighting", "open"));
@@ -195,7 +196,7 @@ void EditorWindowFirst::open_again() {
     EXPECT_NEAR(icon->x, icon_->x, 1.0);
     EXPECT_NEAR(icon->y, icon_->y, 1.0);
     const auto settings = nlohmann::json::parse(read_file(folder / "settings.json").value());
-    EXPECT_NE(settings.dump().find("mine.scene.json"), std::string::npos);
+    EXPECT_NE(settings.dump().find("room 2.scene.json"), std::string::npos);
     const auto report = editor->end();
     EXPECT_EQ(report["validation_messages"], 0);
 }

@@ -27,7 +27,7 @@ protected:
             for (;;) {
                 edits.once();
                 const auto change = collector.collect(document);
-                if (!change || change->updates.empty())
+                if (!change || change->is_empty())
                     continue;
                 writer.note(change->updates, change->settings, change->meshes);
                 contents.push_back(content(*document));

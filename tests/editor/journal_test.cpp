@@ -179,7 +179,7 @@ TEST_F(EditorJournal, ALineThatWasCutOffIsLeftOut) {
     while (ends.size() < 12) {
         edits.once();
         const auto change = collector.collect(document);
-        if (!change || change->updates.empty())
+        if (!change || change->is_empty())
             continue;
         writer.note(change->updates, change->settings, change->meshes);
         ASSERT_TRUE(writer.append(1, document->revision(), "edit"));

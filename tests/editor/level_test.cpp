@@ -3,6 +3,8 @@
 #include "engine/core/file.h"
 #include "engine/scene/simulation_components.h"
 #include "engine/simulation/input_recording.h"
+#include "game_demo/game/game_world.h"
+#include "game_demo/game/turning.h"
 #include "test_places.h"
 #include "tests/support/folder.h"
 #include "tests/support/run_tool.h"
@@ -109,6 +111,36 @@ protected:
         return text ? nlohmann::json::parse(*text) : nlohmann::json();
     }
 
+    // A saved level, played here.
+    struct Game {
+        explicit Game(const fs::path& level) {
+            scene::register_components(registry);
+            EXPECT_TRUE(io::load_scene(level, registry, meshes, textures, {}));
+            world = demo::GameWorld::create(registry, meshes, &textures).value();
+        }
+        void run(std::uint32_t steps, const simulation::StepInput& input = {}) {
+            for (std::uint32_t i = 0; i < steps; ++i)
+                EXPECT_TRUE(world->step(input));
+        }
+        void look_at(vec3 target) {
+            float off = 1.0f;
+            for (int i = 0; i < 300 && off > 0.01f; ++i)
+                run(1, demo::turn_to(person(), target, off));
+        }
+        const simulation::Character& person() const { return world->simulation().player(); }
+        vec3 at(const char* name) {
+            return vec3(scene::world_matrix(registry, scene::find_by_name(registry, name))[3]);
+        }
+        const scene::SensorReading& reading(const char* sensor) {
+            return registry.get<scene::SensorReading>(scene::find_by_name(registry, sensor));
+        }
+
+        ecs::Registry registry;
+        scene::MeshStore meshes;
+        scene::TextureStore textures;
+        std::unique_ptr<demo::GameWorld> world;
+    };
+
     const tests::Folder folder_{"editor_level"};
     Document document_;
 };
@@ -123,6 +155,64 @@ TEST_F(EditorLevel, OfSensorsDoorsPanelsAndAnEndIsPlayed) {
     EXPECT_EQ(all.value("finished", false), true) << all.dump(2);
     // Reflected light is what opens the door.
     EXPECT_EQ(played(level, "direct").value("finished", true), false);
+}
+
+// What Add has beside doors and panels does what its name says.
+TEST_F(EditorLevel, ALiftABlockAShutterAndAGaugeWork) {
+    build_room();
+    add("Player start", "start", {-1.5f, 0, 2});
+    add("Lift", "lift", {2, 1.6f, 2});
+    add("Block", "block", {-1.5f, 0.4f, 0.5f});
+    add("Shutter", "shutter", {0.2f, 1.2f, 3.0f});
+    add("Gauge", "gauge", {-3, 0.5f, 3}, vec3(1.0f), glm::angleAxis(quarter_turn, vec3(0, 1, 0)));
+    add("Point light", "lamp", {0, 2.5f, 1});
+    const Entity eye =
+        add("Light sensor", "eye", {2.9f, 1.2f, 0}, vec3(1.0f), glm::angleAxis(-quarter_turn, vec3(0, 1, 0)));
+    edit<scene::LightSensor>(eye, "shows", "gauge marker");
+    const fs::path level = folder_ / "level.scene.json";
+    ASSERT_TRUE(document_.save(level));
+    Game game(level);
+    EXPECT_NEAR(game.at("lift").y, 0.1f, 0.01f) << "it begins at the bottom";
+    const vec3 block = game.at("block"), marker = game.at("gauge marker"), panel = game.at("shutter panel");
+    EXPECT_NEAR(panel.x, 0.7f, 0.01f);
+    game.run(90, {100, 0, 0, 0, 0});
+    EXPECT_LT(game.at("block").z, block.z - 0.3f) << "pushed";
+    EXPECT_GT(game.at("gauge marker").y, marker.y + 0.1f) << "the eye gets light";
+    game.run(330);
+    EXPECT_NEAR(game.at("lift").y, 3.1f, 0.01f) << "after half its period";
+    game.world->simulation().place_player({0.7f, 0.0f, 1.8f}, {0, 0, 1});
+    game.run(5);
+    game.look_at(panel);
+    game.run(1, {0, 0, 0, 0, simulation::button_use});
+    game.run(360);
+    EXPECT_NEAR(glm::length(game.at("shutter panel") - vec3(0.2f, 1.2f, 3.0f)), 0.5f, 0.01f) << "about its hinge";
+    EXPECT_GT(glm::length(game.at("shutter panel") - panel), 0.7f) << "it stands open";
+}
+
+// Its own parts cast no shadow: the eye reads more, the nearer the lantern comes.
+TEST_F(EditorLevel, ALanternIsTakenCarriedAndLightsAnEye) {
+    build_room();
+    add("Player start", "start", {0, 0, 2.5f});
+    add("Lantern", "lantern", {0, 0, 1.2f});
+    const quat east = glm::angleAxis(quarter_turn, vec3(0, 1, 0)); // maps +Z to +X
+    const Entity eye = add("Light sensor", "eye", {-2.9f, 1.2f, -0.5f}, vec3(1.0f), east);
+    edit<scene::LightSensor>(eye, "threshold", "9,9,9");
+    const fs::path level = folder_ / "level.scene.json";
+    ASSERT_TRUE(document_.save(level));
+    Game game(level);
+    game.run(30);
+    const float before = game.reading("eye").irradiance.x;
+    EXPECT_GT(before, 0.0f);
+    game.look_at({0, 0.15f, 1.2f});
+    game.run(1, {0, 0, 0, 0, simulation::button_use});
+    ASSERT_TRUE(game.world->simulation().carries_lantern());
+    game.look_at({-2.0f, 1.4f, -0.5f});
+    const vec3 start = game.person().capsule().foot;
+    game.run(60, {100, 0, 0, 0, 0});
+    EXPECT_NEAR(glm::length(game.person().capsule().foot - start), 2.2f, 0.3f) << "a second at 2.4 m/s";
+    EXPECT_NEAR(game.person().capsule().foot.y, 0.0f, 0.03f);
+    game.run(60);
+    EXPECT_GT(game.reading("eye").irradiance.x, 2.0f * before);
 }
 
 } // namespace

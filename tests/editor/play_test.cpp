@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 namespace sunfleck::editor {
@@ -113,6 +114,24 @@ TEST_F(EditorPlay, BodiesFallAreMetAndStandAgainAsEdited) {
     EXPECT_EQ(bits(), first);
     twice.end(copy.registry);
     EXPECT_EQ(bits(), edited);
+}
+
+// What physics gives back is as large, but not always the same.
+TEST_F(EditorPlay, SignsOfZerosComeBack) {
+    scene::Transform transform = document->registry().get<scene::Transform>(other);
+    transform.position = vec3(-0.0f, 5.0f, -0.0f);
+    transform.rotation = quat(1.0f, -0.0f, 0.0f, -0.0f);
+    document->begin("Move");
+    set(other, transform);
+    document->commit();
+    PlainCopy moved;
+    moved.apply(ChangeCollector::everything(document));
+    ScenePlay play(moved.registry, moved.meshes);
+    play.step(moved.registry);
+    play.end(moved.registry);
+    const auto& now = moved.registry.get<scene::Transform>(other);
+    EXPECT_TRUE(std::signbit(now.position.x) && std::signbit(now.position.z));
+    EXPECT_TRUE(std::signbit(now.rotation.x) && !std::signbit(now.rotation.y) && std::signbit(now.rotation.z));
 }
 
 // An edit of a body puts it where the edit says, and there it stands when play ends; all others go on.

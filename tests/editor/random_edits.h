@@ -81,9 +81,9 @@ private:
     std::string change_components() {
         std::vector<ecs::PoolBase*> pools = document_.registry().described_pools();
         ecs::PoolBase& pool = *pools[below(std::uint32_t(pools.size()))];
-        // Names stay, parents are the tree's, and these two need files.
+        // Names stay, parents are the tree's, and geometry needs files.
         if (pool.description()->name == "Name" || pool.description()->name == "Parent" ||
-            pool.description()->name == "MeshInstance" || pool.description()->name == "EnvironmentMap")
+            pool.description()->name == "MeshInstance")
             return "nothing";
         if (below(2) == 0)
             editor::add_component(document_, some(), pool);
@@ -113,8 +113,8 @@ private:
         }
         case FieldKind::quaternion:
             return below(2) == 0 ? "0,0,0,1" : "0.5,-0.5,0.5,0.5";
-        case FieldKind::text:
-            return random_name();
+        case FieldKind::text: // pictures of the sky: this one is made by code, the others are not there
+            return field.name == "file" && below(2) == 0 ? "summer_sky" : random_name();
         case FieldKind::entity:
             return "";
         }

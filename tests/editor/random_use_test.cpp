@@ -166,10 +166,12 @@ protected:
     }
     void open_fresh_scene() const {
         const fs::path scenes = fs::path(SUNFLECK_TOOL).parent_path() / "../scenes";
-        fs::copy_file(scenes / "cornell.scene.json", folder / "fresh.scene.json");
-        fs::copy_file(scenes / "cornell.glb", folder / "cornell.glb");
+        const fs::path place = folder / "untouched"; // what was saved so far may have the same names
+        fs::create_directories(place);
+        fs::copy_file(scenes / "cornell.scene.json", place / "fresh.scene.json");
+        fs::copy_file(scenes / "cornell.glb", place / "cornell.glb");
         menu("File", "Open...");
-        name_file(editor->file("fresh.scene.json"));
+        name_file((place / "fresh.scene.json").string());
         ASSERT_TRUE(editor->wait_until([&] {
             return editor->value("menu/title") == "fresh.scene.json" || editor->find("dialog/Discard").has_value();
         })) << message();

@@ -2,6 +2,7 @@
 #include "editor/document/reload.h"
 
 #include "engine/core/file.h"
+#include "engine/scene/animation.h"
 #include "tests/editor/random_edits.h"
 #include "tests/support/folder.h"
 #include "tests/support/test_size.h"
@@ -110,6 +111,50 @@ TEST_F(EditorReload, EditsStayWithTheNodesOfTheSameName) {
     const ReloadReport again = reload(*ours, content, *open());
     EXPECT_EQ(again.changed + again.added + again.removed, 0u);
     EXPECT_EQ(ours->history().position(), edits);
+}
+
+// An exported animation is taken over, and is no edit of anybody here.
+TEST_F(EditorReload, AnimationsThatWereExportedAgainAreTakenOver) {
+    const std::unique_ptr<Document> ours = open(), now = open();
+    FileContent content = FileContent::of(*ours);
+    const auto animate = [](Document& document, float duration) {
+        scene::Animation animation;
+        animation.curves.push_back({scene::AnimationTarget::position,
+                                    scene::AnimationInterpolation::linear,
+                                    {0.0f, duration},
+                                    {vec4(0.0f), vec4(1.0f)}});
+        animation.duration = duration;
+        document.registry().emplace_or_replace<scene::Animation>(document.find("box"), std::move(animation));
+    };
+    animate(*now, 2.0f);
+    EXPECT_EQ(reload(*ours, content, *now).changed, 1u);
+    EXPECT_EQ(get<scene::Animation>(*ours, "box").duration, 2.0f);
+    EXPECT_EQ(reload(*ours, content, *now).changed, 0u);
+    animate(*now, 3.0f);
+    EXPECT_EQ(reload(*ours, content, *now).changed, 1u);
+    EXPECT_EQ(get<scene::Animation>(*ours, "box").duration, 3.0f);
+    ASSERT_TRUE(ours->undo());
+    EXPECT_EQ(get<scene::Animation>(*ours, "box").duration, 2.0f);
+}
+
+TEST_F(EditorReload, LightingSettingsAreMergedOneByOne) {
+    const std::unique_ptr<Document> ours = open(), now = open();
+    FileContent content = FileContent::of(*ours);
+    const auto set = [](Document& document, const char* name, const char* value) {
+        document.begin("Set");
+        ASSERT_TRUE(document.set_setting(name, value));
+        document.commit();
+    };
+    set(*ours, "lights", "77");
+    set(*now, "lights", "88");
+    set(*now, "bounces", "2");
+    const ReloadReport report = reload(*ours, content, *now);
+    EXPECT_EQ(report.settings, 1u);
+    EXPECT_EQ(report.text("room.glb"), "Reloaded room.glb: 0 changed, 0 new, 0 gone, 1 setting");
+    EXPECT_EQ(ours->settings().get("lights"), "77") << "the edit stays";
+    EXPECT_EQ(ours->settings().get("bounces"), "2");
+    ASSERT_TRUE(ours->undo());
+    EXPECT_EQ(ours->settings().get("bounces"), open()->settings().get("bounces"));
 }
 
 // Whatever was edited here: a file that has not changed changes nothing.

@@ -1,5 +1,6 @@
 // What the viewport shows: the picture that `sunfleck render` draws of the saved file, and, after edits that light
 // follows behind the frames, that of a start with the edited scene.
+#include "editor/document/picking.h"
 #include "engine/core/file.h"
 #include "engine/io/image.h"
 #include "engine/scene/simulation_components.h"
@@ -67,6 +68,16 @@ TEST_F(EditorScene, PlayLeavesThePictureAsItWas) {
     });
     ASSERT_NE(fallen, nullptr);
     EXPECT_GT(differing(*fallen->pixels, *before->pixels), width * height / 100u) << "it has fallen";
+    // A click meets it where the picture shows it.
+    EXPECT_EQ(before->played, nullptr);
+    ASSERT_NE(fallen->played, nullptr);
+    const mat4* const place = fallen->played->find(body);
+    ASSERT_NE(place, nullptr);
+    // On the block, 0.3 m below: a ray that meets its lower half passes under where it was edited to be.
+    const vec3 in_front = vec3((*place)[3]) + vec3(0.0f, -0.3f, 3.0f), ahead(0.0f, 0.0f, -1.0f);
+    EXPECT_LT(in_front.y, 3.55f);
+    EXPECT_EQ(pick(*document, in_front, ahead, {}, fallen->played.get()).entity, body);
+    EXPECT_NE(pick(*document, in_front, ahead).entity, body);
     request.paused = false; // in real time
     scene.show(request);
     ASSERT_NE(wait_for(scene, [](const ScenePicture& picture) { return picture.step > 60; }), nullptr);
@@ -248,6 +259,32 @@ TEST_F(EditorScene, LightFollowsAHandThatRests) {
     const Picture fresh = from_nothing(document);
     ASSERT_NE(fresh, nullptr);
     EXPECT_EQ(differing(*resting->pixels, *fresh->pixels), 0u);
+}
+
+// More was added than the copy has room for: it asks for everything, and shows what was added.
+TEST_F(EditorScene, ADocumentThatGrowsIsFollowed) {
+    SceneThread scene(tests::device(), [] {});
+    ChangeCollector collector;
+    const std::shared_ptr<Document> document = show_room(scene, collector);
+    ASSERT_NE(document, nullptr);
+    EXPECT_FALSE(scene.wants_everything());
+    const std::uint32_t before = document->handle_count();
+    while (document->create().index < 3 * before + 8192) {
+    }
+    const Entity block = document->find("short block");
+    ASSERT_FALSE(duplicate(*document, {block}).empty());
+    remove(*document, {block});
+    scene.change(*collector.collect(document));
+    for (const auto end = Clock::now() + std::chrono::seconds(60); !scene.wants_everything();) {
+        ASSERT_LT(Clock::now(), end) << "it does not ask";
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    EXPECT_EQ(scene.status().error, "");
+    scene.change(ChangeCollector::everything(document));
+    const Picture followed = settled(scene, *document), fresh = from_nothing(document);
+    ASSERT_TRUE(followed && fresh);
+    EXPECT_EQ(differing(*followed->pixels, *fresh->pixels), 0u);
+    EXPECT_FALSE(scene.wants_everything());
 }
 
 // A copy of the sources is edited: a good change shows, a bad one is said and shows nothing.

@@ -2,6 +2,7 @@
 #include "tests/editor/panel_fixture.h"
 
 #include "engine/core/file.h"
+#include "engine/scene/simulation_components.h"
 
 namespace sunfleck::editor {
 namespace {
@@ -30,6 +31,38 @@ protected:
         });
         frame();
     }
+    void reload() {
+        session_.reload_file();
+        for (int tries = 0; tries < 3000 && !session_.can_reload(); ++tries) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            session_.take_news();
+        }
+        EXPECT_TRUE(session_.can_reload());
+    }
+    // A field of the material.
+    static void edit(Document& document, const std::string& entity, const std::string& name, const std::string& value) {
+        const Field* const found = material_field(document, entity, name);
+        ASSERT_NE(found, nullptr);
+        ASSERT_TRUE(edit_field(document, {document.find(entity)}, pool_of<scene::Material>(document), *found, value));
+    }
+    void edit(const std::string& entity, const std::string& name, const std::string& value) {
+        edit(document(), entity, name, value);
+    }
+    std::string field(const std::string& entity, const std::string& name) {
+        const Field* const found = material_field(document(), entity, name);
+        return found == nullptr
+                   ? "(not there)"
+                   : field_to_text(*found, document().registry().try_get<scene::Material>(document().find(entity)));
+    }
+    static const Field* material_field(Document& document, const std::string& entity, const std::string& name) {
+        const Entity known = document.find(entity);
+        if (known.is_null() || !document.registry().has<scene::Material>(known))
+            return nullptr;
+        for (const Field& one : scene::Material::description().fields)
+            if (one.name == name)
+                return &one;
+        return nullptr;
+    }
     int taken_ = 0;
 };
 
@@ -43,6 +76,26 @@ TEST_F(EditorSession, WhatLoadsTakesThePlaceOfWhatNobodyHasEdited) {
     EXPECT_FALSE(finish_loading());
     EXPECT_EQ(document().path(), room) << "what cannot be opened leaves the scene";
     EXPECT_NE(newest_message().find("nothing.scene.json"), std::string::npos) << newest_message();
+}
+
+// A door's name that is mistyped would open nothing, and nobody would know why.
+TEST_F(EditorSession, ASaveSaysWhichNamesMeanNothing) {
+    const auto messages = [&] {
+        std::string all;
+        for (const Message& message : session_.messages.all())
+            all += message.text + "\n";
+        return all;
+    };
+    add("Sliding door");
+    const Entity eye = add("Light sensor");
+    const auto& opens = *scene::LightSensor::description().find("opens");
+    ASSERT_TRUE(edit_field(document(), {eye}, pool_of<scene::LightSensor>(document()), opens, " sliding door "));
+    ASSERT_TRUE(session_.save(folder_ / "level.scene.json"));
+    EXPECT_EQ(messages().find("names"), std::string::npos) << messages();
+    ASSERT_TRUE(edit_field(document(), {eye}, pool_of<scene::LightSensor>(document()), opens, "sliding dor"));
+    ASSERT_TRUE(session_.save(folder_ / "level.scene.json"));
+    EXPECT_NE(messages().find("'sliding dor', which 'light sensor' names (opens), does not exist"), std::string::npos)
+        << messages();
 }
 
 TEST_F(EditorSession, EditsMadeWhileAFileLoadsAreAskedAbout) {
@@ -143,6 +196,124 @@ TEST_F(EditorSession, SaveAsReplacesAnotherSceneWhenAskedTwice) {
     add("Ball");
     EXPECT_TRUE(session_.save(folder_ / "../" / folder_.path.filename() / "room.scene.json"));
     EXPECT_FALSE(document().unsaved());
+}
+
+// The scene was made of a glTF file and saved; then others write both files.
+TEST_F(EditorSession, ReloadTakesOverWhatOthersWroteIntoEitherFile) {
+    const auto first = save_room("first.scene.json"), room = folder_ / "room.scene.json";
+    session_.open(folder_ / "first.glb");
+    ASSERT_TRUE(finish_loading());
+    edit("box", "roughness", "0.25");
+    ASSERT_TRUE(session_.save(room));
+
+    const auto by_others = [](const std::filesystem::path& file, const std::string& entity, const std::string& field,
+                              const std::string& value) {
+        const bool is_export = file.filename() == "first.scene.json";
+        auto theirs = Document::open(file);
+        ASSERT_TRUE(theirs);
+        edit(**theirs, entity, field, value);
+        (*theirs)->begin("Set");
+        EXPECT_TRUE((*theirs)->set_setting("bounces", "2"));
+        (*theirs)->commit();
+        if (is_export) // or the geometry would get another name
+            for (const char* written : {"first.scene.json", "first.glb"})
+                std::filesystem::remove(file.parent_path() / written);
+        ASSERT_TRUE((*theirs)->save(file));
+    };
+    by_others(room, "ball", "roughness", "0.125");
+    session_.take_news();
+    EXPECT_NE(newest_message().find("room.scene.json' was changed"), std::string::npos) << newest_message();
+    by_others(first, "floor", "roughness", "0.375");
+    session_.take_news();
+    EXPECT_NE(newest_message().find("first.glb' was changed"), std::string::npos) << newest_message();
+    const std::string theirs = read_file(room).value();
+    EXPECT_FALSE(session_.save(room)) << "what others wrote is not replaced unasked";
+
+    reload();
+    EXPECT_EQ(field("box", "roughness"), "0.25") << "edits stay";
+    EXPECT_EQ(field("ball", "roughness"), "0.125");
+    EXPECT_EQ(field("floor", "roughness"), "0.375");
+    EXPECT_EQ(document().settings().get("bounces"), "2");
+    EXPECT_TRUE(document().unsaved());
+    EXPECT_EQ(read_file(room).value(), theirs);
+
+    // Again, of one alone: the other is as it was.
+    by_others(room, "ball", "roughness", "0.5");
+    session_.take_news();
+    reload();
+    EXPECT_EQ(field("ball", "roughness"), "0.5");
+    by_others(first, "floor", "roughness", "0.75");
+    EXPECT_FALSE(document().file_changed());
+    reload();
+    EXPECT_EQ(field("floor", "roughness"), "0.75");
+    EXPECT_TRUE(session_.save(room)) << newest_message();
+}
+
+// Each time before it was undone.
+TEST_F(EditorSession, WhatReloadTookOverAndWasUndoneCanBeTakenOverAgain) {
+    const auto room = save_room("room.scene.json");
+    session_.open(room);
+    ASSERT_TRUE(finish_loading());
+    auto theirs = Document::open(room);
+    ASSERT_TRUE(theirs);
+    edit(**theirs, "ball", "roughness", "0.125");
+    ASSERT_TRUE((*theirs)->save(room));
+    const std::string before = field("ball", "roughness");
+    for (int i = 0; i < 3; ++i) {
+        reload();
+        EXPECT_EQ(field("ball", "roughness"), "0.125");
+        ASSERT_TRUE(document().undo());
+        EXPECT_EQ(field("ball", "roughness"), before);
+        edit("box", "roughness", i == 0 ? "0.5" : i == 1 ? "0.25" : "0.125"); // nothing is left to be redone
+    }
+    reload();
+    edit("ball", "roughness", "0.75");
+    reload();
+    EXPECT_EQ(field("ball", "roughness"), "0.75") << "the file is as it was read";
+}
+
+// Of a scene that came from a glTF file the geometry's name is taken; Enter takes the name that is proposed.
+TEST_F(EditorSession, TheNameThatIsProposedIsFree) {
+    save_room("room.scene.json");
+    std::filesystem::remove(folder_ / "room.scene.json");
+    const std::string geometry = read_file(folder_ / "room.glb").value();
+    for (const char* name : {"room 2.scene.json", "room 3.scene.json"}) {
+        session_.open(folder_ / "room.glb");
+        ASSERT_TRUE(finish_loading());
+        add("Box");
+        ASSERT_NO_FATAL_FAILURE(key("Ctrl+S"));
+        frames(3);
+        EXPECT_EQ(value("dialog/name"), name);
+        ASSERT_NO_FATAL_FAILURE(key("Enter"));
+        frames(2);
+        EXPECT_EQ(session_.dialog, Dialog::none) << value("dialog/problem");
+        EXPECT_EQ(document().path(), folder_ / name);
+        EXPECT_FALSE(document().unsaved());
+    }
+    EXPECT_EQ(read_file(folder_ / "room.glb").value(), geometry);
+    ASSERT_NO_FATAL_FAILURE(run("File/Save as..."));
+    frames(3);
+    EXPECT_EQ(value("dialog/name"), "room 3.scene.json") << "its own";
+}
+
+TEST_F(EditorSession, WhatLoadsIsNamedAndCanBeLeft) {
+    const Entity box = add("Box");
+    session_.opening = std::make_unique<Opening>(
+        folder_ / "palace.glb",
+        Opening::Load([](const std::function<bool(float)>& progress) -> Result<std::unique_ptr<Document>> {
+            while (progress(0.5f))
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            return Error{"cancelled"};
+        }),
+        [] {});
+    frames(3);
+    EXPECT_EQ(value("status/loading"), "Loading palace.glb");
+    ASSERT_NO_FATAL_FAILURE(click("status/Cancel"));
+    EXPECT_EQ(session_.opening, nullptr);
+    frames(2);
+    EXPECT_EQ(find("status/loading"), nullptr);
+    EXPECT_EQ(newest_message(), "'palace.glb' was not opened");
+    EXPECT_TRUE(document().exists(box));
 }
 
 TEST_F(EditorSession, RecentFilesAreListedOnce) {

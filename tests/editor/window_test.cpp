@@ -259,6 +259,29 @@ TEST_F(EditorWindow, TimePassesWhileItRests) {
     editor->end();
 }
 
+// Which tab is in front, and where the camera stands: a run that is killed has kept them, too.
+TEST_F(EditorWindow, WhatIsKeptNeedsNoRegularEnd) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("tab Compare"));
+    const auto kept = [&] {
+        const auto text = read_file(folder / "settings.json");
+        return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json();
+    };
+    EXPECT_TRUE(editor->wait_until([&] {
+        const nlohmann::json now = kept();
+        return now.is_object() && now["layout"].dump().find("\"Compare\"") != std::string::npos;
+    }));
+    const std::string before = kept()["cameras"].dump();
+    ASSERT_TRUE(editor->reach("viewport/picture"));
+    editor->run("xdotool click 4 click 4");
+    EXPECT_TRUE(editor->wait_until([&] { return kept()["cameras"].dump() != before; }));
+    editor->crash();
+    editor->start({small_scene});
+    EXPECT_TRUE(editor->wait_for("tab Compare", "open"));
+    editor->end();
+}
+
 // Of all that techniques register, and of all components.
 std::set<std::string> registered_names() {
     std::set<std::string> names;

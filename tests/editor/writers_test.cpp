@@ -79,7 +79,7 @@ public:
         if (const auto change = collector_.collect(document_))
             recovery_.change(*change);
         const std::uint64_t before = recovery_.writes();
-        recovery_.unsaved("", {"edit"}, std::uint64_t(edits_));
+        recovery_.unsaved(Recovery::Place(""), {"edit"}, std::uint64_t(edits_));
         EXPECT_TRUE(tests::DrivenDisplay::wait_until([&] { return recovery_.writes() > before; }));
     }
     // How many edits a crash now would leave. Of a copy, as the folder itself is held.

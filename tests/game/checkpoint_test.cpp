@@ -149,10 +149,16 @@ TEST(GameCheckpoints, WhatIsNotGoodIsSetAside) {
     expect_older([](const std::string&) { return std::string("\0\1\2", 3); }, "not a saved game");
     expect_older(
         [](std::string text) {
-            const std::string mark = "\"sunfleck_game\": 1";
-            return text.replace(text.find(mark), mark.size(), "\"sunfleck_game\": 2");
+            const std::string mark = "\"sunfleck_game\": 2";
+            return text.replace(text.find(mark), mark.size(), "\"sunfleck_game\": 3");
         },
         "later version");
+    expect_older(
+        [](std::string text) {
+            const std::string mark = "\"sunfleck_game\": 2";
+            return text.replace(text.find(mark), mark.size(), "\"sunfleck_game\": 1");
+        },
+        "earlier version");
     expect_older(
         [](std::string text) {
             const std::string mark = "\"lantern_game\"";

@@ -91,6 +91,25 @@ TEST(Game, DirectLightOpensAtMostOneOfAllDoors) {
     EXPECT_LE(opened.size(), 1u) << testing::PrintToString(opened);
 }
 
+// Where their maker put the entries, there is a floor: a reset leads to just there.
+TEST(Game, EveryRoomIsResetToItsEntry) {
+    Played played;
+    std::vector<ecs::Entity> areas;
+    played.registry.view<scene::GameArea>().each([&](ecs::Entity entity, const scene::GameArea& area) {
+        if (!area.goal)
+            areas.push_back(entity);
+    });
+    EXPECT_EQ(areas.size(), 8u);
+    for (const ecs::Entity area : areas) {
+        const auto& described = played.enter(played.registry.get<scene::Name>(area).name);
+        ASSERT_EQ(played.world->area_entity(), area);
+        played.world->reset_room();
+        EXPECT_EQ(played.world->simulation().player().capsule().foot,
+                  vec3(scene::world_matrix(played.registry, area)[3]) + described.entry)
+            << described.title;
+    }
+}
+
 // As the window does it: the game runs behind the title, and is then put back to its start.
 TEST(Game, ARestartedWorldIsAsAFreshOne) {
     Played fresh, restarted;

@@ -248,6 +248,29 @@ TEST(LightSensors, TraceNoMoreRaysAStepThanTheSettingSays) {
     EXPECT_FALSE(room.sensors->set_settings(none));
 }
 
+// An eye on a lift: it costs no more, and half a second after it has come to rest it reads what a fresh one does.
+TEST(LightSensors, ThatMoveTraceNoMoreRaysThanTheSettingSays) {
+    SensorRoom room;
+    SensorSettings settings;
+    settings.sensor_rays = 700;
+    ASSERT_TRUE(room.sensors->set_settings(settings));
+    room.step();
+    const auto before = room.reading(2);
+    for (std::uint32_t k = 0; k < steps_a_second; ++k) {
+        room.registry.patch<scene::Transform>(room.entities[2], [](scene::Transform& t) { t.position.x -= 0.01f; });
+        room.step();
+        EXPECT_LT(room.sensors->rays(), 1.15 * settings.sensor_rays) << k;
+        EXPECT_GT(room.sensors->rays(), 0u) << k;
+    }
+    room.step(steps_a_second / 2);
+    EXPECT_EQ(room.sensors->pending(), 0u);
+    const float share = room.reading(2).share;
+    EXPECT_GT(std::abs(share - before.share), 0.05f) << "the light is another there";
+    room.sensors = LightSensors::create().value();
+    room.step();
+    EXPECT_NEAR(room.reading(2).share, share, 0.01f);
+}
+
 TEST(LightSensors, OpenAtTheThresholdAndCloseBelowFourFifths) {
     const scene::LightSensor white{vec3(2.0f), 0.0f, "", "", false};
     scene::SensorReading reading;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <utility>
 
 namespace sunfleck::demo {
 namespace {
@@ -23,16 +24,45 @@ struct MenuByKeys : testing::Test {
         unsigned char* pixels = nullptr;
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
-        data.is_game = data.can_resume = true;
+        data.is_game = data.can_resume = data.has_area = data.has_hint = true;
     }
     ~MenuByKeys() override { ImGui::DestroyContext(); }
 
     Decision frame() {
         bool changed = false;
         ImGui::NewFrame();
-        const Decision decision = menu.draw(settings, data, {}, changed);
-        ImGui::EndFrame();
+        const Decision decision = menu.draw(settings, data, input, changed);
+        draw_list();
+        ImGui::Render();
         return decision;
+    }
+    // As a box of choices of the menu has it.
+    void draw_list() {
+        if (opens_list || list_is_open) {
+            ImGui::Begin("box");
+            if (std::exchange(opens_list, false))
+                ImGui::OpenPopup("list");
+            list_is_open = ImGui::BeginPopup("list");
+            if (list_is_open) {
+                ImGui::Selectable("choice");
+                ImGui::EndPopup();
+            }
+            ImGui::End();
+        }
+    }
+    void press_b() {
+        input.gamepad.present = true;
+        for (const bool down_now : {true, false}) {
+            input.gamepad.buttons = down_now ? 2u : 0u;
+            ImGui::GetIO().NavInputs[ImGuiNavInput_Cancel] = down_now ? 1.0f : 0.0f; // as Gui does
+            frame();
+        }
+    }
+    // What the windows of a frame are made of.
+    int vertices() {
+        frame();
+        frame();
+        return ImGui::GetDrawData()->TotalVtxCount;
     }
     Decision press(Key key) {
         ImGui::GetIO().KeysDown[key] = true;
@@ -55,6 +85,8 @@ struct MenuByKeys : testing::Test {
     Menu menu;
     DemoSettings settings;
     OverlayData data;
+    app::InputState input;
+    bool opens_list = false, list_is_open = false;
 };
 
 TEST_F(MenuByKeys, WhatALossWouldFollowIsAskedTwice) {
@@ -86,6 +118,77 @@ TEST_F(MenuByKeys, WhatLosesNothingIsNotAsked) {
     open(Screen::paused);
     select("Restart");
     EXPECT_EQ(press(space), Decision::restart);
+}
+
+TEST_F(MenuByKeys, TheGamepadsBGoesBack) {
+    open(Screen::paused);
+    menu.show(Screen::help);
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::paused);
+    menu.show(Screen::settings);
+    frame();
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::paused);
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::playing);
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::playing) << "there it crouches";
+    open(Screen::title);
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::title);
+}
+
+// A list of choices that is open: B closes it and nothing else.
+TEST_F(MenuByKeys, AnOpenListOfChoicesTakesTheB) {
+    open(Screen::paused);
+    open(Screen::settings);
+    opens_list = true;
+    frame();
+    frame();
+    ASSERT_TRUE(list_is_open);
+    press_b();
+    EXPECT_FALSE(list_is_open);
+    EXPECT_EQ(menu.screen(), Screen::settings);
+    press_b();
+    EXPECT_EQ(menu.screen(), Screen::paused);
+}
+
+// A label stays as long as bounced light is off.
+TEST_F(MenuByKeys, DirectLightAloneIsSaid) {
+    open(Screen::playing);
+    const int with = vertices();
+    data.indirect_light = false;
+    const int without = vertices();
+    EXPECT_GT(without, with + 4 * int(std::string("Direct light only").size()) - 8);
+    data.indirect_light = true;
+    EXPECT_EQ(vertices(), with);
+}
+
+TEST_F(MenuByKeys, TheEndLeadsToTheTitle) {
+    open(Screen::finished);
+    EXPECT_EQ(menu.selected(), "Play once more");
+    select("Title");
+    EXPECT_EQ(press(space), Decision::title);
+}
+
+// Where there is no hint, or no room to reset, the entry would do nothing.
+TEST_F(MenuByKeys, WhatThePlaceDoesNotHaveIsNotOffered) {
+    const auto offers = [&](const std::string& name) {
+        open(Screen::paused);
+        for (int i = 0; i < 20; ++i)
+            press(up);
+        for (int i = 0; i < 20 && menu.selected() != name; ++i)
+            press(down);
+        return menu.selected() == name;
+    };
+    EXPECT_TRUE(offers("Hint"));
+    EXPECT_TRUE(offers("Reset this room"));
+    data.has_hint = false;
+    EXPECT_FALSE(offers("Hint"));
+    EXPECT_TRUE(offers("Reset this room"));
+    data.has_area = false;
+    EXPECT_FALSE(offers("Reset this room"));
+    EXPECT_TRUE(offers("Last checkpoint"));
 }
 
 } // namespace

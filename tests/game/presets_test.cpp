@@ -99,6 +99,35 @@ TEST_F(CommandLine, TheGameIsTheSameWithEveryPreset) {
     }
 }
 
+// From the title to the end with pictures, too; some two minutes, and so in the long size alone.
+TEST_F(CommandLine, TheGamesWholeSolutionIsTheSameInSoftware) {
+    if (!tests::long_size())
+        GTEST_SKIP() << "of ./run bench game";
+    constexpr std::size_t steps_per_frame = 8;
+    const std::string demo = "cd " + folder.string() + " && " SUNFLECK_DEMO " --headless --scene lantern_game ";
+    const Outcome solved = shell(demo + "--simulate -o solved --record solution.txt");
+    ASSERT_EQ(solved.status, 0) << solved.output;
+    auto solution = simulation::read_recording(folder / "solution.txt");
+    ASSERT_TRUE(solution) << solution.error().message;
+    solution->resize((solution->size() + steps_per_frame - 1) / steps_per_frame * steps_per_frame);
+    ASSERT_TRUE(simulation::write_recording(folder / "whole.txt", *solution));
+    const auto stats_of = [&](const std::string& options) {
+        const Outcome outcome = shell(demo + "--input whole.txt -o played " + options);
+        EXPECT_EQ(outcome.status, 0) << outcome.output;
+        const auto text = read_file(folder / "played/stats.json");
+        return text ? nlohmann::json::parse(*text, nullptr, false) : nlohmann::json::object();
+    };
+    const nlohmann::json expected = stats_of("--simulate");
+    const nlohmann::json drawn =
+        stats_of("--size 64x36 --pictures 0 --preset software --steps-per-frame " + std::to_string(steps_per_frame));
+    ASSERT_EQ(expected["steps"], solution->size());
+    EXPECT_GE(expected["opened"].size(), 5u);
+    EXPECT_EQ(drawn["steps"], expected["steps"]);
+    EXPECT_EQ(drawn["opened"], expected["opened"]);
+    EXPECT_EQ(drawn["steps_hash"], expected["steps_hash"]) << "a step differs";
+    EXPECT_EQ(drawn["world_hash"], expected["world_hash"]);
+}
+
 // A game that is played without pictures, and ended by a signal some time after its recording appeared.
 Outcome play_until(const std::string& folder, const char* signal) {
     return shell("{ cd " + folder +

@@ -39,8 +39,7 @@ public:
         if (!shows("title", 120.0))
             return false;
         window_ = display_.window("Lantern House$");
-        display_.run("xdotool windowfocus --sync " + window_);
-        return true;
+        return display_.focus(window_);
     }
 
     nlohmann::json state() const {
@@ -90,14 +89,14 @@ public:
         display_.run("xdotool keyup c");
         return inside;
     }
-    // The person has come to a stop: steps went by, and they are where they were.
-    bool rests() const {
+    // The person has come to a stop: steps went by, and they are where they were, or look where they did ("yaw").
+    bool rests(const char* what = "place") const {
         nlohmann::json before = state();
         return DrivenDisplay::wait_until([&] {
             const nlohmann::json now = state();
             if (now.value("steps", 0) < before.value("steps", 0) + 12)
                 return false;
-            return std::exchange(before, now)["place"] == now["place"];
+            return std::exchange(before, now)[what] == now[what];
         });
     }
     // From the paused game: the menu's entry of this name is selected, then taken.
@@ -116,6 +115,7 @@ public:
     int end(int signal) { return DrivenDisplay::end(std::exchange(process_, -1), signal); }
     tests::Outcome run(const std::string& command) const { return display_.run(command); }
     const std::string& window() const { return window_; }
+    bool focus() const { return display_.focus(window_); }
     std::string log() const {
         const auto text = read_file(folder_ / "log");
         return text ? *text : std::string();
@@ -168,8 +168,9 @@ void walk_to_the_corner(const DrivenGame& game) {
         return heard;
     };
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
-    EXPECT_EQ(game.value("area"), "The porch");
-    EXPECT_TRUE(game.state().value("hint", false)) << "the first hint says what the game is about";
+    EXPECT_TRUE(DrivenDisplay::wait_until([&] { return game.value("area") == "The porch"; })) << game.state();
+    EXPECT_TRUE(DrivenDisplay::wait_until([&] { return game.state().value("hint", false); }))
+        << "the first hint says what the game is about";
     ASSERT_TRUE(game.strafe_between(0.75f, 2.5f)) << game.state();
     ASSERT_TRUE(game.hold_until("w", [&] { return listen() && game.place(2) < 7.3f; })) << game.state();
     ASSERT_TRUE(game.strafe_between(-0.2f, 0.2f)) << game.state();
@@ -182,8 +183,7 @@ void pause_and_lose_focus(const DrivenGame& game) {
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
     game.run("xdotool windowminimize " + game.window());
     EXPECT_TRUE(game.shows("paused"));
-    game.run("xdotool windowmap --sync " + game.window());
-    game.run("xdotool windowfocus --sync " + game.window());
+    ASSERT_TRUE(game.focus()) << game.state();
     const auto steps = game.state().value("steps", std::uint64_t(0));
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
     EXPECT_TRUE(DrivenDisplay::wait_until([&] { return game.state().value("steps", std::uint64_t(0)) > steps; }));
@@ -211,11 +211,20 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     EXPECT_EQ(game.value("area"), "The corner") << "Enter goes on at the checkpoint";
     EXPECT_LT(game.place(2), 6.24f);
 
+    // Bounced light that was switched off comes back with the checkpoint.
+    const auto bounced = [&] { return game.state().value("bounced_light", true); };
+    EXPECT_TRUE(bounced());
+    ASSERT_TRUE(game.press_until("l", [&] { return !bounced(); }));
+    ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
+    ASSERT_TRUE(game.take("Last checkpoint")) << game.state();
+    EXPECT_TRUE(game.shows("playing"));
+    EXPECT_TRUE(DrivenDisplay::wait_until(bounced)) << game.state();
+
     // Whoever quits within a room goes on where they stood, and looked by keys alone.
     const auto yaw = [&] { return game.state().value("yaw", 0.0); };
     const double before = yaw();
     ASSERT_TRUE(game.hold_until("Left", [&] { return std::abs(yaw() - before) > 0.3; })) << game.state();
-    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // the last frame that the key was down in
+    EXPECT_TRUE(game.rests("yaw")) << game.state(); // after the last frame that the key was down in
     const double turned = yaw();
     EXPECT_EQ(game.end(SIGINT), 128 + SIGINT) << game.log();
     expect_that_the_recording_leads_there(); // from the checkpoint on

@@ -94,7 +94,8 @@ protected:
     void press(const char* key, const std::function<bool()>& until) {
         const std::string window = display->window("Lantern House$");
         for (int tries = 0; tries < 10 && !until(); ++tries) {
-            display->run("xdotool windowfocus --sync " + window + " key " + std::string(key));
+            display->focus(window);
+            display->run("xdotool key " + std::string(key));
             DrivenDisplay::wait_until(until, 3.0);
         }
     }

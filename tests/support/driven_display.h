@@ -9,6 +9,7 @@
 #include <chrono>
 #include <fcntl.h>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
@@ -77,9 +78,20 @@ public:
     }
     // The visible window of this title, as xdotool names it.
     std::string window(const std::string& title) const {
-        std::string found = run("xdotool search --sync --onlyvisible --name '" + title + "'").output;
+        std::string found = run("timeout 60 xdotool search --sync --onlyvisible --name '" + title + "'").output;
         found.erase(found.find_last_not_of('\n') + 1);
         return found.substr(found.find_last_of('\n') + 1);
+    }
+    // Keys go to the window from here on; it is shown if it was not. xdotool's --sync may wait for ever: where the
+    // window manager gives the focus to somebody else meanwhile, it does not ask again.
+    bool focus(const std::string& window) const {
+        const std::string ask = "xdotool windowmap " + window + " windowfocus " + window;
+        for (int round = 0; round < 12; ++round) {
+            run(ask);
+            if (wait_until([&] { return run("xdotool getwindowfocus").output == window + "\n"; }, 3.0))
+                return true;
+        }
+        return false;
     }
     // False: it did not come true in time. While the test itself is stopped, as a job of a shell may be, no time passes
     // for the program either.
@@ -97,6 +109,17 @@ public:
     }
 
 private:
+    // Its usual bindings would roll a window up when the wheel is turned over its title, and leave it there; with an
+    // empty file it keeps them, and opens a window of its own to complain.
+    void start_manager() {
+        const std::filesystem::path settings = folder_ / "window_manager.xml";
+        std::ofstream(settings) << R"(<?xml version="1.0"?>
+<openbox_config xmlns="http://openbox.org/3.4/rc"><keyboard/><mouse><context name="Client">
+<mousebind button="Left" action="Press"><action name="Focus"/><action name="Raise"/></mousebind>
+</context></mouse></openbox_config>
+)";
+        manager_ = launch({"openbox", "--config-file", settings.string()}, folder_ / "display.log");
+    }
     void start_display() {
         int ends[2];
         if (::pipe2(ends, O_CLOEXEC) != 0)
@@ -110,7 +133,7 @@ private:
             ++length;
         ::close(ends[0]);
         number_ = std::atoi(text);
-        manager_ = launch({"openbox", "--config-file", "/dev/null"}, folder_ / "display.log");
+        start_manager();
         // It answers: a window that is opened while it starts may never be shown.
         wait_until([&] { return run("xdotool set_num_desktops 1 get_num_desktops").output == "1\n"; }, 60.0);
     }

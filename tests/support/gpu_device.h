@@ -2,21 +2,14 @@
 #pragma once
 
 #include "engine/gpu/device.h"
+#include "tests/support/pinned_driver.h"
 
 #include <cstdio>
 #include <cstdlib>
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <memory>
 
 namespace sunfleck::tests {
-
-// Keeps the software driver and the validation layer in memory to the end, so that leak reports can tell their leaks
-// from ours by module (tests/leak_suppressions.txt).
-inline void pin_driver() {
-    for (const char* library : {"libvulkan_lvp.so", "libVkLayer_khronos_validation.so"})
-        (void)dlopen(library, RTLD_NOW | RTLD_NODELETE);
-}
 
 // Made once; every test that uses it checks that validation stayed silent.
 inline gpu::Device& device() {

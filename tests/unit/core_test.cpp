@@ -259,6 +259,7 @@ bool asked_for_large_pages(const void* address) {
     }
     return false;
 }
+
 // A program that waits for something that never comes, in its end: first where the signals of timers mean that all is
 // to be saved, as in the demo, then after that.
 void end_after(int signal) {

@@ -161,7 +161,13 @@ TEST(SceneFiles, WhatLiesOutsideIsNotRead) {
         options.allow_outside = allowed;
         const auto report =
             io::load_scene(inner / "a.scene.json", world.registry, world.meshes, world.textures, options);
-        return report ? std::string() : report.error().message;
+        if (!report)
+            return report.error().message;
+        bool has_picture = false;
+        world.registry.view<scene::EnvironmentMap>().each(
+            [&](ecs::Entity, const scene::EnvironmentMap& map) { has_picture = map.image != nullptr; });
+        EXPECT_NE(has_picture, !report->notes.empty()) << "a scene without its picture says why";
+        return report->notes.empty() ? std::string() : report->notes.back();
     };
     ASSERT_EQ(load("good.glb", "sky.hdr", false), "");
     EXPECT_EQ(load("./deeper/../good.glb", "up/inner/sky.hdr", false), "") << "it lies inside, whichever way";
