@@ -1,38 +1,23 @@
 #include "viewer/overlays.h"
 
-#include "engine/simulation/path_movers.h"
+#include "viewer/scene_overlays.h"
 
 namespace sunfleck::viewer {
-namespace {
-
-constexpr gi::Overlay mover_paths{"mover_paths", "Where movers on paths go",
-                                  "yellow: all the time, orange: when something sets them going", "scene", 0};
-constexpr std::uint32_t path_steps = 96;
-
-void draw_mover_paths(SceneRenderer& renderer, gi::OverlayLines& lines) {
-    const scene::SceneSpace& space = renderer.space();
-    renderer.registry().view<scene::Mover>().each([&](ecs::Entity entity, const scene::Mover& mover) {
-        const std::vector<vec3> places = simulation::mover_path(renderer.registry(), entity, path_steps);
-        const bool always = mover.activation == scene::MoverActivation::clock;
-        const vec3 colour = always ? vec3(1.0f, 0.9f, 0.3f) : vec3(1.0f, 0.55f, 0.15f);
-        for (std::size_t i = 1; i < places.size(); ++i)
-            lines.line(space.point(places[i - 1]), space.point(places[i]), colour);
-    });
-}
-
-} // namespace
 
 std::vector<const gi::Overlay*> overlays() {
     std::vector<const gi::Overlay*> all = gi::all_overlays();
-    all.push_back(&mover_paths);
+    for (const gi::Overlay& overlay : scene_overlays())
+        all.push_back(&overlay);
     return all;
 }
 
 Status draw_overlay(SceneRenderer& renderer, std::string_view name, gi::OverlayLines& lines) {
-    if (name != mover_paths.name)
-        return renderer.lighting().draw_overlay(name, lines);
-    draw_mover_paths(renderer, lines);
-    return {};
+    for (const gi::Overlay& overlay : scene_overlays())
+        if (overlay.name == name) {
+            draw_scene_overlay(overlay.code, renderer, lines);
+            return {};
+        }
+    return renderer.lighting().draw_overlay(name, lines);
 }
 
 void SceneRenderer::draw_samples() {

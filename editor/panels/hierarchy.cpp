@@ -322,7 +322,8 @@ void Hierarchy::show_selection(Session& session) {
 
 void Hierarchy::draw(Session& session) {
     const ui::Scope scope("hierarchy");
-    ui::text_box("search", filter_, "Search names and components", -1.0f);
+    ui::text_box("search", filter_, "Search", -1.0f);
+    ui::tooltip("Names of entities and of their components");
     if (!session.to_rename.is_null())
         filter_.clear(); // it may not be among what was found
     const bool searched = filter_of_rows_ != filter_;

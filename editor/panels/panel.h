@@ -63,13 +63,15 @@ private:
     bool split(Session& session);
     Entity icon_at(Session& session, vec2 place);
     void find_places(Session& session);
+    bool no_lamp_shines(Session& session);
     struct Icon {
         Entity entity;
         vec3 place; // in the world; or pixels and distance
     };
     std::vector<Icon> icons(Session& session);
     Gizmo gizmo_;
-    SeenState places_state_;
+    SeenState places_state_, lamps_state_;
+    std::vector<Entity> lamps_;
     std::shared_ptr<const PlayedPlaces> played_; // of those places
     std::vector<Icon> icon_places_;              // in the world, of all that has one
     std::vector<Placed> outlines_;               // of what is selected

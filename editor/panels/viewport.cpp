@@ -115,6 +115,20 @@ void say_how_to_begin(ImVec2 low, ImVec2 room) {
     }
 }
 
+// A line of text in the picture, on ground that it can be read on whatever is behind.
+void line_in_picture(const char* name, const std::string& text, ImVec2 place, float width) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, width);
+    const float edge = 0.35f * ui::unit();
+    ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(place.x - edge, place.y - edge),
+                                              ImVec2(place.x + size.x + edge, place.y + size.y + edge),
+                                              IM_COL32(20, 18, 16, 200), edge);
+    ImGui::SetCursorScreenPos(place);
+    ImGui::PushTextWrapPos(place.x + width - ImGui::GetWindowPos().x);
+    ImGui::TextWrapped("%s", text.c_str());
+    ui::note(name, text);
+    ImGui::PopTextWrapPos();
+}
+
 } // namespace
 
 // What changes with edits, the selection and steps of a scene in motion alone, so that in other frames a large scene
@@ -137,6 +151,23 @@ void Viewport::find_places(Session& session) {
             outlines_.push_back(*placed);
         }
     }
+}
+
+// A picture may be black for no other reason, and a switch in the hierarchy is easily overlooked.
+bool Viewport::no_lamp_shines(Session& session) {
+    if (session.hidden.empty() && session.muted.empty())
+        return false;
+    Document& document = *session.document;
+    if (lamps_state_.follow(document)) {
+        lamps_.clear();
+        for (const Entity root : document.roots())
+            for (const Entity entity : document.family(root))
+                if (emits(document, entity))
+                    lamps_.push_back(entity);
+    }
+    return !lamps_.empty() && std::all_of(lamps_.begin(), lamps_.end(), [&](Entity lamp) {
+        return session.hidden.count(lamp) > 0 || session.muted.count(lamp) > 0;
+    });
 }
 
 std::vector<Viewport::Icon> Viewport::icons(Session& session) {
@@ -348,6 +379,9 @@ void Viewport::draw(Session& session, const ScenePicture* picture) {
     toolbar(session);
     if (session.document->entity_count() == 0 && session.opening == nullptr)
         say_how_to_begin(low, room);
+    if (no_lamp_shines(session))
+        line_in_picture("no light", "All lamps are hidden or muted; Show, Show all brings them back",
+                        ImVec2(low.x + ui::unit(), low.y + room.y - 4.0f * ui::unit()), room.x - 2.0f * ui::unit());
     if (const std::string error = session.scene.status().error; !error.empty()) {
         ImGui::SetCursorScreenPos(ImVec2(low.x + ui::unit(), toolbar_high_.y + ui::unit()));
         ImGui::PushTextWrapPos(room.x - ui::unit());

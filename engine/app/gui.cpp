@@ -192,6 +192,7 @@ void Gui::end_frame() {
     ImGui::Render();
     if (window_ == nullptr)
         return;
+    window_->typing(ImGui::GetIO().WantTextInput);
     switch (ImGui::GetMouseCursor()) {
     case ImGuiMouseCursor_TextInput:
         return window_->set_pointer(Pointer::text);

@@ -174,13 +174,24 @@ void Window::take(const Event& event) {
     }
 }
 
+// A key that is only a part of a letter's way into a text: not with Control or Alt, when it is a command.
+bool Window::writes_letter(const Event& event) const {
+    constexpr int last_letter = 255;
+    const auto held = [&](Key key) { return pending_.keys[std::size_t(key)]; };
+    if (!typing_ || event.kind != Event::Kind::key || held(key_left_control) || held(key_right_control) ||
+        held(key_left_alt) || held(key_right_alt))
+        return false;
+    return event.code <= last_letter || event.code == key_left_shift || event.code == key_right_shift;
+}
+
 void Window::take_events() {
     bool changed = false;
     while (!events_.empty()) {
         const Event::Kind kind = events_.front().kind;
         if (one_by_one_ && changed && kind != Event::Kind::letter && kind != Event::Kind::focus)
             return;
-        changed = changed || kind == Event::Kind::key || kind == Event::Kind::button;
+        changed =
+            changed || kind == Event::Kind::button || (kind == Event::Kind::key && !writes_letter(events_.front()));
         take(events_.front());
         events_.pop_front();
     }

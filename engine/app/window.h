@@ -79,6 +79,9 @@ public:
     // One thing after the other: from now on a poll ends before the next key, button or movement once a key or button
     // changed, so that a click between two frames is seen where it happened. The rest comes with the next poll.
     void one_by_one(bool on) { one_by_one_ = on; }
+    // Whether keys of letters write a text: all that have come are taken at once then, so that what is typed, or sent
+    // by a program, faster than frames are drawn is not followed at a letter for each two frames.
+    void typing(bool on) { typing_ = on; }
     // Whether events are left for the next poll.
     bool has_more() const { return !events_.empty(); }
     // How many events came so far, those among them that ask for the window to be drawn again: where the number is the
@@ -127,7 +130,8 @@ private:
     std::array<GLFWcursor*, 6> pointers_{}; // by Pointer, made when first shown
     Pointer pointer_ = Pointer::arrow;
     std::deque<Event> events_;
-    bool one_by_one_ = false;
+    bool writes_letter(const Event& event) const;
+    bool one_by_one_ = false, typing_ = false;
     bool repeats_ = false;
     std::uint64_t event_count_ = 0;
     int windowed_[4] = {};

@@ -2,6 +2,7 @@
 #include "viewer/pixel_report.h"
 
 #include "engine/core/random.h"
+#include "engine/scene/simulation_components.h"
 #include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
 #include "viewer/overlays.h"
@@ -112,9 +113,57 @@ TEST_F(EditorInspection, SaysWhatStandsBetween) {
     EXPECT_GT(hidden, 20u);
 }
 
+void make_pillars_with_area_and_spot(assets::SceneBuilder& builder) {
+    assets::make_four_pillars(builder);
+    ecs::Registry& registry = builder.registry();
+    const ecs::Entity area = registry.create();
+    registry.emplace(area, scene::Transform{.position = vec3(2.8f, 1.8f, 0.0f)}); // beside the pillar in front
+    registry.emplace(area, scene::GameArea{.half_size = vec3(1.0f, 0.5f, 0.75f)});
+    registry.emplace(area, scene::SpotLight{});
+}
+
+// What the lines of the scene's own overlays join, in the world.
+TEST_F(EditorInspection, LampsAreasAndSensorsAreDrawnWhereTheyAre) {
+    tests::GpuWorld world(assets::make_four_pillars);
+    ecs::Registry& registry = world.renderer->registry();
+    const auto add = [&](vec3 place, const quat& turn) {
+        const ecs::Entity entity = registry.create();
+        registry.emplace(entity, scene::Transform{.position = place, .rotation = turn});
+        return entity;
+    };
+    const quat to_right = glm::angleAxis(-0.5f * pi, vec3(0.0f, 1.0f, 0.0f)); // -Z becomes +X, +Z -X, +X +Z
+    registry.emplace(add(vec3(2.0f, 1.0f, 3.0f), to_right), scene::GameArea{.half_size = vec3(3.0f, 1.0f, 0.5f)});
+    registry.emplace(add(vec3(1.0f, 2.0f, 0.0f), to_right), scene::LightSensor{});
+    registry.emplace(add(vec3(0.0f, 2.5f, 1.0f), to_right),
+                     scene::SpotLight{.inner_angle = 0.25f * pi, .outer_angle = pi / 3.0f});
+    scene::update_world_transforms(registry);
+    ASSERT_TRUE(world.renderer->update(world.request));
+    const auto has = [&](std::string_view overlay, vec3 from, vec3 to) {
+        gi::OverlayLines lines;
+        EXPECT_TRUE(viewer::draw_overlay(*world.renderer, overlay, lines));
+        const scene::SceneSpace& space = world.renderer->space();
+        const auto near = [&](vec3 a, vec3 b) { return glm::length(a - space.point(b)) < 1e-5f; };
+        return std::any_of(lines.lines().begin(), lines.lines().end(), [&](const gi::OverlayLines::Line& line) {
+            return (near(line.from, from) && near(line.to, to)) || (near(line.from, to) && near(line.to, from));
+        });
+    };
+    EXPECT_TRUE(has("areas", vec3(1.5f, 0.0f, 0.0f), vec3(1.5f, 2.0f, 0.0f))) << "an upright edge";
+    EXPECT_TRUE(has("areas", vec3(2.5f, 2.0f, 0.0f), vec3(2.5f, 2.0f, 6.0f))) << "a long one";
+    EXPECT_TRUE(has("areas", vec3(2.0f, 1.0f, 3.0f), vec3(2.0f, 2.72f, 3.0f))) << "who begins again there";
+    const float unit = world.renderer->space().unit;
+    EXPECT_TRUE(has("areas", vec3(1.0f, 2.0f, 0.0f), vec3(1.0f - 0.4f * unit, 2.0f, 0.0f))) << "a sensor's normal";
+    const vec3 spot(0.0f, 2.5f, 1.0f);
+    const float length = 0.6f * unit;
+    for (const float angle : {0.25f * pi, pi / 3.0f}) {
+        const vec3 rim = length * vec3(std::cos(angle), std::sin(angle), 0.0f);
+        EXPECT_TRUE(has("lamps", spot, spot + rim)) << angle;
+    }
+    EXPECT_TRUE(has("lamps", spot, spot + vec3(0.4f * unit, 0.0f, 0.0f)));
+}
+
 // Lines are in the picture, and none where an overlay is off; unknown names are an error.
 TEST_F(EditorInspection, OverlaysDrawLines) {
-    tests::GpuWorld world(assets::make_four_pillars, "bench_1");
+    tests::GpuWorld world(make_pillars_with_area_and_spot, "bench_1");
     gi::Settings settings;
     settings.lights = 60;
     world.set(settings);

@@ -170,5 +170,26 @@ TEST_F(EditorSwitches, WhatIsMutedEndsWithShowAllAndWithTheScene) {
     EXPECT_TRUE(session_.muted.empty());
 }
 
+// Over the picture, where nothing else tells why it is black.
+TEST_F(EditorSwitches, APictureWithoutLampsSaysSo) {
+    const auto said = [&] {
+        frames(2);
+        return find("viewport/no light") != nullptr;
+    };
+    EXPECT_FALSE(said());
+    document().select({inner_});
+    ASSERT_NO_FATAL_FAILURE(run("Show/Mute lamps"));
+    EXPECT_FALSE(said()) << "the other one shines";
+    session_.hidden = {outer_};
+    EXPECT_TRUE(said());
+    EXPECT_NE(value("viewport/no light").find("Show all"), std::string::npos);
+    add("Sun");
+    EXPECT_FALSE(said()) << "a new one shines";
+    document().undo();
+    EXPECT_TRUE(said());
+    ASSERT_NO_FATAL_FAILURE(run("Show/Show all"));
+    EXPECT_FALSE(said());
+}
+
 } // namespace
 } // namespace sunfleck::editor

@@ -259,6 +259,19 @@ TEST_F(EditorWindow, TimePassesWhileItRests) {
     editor->end();
 }
 
+// What a program types, or a reader of bar codes, comes faster than frames are drawn.
+TEST_F(EditorWindow, ManyLettersAreTakenInAFrame) {
+    constexpr int letters = 2000;
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles());
+    ASSERT_TRUE(editor->click("hierarchy/search"));
+    const std::string text = "A" + std::string(letters - 2, 'x');
+    editor->type(text + "Z");
+    editor->key("BackSpace");
+    EXPECT_TRUE(editor->wait_for("hierarchy/search", text)) << "in the order in which they came";
+    EXPECT_LT(editor->end()["gui_frames"], letters);
+}
+
 // Which tab is in front, and where the camera stands: a run that is killed has kept them, too.
 TEST_F(EditorWindow, WhatIsKeptNeedsNoRegularEnd) {
     editor->start({small_scene});
