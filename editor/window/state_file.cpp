@@ -4,8 +4,13 @@
 #include "engine/core/user_folders.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <thread>
+#include <unistd.h>
 
 namespace sunfleck::editor {
 namespace {
@@ -122,6 +127,31 @@ Json merged(const Json& before, const Json& now, const Json& theirs) {
     return result;
 }
 
+// Of the folder that the file is in, while it is read and written; the file itself is another after each write. An
+// editor that was stopped holds the others up for no longer than a moment.
+class FolderLock {
+public:
+    explicit FolderLock(const std::filesystem::path& file) {
+        const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+        std::error_code code;
+        std::filesystem::create_directories(folder, code);
+        folder_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        constexpr auto turn = std::chrono::milliseconds(5);
+        constexpr int most_turns = 100;
+        for (int i = 0; folder_ >= 0 && i < most_turns && ::flock(folder_, LOCK_EX | LOCK_NB) != 0; ++i)
+            std::this_thread::sleep_for(turn);
+    }
+    ~FolderLock() {
+        if (folder_ >= 0)
+            ::close(folder_);
+    }
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int folder_ = -1;
+};
+
 Status write_state(const std::filesystem::path& path, const Json& json) {
     std::error_code code;
     std::filesystem::create_directories(path.parent_path(), code);
@@ -207,6 +237,7 @@ Status save_state(const std::filesystem::path& path, const EditorState& state) {
 }
 
 Status save_changes(const std::filesystem::path& path, const std::string& before, const EditorState& state) {
+    const FolderLock lock(path); // two that end at once
     std::error_code code;
     if (!std::filesystem::exists(path, code))
         return save_state(path, state);

@@ -259,7 +259,7 @@ TEST_F(EditorWindowNeighbours, TwoEditorsShareTheirSettings) {
     const editor::EditorState state = editor::load_state(folder / "both.json", problem, may_save);
     EXPECT_EQ(problem, "");
     EXPECT_EQ(state.width, 800u);
-    EXPECT_EQ(state.recent_files.size(), 1u) << "the settings of the one that ended last";
+    EXPECT_EQ(state.recent_files.size(), 2u) << "of both";
 }
 
 TEST_F(EditorWindowNeighbours, OddNamesOfFiles) {

@@ -3,6 +3,8 @@
 #include "engine/core/file.h"
 #include "tests/editor/panel_fixture.h"
 
+#include <thread>
+
 namespace sunfleck::editor {
 namespace {
 
@@ -214,6 +216,31 @@ TEST(EditorStateFile, OfTwoEditorsHasWhatBothChanged) {
     first.steps.length = 0.9f;
     EXPECT_FALSE(of_first.finish(file, first));
     EXPECT_EQ(read_file(file).value(), large);
+}
+
+// Editors that write at the same moment, as when a session ends: none reads what another is about to replace.
+TEST(EditorStateFile, OfManyEditorsHasWhatAllChanged) {
+    const tests::Folder folder{"editor_many"};
+    const std::filesystem::path file = folder / "settings.json";
+    ASSERT_TRUE(save_state(file, {}));
+    constexpr int editors = 6, changes = 10;
+    std::vector<std::thread> running;
+    running.reserve(editors);
+    for (int number = 0; number < editors; ++number)
+        running.emplace_back([&, number] {
+            EditorState state;
+            StateKeeper keeper(state);
+            for (int i = 0; i < changes; ++i) {
+                state.keys["of " + std::to_string(number) + ", " + std::to_string(i)] = "F9";
+                EXPECT_TRUE(keeper.keep(file, state));
+            }
+        });
+    for (std::thread& one : running)
+        one.join();
+    std::string problem;
+    bool may_save = false;
+    EXPECT_EQ(load_state(file, problem, may_save).keys.size(), std::size_t(editors * changes));
+    EXPECT_EQ(problem, "");
 }
 
 } // namespace
