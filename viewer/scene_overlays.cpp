@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t lamps = 0, areas = 1, paths = 2;
 constexpr std::array<gi::Overlay, 3> all{{
     {"lamps", "Shape and direction of lamps",
-     "of the lamp's colour: a spot's two cones, a panel's edge, an arrow where the light goes", "scene", lamps},
+     "the lamp's own; cones of a spot, edges of a panel, arrows where the light goes", "scene", lamps},
     {"areas", "Areas of a game, with the place where a reset puts the player, its start, and what sensors look at",
      "blue: area, green: its end; white: where the player stands and looks; violet: a sensor's direction", "scene",
      areas},
@@ -82,12 +82,12 @@ vec3 display_colour(vec3 light) {
 
 constexpr vec3 forwards(0.0f, 0.0f, -1.0f);
 
-void draw_cone(const LocalLines& draw, float half_angle, float length) {
-    constexpr float widest = 1.5f; // rad; beyond, the cone's end would be far away
+// Its end, and where lines from the tip meet it.
+std::array<vec3, 4> draw_cone(const LocalLines& draw, float half_angle, float length) {
+    constexpr float widest = 0.5f * pi;
     const float angle = std::min(half_angle, widest), radius = length * std::sin(angle), z = -length * std::cos(angle);
     draw.circle(radius, z);
-    for (const vec2 side : {vec2(1.0f, 0.0f), vec2(-1.0f, 0.0f), vec2(0.0f, 1.0f), vec2(0.0f, -1.0f)})
-        draw.line(vec3(0.0f), vec3(radius * side, z));
+    return {vec3(radius, 0.0f, z), vec3(-radius, 0.0f, z), vec3(0.0f, radius, z), vec3(0.0f, -radius, z)};
 }
 
 void draw_panel(const LocalLines& draw, const scene::AreaLight& light) {
@@ -104,8 +104,10 @@ void draw_lamps(SceneRenderer& renderer, gi::OverlayLines& lines) {
     const float room = renderer.space().unit;
     registry.view<scene::SpotLight>().each([&](ecs::Entity entity, const scene::SpotLight& light) {
         const LocalLines draw = lines_of(renderer, entity, lines, display_colour(light.intensity));
-        draw_cone(draw, light.outer_angle, 0.6f * room);
-        draw_cone(draw, light.inner_angle, 0.6f * room);
+        const float length = 0.6f * room;
+        for (const vec3 end : draw_cone(draw, light.outer_angle, length))
+            draw.line(vec3(0.0f), end);
+        draw_cone(draw, light.inner_angle, length);
         draw.arrow(vec3(0.0f), forwards);
     });
     registry.view<scene::PointLight>().each([&](ecs::Entity entity, const scene::PointLight& light) {

@@ -99,6 +99,7 @@ struct ColourBox {
                 const std::function<vec3(vec3 own, double number)>& changed) const {
         const ui::NumberEdit edit = ui::number_box(name, look);
         ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
         ImGui::TextUnformatted(name.c_str());
         switch (edit.phase) {
         case Phase::began:

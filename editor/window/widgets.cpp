@@ -68,11 +68,13 @@ Scope::~Scope() {
 void tooltip(std::string_view text) {
     if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         return;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.55f * unit(), 0.4f * unit())); // over the picture, too
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(24.0f * unit());
     ImGui::TextUnformatted(text.data(), text.data() + text.size());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+    ImGui::PopStyleVar();
 }
 
 bool button(const std::string& name, std::string_view tip, bool enabled, float width) {

@@ -33,9 +33,10 @@ Harmonics spherical_harmonics(vec3 direction) {
         float before = 0.0f, now = start;
         for (int l = m; l < bands; ++l) {
             const float value = norm[std::size_t(l)][std::size_t(m)] * now;
-            result[std::size_t(l * l + l + m)] = value * cosine;
+            const std::size_t middle = std::size_t(l) * std::size_t(l + 1); // of the band: m = 0
+            result[middle + std::size_t(m)] = value * cosine;
             if (m > 0)
-                result[std::size_t(l * l + l - m)] = value * sine;
+                result[middle - std::size_t(m)] = value * sine;
             const float next = (float(2 * l + 1) * direction.z * now - float(l + m) * before) / float(l + 1 - m);
             before = now;
             now = next;

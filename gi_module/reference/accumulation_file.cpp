@@ -80,7 +80,7 @@ Result<Loaded> from_file(const std::filesystem::path& path) {
 
 } // namespace
 
-SavedAccumulation::SavedAccumulation(std::filesystem::path first, std::uint64_t key)
+SavedAccumulation::SavedAccumulation(const std::filesystem::path& first, std::uint64_t key)
     : files_{first, first.string() + "2"}, key_(key) {}
 
 std::uint64_t SavedAccumulation::bytes(std::uint32_t width, std::uint32_t height) {

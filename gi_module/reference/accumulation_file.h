@@ -13,7 +13,7 @@ namespace sunfleck::gi::reference {
 // checksum and the key of its picture, a hash of all that decides it.
 class SavedAccumulation {
 public:
-    SavedAccumulation(std::filesystem::path first, std::uint64_t key);
+    SavedAccumulation(const std::filesystem::path& first, std::uint64_t key);
 
     // The newer one that is whole; an empty accumulation if there are no files. Errors: states of another picture, and
     // files of which none is whole. A damaged one beside a whole one is logged.

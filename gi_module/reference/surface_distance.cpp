@@ -38,7 +38,8 @@ std::vector<float> surface_distances(const raytrace::RayScene& rays, const scene
     std::vector<float> distances(std::size_t(width) * height, 0.0f);
     parallel_for_chunks(distances.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const vec2 centre(float(i % width) + 0.5f, float(i / width) + 0.5f);
+            const std::size_t line = i / width;
+            const vec2 centre(float(i % width) + 0.5f, float(line) + 0.5f);
             const raytrace::Ray view{vec3(row.position), shared::camera_ray(row, centre), 0.0f, 1e30f};
             distances[i] = distance_to_others(rays, view, directions);
         }

@@ -28,7 +28,7 @@ void set_footprint(const ReflectiveShadowMap& map, std::size_t index, float texe
         for (int end = 0; end < 2; ++end) {
             std::int32_t place[2] = {at[0], at[1]};
             place[axis] = std::clamp(place[axis] + 2 * end - 1, 0, side - 1);
-            ends[end] = &map.texels[std::size_t(place[1] * side + place[0])];
+            ends[end] = &map.texels[std::size_t(place[1]) * map.side + std::size_t(place[0])];
             // Over an edge there is another surface.
             if (!ends[end]->lit || ends[end]->entity != map.texels[index].entity ||
                 glm::dot(ends[end]->normal, light.normal) < least_cosine_across || place[axis] == at[axis])

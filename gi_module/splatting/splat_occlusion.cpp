@@ -84,9 +84,9 @@ std::uint64_t PixelLightMaps::trace(const shared::PixelLightRow& light, std::uin
                          glm::dot(way, vec3(light.row.normal_offset)));
         cones.push_back({local / distance, std::sqrt(std::max(1.0f - sine * sine, 0.0f)), sine});
     }
-    const auto may_meet = [&](const Block& block) {
+    const auto may_meet = [&](const Block& one) {
         return all || std::any_of(cones.begin(), cones.end(), [&](const Cone& cone) {
-                   return glm::dot(block.axis, cone.axis) >= block.cosine * cone.cosine - block.sine * cone.sine;
+                   return glm::dot(one.axis, cone.axis) >= one.cosine * cone.cosine - one.sine * cone.sine;
                });
     };
     const raytrace::Scope scope = movers == nullptr ? raytrace::Scope::static_only : raytrace::Scope::everything;
@@ -100,7 +100,7 @@ std::uint64_t PixelLightMaps::trace(const shared::PixelLightRow& light, std::uin
         traced += raytrace::packet_size;
         for (std::uint32_t k = 0; k < raytrace::packet_size; ++k)
             into[(y + k / block) * side_ + x + k % block] =
-                std::uint16_t(std::min(shared::shadow_near / distances[k], 1.0f) * 65535.0f + 0.5f);
+                std::uint16_t(std::floor(std::min(shared::shadow_near / distances[k], 1.0f) * 65535.0f + 0.5f));
     }
     return traced;
 }

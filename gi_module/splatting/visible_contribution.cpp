@@ -70,8 +70,8 @@ std::vector<SeenPoint> seen_points(const mat4& view_projection, const raytrace::
     };
     std::vector<SeenPoint> points;
     for (std::uint32_t i = 0; i < points_across * points_across; ++i) {
-        const vec2 place =
-            (vec2(float(i % points_across), float(i / points_across)) + 0.5f) * (2.0f / float(points_across)) - 1.0f;
+        const std::uint32_t line = i / points_across;
+        const vec2 place = (vec2(float(i % points_across), float(line)) + 0.5f) * (2.0f / float(points_across)) - 1.0f;
         const vec3 near = at(place, 1.0f), direction = at(place, 0.5f) - near;
         const raytrace::Ray ray{near, direction, 0.0f, 1e30f};
         const auto hit = is_finite(direction) ? rays.closest_hit(ray) : std::nullopt;

@@ -119,7 +119,8 @@ private:
 } // namespace
 
 vec3 PointGrid::point(std::uint32_t index) const {
-    const vec3 cell(float(index % side_), float(index / side_ % side_), float(index / (side_ * side_)));
+    const std::uint32_t lines = index / side_, layers = lines / side_; // whole ones before it
+    const vec3 cell(float(index % side_), float(lines % side_), float(layers));
     return local_.minimum + local_.extent() * (cell + 0.5f) / float(side_);
 }
 

@@ -313,7 +313,7 @@ bool may_enter(const OcclusionPyramid& pyramid, const Bounds& bounds) {
     for (int first = 0; first < pyramid.plane_count; first += lanes) {
         float reach[lanes], slack[lanes];
         for (int lane = 0; lane < lanes; ++lane) {
-            const std::size_t i = std::size_t(first + lane);
+            const std::size_t i = std::size_t(first) + std::size_t(lane);
             const float x = pyramid.normals_x[i], y = pyramid.normals_y[i], z = pyramid.normals_z[i];
             reach[lane] = x * centre.x + y * centre.y + z * centre.z + pyramid.offsets[i] + std::abs(x) * half.x +
                           std::abs(y) * half.y + std::abs(z) * half.z;

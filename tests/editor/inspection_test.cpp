@@ -154,10 +154,12 @@ TEST_F(EditorInspection, LampsAreasAndSensorsAreDrawnWhereTheyAre) {
     EXPECT_TRUE(has("areas", vec3(1.0f, 2.0f, 0.0f), vec3(1.0f - 0.4f * unit, 2.0f, 0.0f))) << "a sensor's normal";
     const vec3 spot(0.0f, 2.5f, 1.0f);
     const float length = 0.6f * unit;
-    for (const float angle : {0.25f * pi, pi / 3.0f}) {
-        const vec3 rim = length * vec3(std::cos(angle), std::sin(angle), 0.0f);
-        EXPECT_TRUE(has("lamps", spot, spot + rim)) << angle;
-    }
+    const vec3 rim = length * vec3(std::cos(pi / 3.0f), std::sin(pi / 3.0f), 0.0f);
+    EXPECT_TRUE(has("lamps", spot, spot + rim)) << "along the outer cone";
+    const float inner = length * std::cos(0.25f * pi), piece = pi / 16.0f;
+    EXPECT_TRUE(has("lamps", spot + inner * vec3(1.0f, 0.0f, 1.0f),
+                    spot + inner * vec3(1.0f, std::sin(piece), std::cos(piece))))
+        << "round the end of the inner one";
     EXPECT_TRUE(has("lamps", spot, spot + vec3(0.4f * unit, 0.0f, 0.0f)));
 }
 
