@@ -111,8 +111,10 @@ Times EditorSizeWindow::times_of(const nlohmann::json& report) const {
 
 Times EditorSizeWindow::measure(Shape shape, int count) {
     parts_.clear();
-    const fs::path file = folder / (std::to_string(count) + ".scene.json");
-    EXPECT_TRUE(make_scene(shape, count)->save(file));
+    // A name of its own: a document does not replace a file that it is not of.
+    const fs::path file = folder / (std::string(shape_name(shape)) + " " + std::to_string(count) + ".scene.json");
+    const Status saved = make_scene(shape, count)->save(file);
+    EXPECT_TRUE(saved) << saved.error().message;
     editor->start({file.string()});
     EXPECT_TRUE(editor->settles()) << editor->log();
     EXPECT_TRUE(editor->click("tab Inspector")); // the run before has left another one in front
