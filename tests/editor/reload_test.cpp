@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "engine/scene/animation.h"
+#include "tests/editor/change_component.h"
 #include "tests/editor/random_edits.h"
 #include "tests/support/folder.h"
 #include "tests/support/test_size.h"
@@ -41,16 +42,6 @@ protected:
         const Status status = document.save(place / "a.scene.json");
         EXPECT_TRUE(status) << (status ? "" : status.error().message);
         return read_file(place / "a.scene.json").value() + read_file(place / "a.glb").value();
-    }
-    template <typename T>
-    static void change(Document& document, const std::string& name, const std::function<void(T&)>& edit) {
-        const Entity entity = document.find(name);
-        ASSERT_TRUE(document.exists(entity)) << name;
-        auto value = std::make_shared<T>(document.registry().get<T>(entity));
-        edit(*value);
-        document.begin("Change " + name);
-        document.set(entity, pool_of<T>(document), std::move(value));
-        document.commit();
     }
     template <typename T>
     static const T& get(Document& document, const std::string& name) {

@@ -3,6 +3,7 @@
 
 #include "engine/core/file.h"
 #include "test_places.h"
+#include "tests/editor/change_component.h"
 #include "tests/editor/panel_fixture.h"
 
 #include <nlohmann/json.hpp>
@@ -25,16 +26,6 @@ protected:
     void export_again_as(const fs::path& path) {
         ASSERT_TRUE(io::export_gltf(path, theirs_.registry(), theirs_.meshes(), theirs_.textures()));
         fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(++exports_));
-    }
-    template <typename T>
-    static void change(Document& document, const std::string& name, const std::function<void(T&)>& edit) {
-        const Entity entity = document.find(name);
-        ASSERT_TRUE(document.exists(entity)) << name;
-        auto value = std::make_shared<T>(document.registry().get<T>(entity));
-        edit(*value);
-        document.begin("Change " + name);
-        document.set(entity, pool_of<T>(document), std::move(value));
-        document.commit();
     }
     void open(const fs::path& path) {
         auto opened = Document::open(path);
