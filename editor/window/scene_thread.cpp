@@ -1,6 +1,7 @@
 #include "editor/window/scene_thread.h"
 
 #include "engine/core/caught.h"
+#include "engine/core/memory_limit.h"
 #include "engine/simulation/path_movers.h"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
 constexpr std::size_t most_notes = 20'000;
 constexpr std::chrono::milliseconds light_interval{10}; // between looks at light that is being prepared
+constexpr std::chrono::seconds rest{1};                 // without anything to draw
 
 } // namespace
 
@@ -148,8 +150,12 @@ bool SceneThread::take_work() {
     const auto wakes = [this] { return stop_ || has_work(); };
     if (light_pending_)
         changed_.wait_for(lock, light_interval, wakes);
-    else
+    else if (!changed_.wait_for(lock, rest, wakes)) {
+        lock.unlock();
+        return_free_memory(); // of old lighting, large geometry, the widest picture
+        lock.lock();
         changed_.wait(lock, wakes);
+    }
     if (stop_)
         return false;
     status_.busy = busy_ = true;

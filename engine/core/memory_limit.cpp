@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <malloc.h>
 #include <string>
 #include <unistd.h>
 
@@ -55,6 +56,12 @@ std::uint64_t memory_in_use() {
     if (!(file >> pages >> resident))
         return 0;
     return resident * std::uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void return_free_memory() {
+#ifdef __GLIBC__
+    ::malloc_trim(0);
+#endif
 }
 
 Status check_memory(std::uint64_t bytes, std::string_view what, std::string_view setting) {

@@ -103,7 +103,7 @@ public:
             waited += std::min(std::chrono::duration<double>(now - std::exchange(last, now)).count(), longest_turn);
             if (waited > seconds)
                 return false;
-            std::this_thread::sleep_for(std::chrono::milliseconds(30));
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
         return true;
     }

@@ -10,9 +10,11 @@
 #include "engine/core/stage_times.h"
 #include "engine/core/stop_signals.h"
 #include "gi_module/settings.h"
+#include "tests/support/test_size.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -201,6 +203,26 @@ TEST(MemoryLimit, CountsWhatIsAskedForBesideWhatIsThere) {
     for (const char* word : {"a picture of 16384x16384", "3.0 GiB", "--size", "--memory"})
         EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
     EXPECT_EQ(memory_limit(), by_default);
+}
+
+// Pieces that lie between others stay with the C library when they are freed, until they are given back.
+TEST(MemoryLimit, FreeMemoryGoesBackToTheSystem) {
+    if (tests::sanitized())
+        GTEST_SKIP() << "the sanitizer has a heap of its own";
+    constexpr std::size_t size = 16'384, count = 6'000; // 94 MiB
+    constexpr std::uint64_t most_of_it = std::uint64_t(60) << 20;
+    std::vector<std::vector<char>> pieces, kept;
+    for (std::size_t i = 0; i < count; ++i) {
+        pieces.emplace_back(size, 'x');
+        if (i % 100 == 0)
+            kept.emplace_back(size, 'x');
+    }
+    const std::uint64_t full = memory_in_use();
+    pieces.clear();
+    return_free_memory();
+    EXPECT_LT(memory_in_use() + most_of_it, full);
+    for (const std::vector<char>& piece : kept)
+        EXPECT_EQ(std::count(piece.begin(), piece.end(), 'x'), std::ptrdiff_t(size));
 }
 
 // A level has hundreds of textures, none of them large.
