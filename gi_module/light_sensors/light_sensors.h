@@ -7,7 +7,7 @@
 // Readings are a function of the scene, the settings and the steps since the sensors began to follow it, bit for bit,
 // on any number of threads: of no device, preset or frame. The registry, meshes and textures are the caller's; one
 // thread at a time, and `step` itself runs on all cores. What moves is followed within half a second of steps of 1/60 s
-// as long as `sensor_rays` suffice: paths_per_sensor paths of some eight rays for each sensor whose paths it may touch.
+// as long as `sensor_rays` suffice: paths_per_sensor paths of some ten rays for each sensor whose paths it may touch.
 #pragma once
 
 #include "engine/core/description.h"

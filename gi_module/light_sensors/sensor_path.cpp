@@ -1,9 +1,11 @@
 #include "gi_module/light_sensors/sensor_path.h"
 
 #include "engine/core/random.h"
+#include "gi_module/light_sensors/lamp_path.h"
 #include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace sunfleck::gi {
 namespace {
@@ -19,9 +21,15 @@ float largest(vec3 colour) {
     return std::max({colour.x, colour.y, colour.z});
 }
 
-struct Vertex {
-    vec3 position{0.0f}, normal{0.0f};
-    float offset = 0.0f; // of ray origins from the surface
+using Vertex = SensorVertex;
+
+// The first surface on a path from a lamp.
+struct LitVertex {
+    Vertex vertex;
+    vec3 radiance{0.0f}; // reflected to all sides, W/(m2 sr)
+    float density = 0.0f;
+    std::uint32_t lamp = 0; // its entity's index
+    bool found = false;
 };
 
 // True if nothing is between the vertex and the light.
@@ -36,10 +44,13 @@ bool sees(const raytrace::RayScene& rays, const Vertex& vertex, const ArrivingLi
 class Walk {
 public:
     Walk(const SensorScene& scene, const SensorPlace& place, std::uint32_t index)
-        : scene_(scene), place_(place), index_(index), random_(SequenceKind::sobol, place.seed, index) {}
+        : scene_(scene), place_(place), index_(index), random_(SequenceKind::sobol, place.seed, index),
+          lamps_(scene, place.position, place.scale) {}
 
     SensorPath follow(bool reflected) {
         Vertex vertex{place_.position, place_.normal, scene_.rays->ray_offset_anywhere()};
+        if (reflected && lamps_.possible())
+            follow_lamp();
         for (std::uint32_t reflections = 0;; ++reflections) {
             visit(vertex.position);
             path_.vertices.add(vertex.position);
@@ -48,9 +59,11 @@ public:
             if (reflections > 0)
                 add_points(vertex, reflections);
             add_area(vertex);
+            if (reflections < sensor_bounces)
+                join(vertex, reflections);
             if (reflections == sensor_bounces || !advance(vertex, sample_cosine_direction(vertex.normal, u, v)))
                 break;
-            if (!reflected || !survives(reflections, survival))
+            if (!reflected || !survives(vertex, reflections, survival))
                 break;
         }
         return path_;
@@ -59,10 +72,10 @@ public:
 private:
     void visit(vec3 point) { path_.extent.add(point); }
 
-    bool survives(std::uint32_t reflections, float number) {
+    bool survives(const Vertex& vertex, std::uint32_t reflections, float number) {
         if (reflections < roulette_start)
             return true;
-        const float chance = std::clamp(largest(albedo_), 0.05f, 0.98f);
+        const float chance = std::clamp(largest(vertex.albedo), 0.05f, 0.98f);
         throughput_ /= chance;
         return number < chance;
     }
@@ -84,11 +97,49 @@ private:
     void add_points(const Vertex& vertex, std::uint32_t reflections) {
         for (std::size_t i = 0; i < scene_.points.size(); ++i) {
             const Emitter& emitter = scene_.points[i];
-            const std::uint32_t bits = hash_combine(hash_combine(place_.seed, index_),
-                                                    hash_combine(reflections, std::uint32_t(emitter.entity.index)));
-            add(vertex, light_from(emitter, sample_emitter_point(emitter, 0.0f, 0.0f), vertex.position), 1.0f,
-                to_unit_float(bits));
+            const float joined = lamps_.density(i, vertex.position, vertex.normal);
+            const float weight = joined > 0.0f ? vertex.density / (vertex.density + joined) : 1.0f;
+            add(vertex, light_from(emitter, sample_emitter_point(emitter, 0.0f, 0.0f), vertex.position), weight,
+                number(reflections, emitter.entity.index));
         }
+    }
+
+    float number(std::uint32_t reflections, std::uint32_t salt) const {
+        return to_unit_float(hash_combine(hash_combine(place_.seed, index_), hash_combine(reflections, salt)));
+    }
+
+    void follow_lamp() {
+        random_.seek((sensor_bounces + 1) * dimensions_per_vertex);
+        const std::size_t chosen = lamps_.choose(random_.next());
+        const Emitter& lamp = scene_.points[chosen];
+        const float u = random_.next(), v = random_.next(), numbers[4] = {0.0f, 0.0f, u, v};
+        const EmittedRay emitted = sample_emitter_ray(lamp, numbers);
+        path_.vertices.add(emitted.origin); // whenever the lamp changes, so does the path
+        visit(emitted.origin);
+        const std::optional<Vertex> met = surface_along(emitted.origin, emitted.direction);
+        if (!met || largest(met->albedo) <= 0.0f)
+            return;
+        const ArrivingLight light = light_from(lamp, sample_emitter_point(lamp, 0.0f, 0.0f), met->position);
+        const float cosine = glm::dot(glm::normalize(light.to_light), met->normal);
+        lit_ = {*met, met->albedo * light.irradiance * (std::max(cosine, 0.0f) / pi),
+                lamps_.density(chosen, met->position, met->normal), lamp.entity.index, true};
+    }
+
+    // Adds what the vertex gets from the surface that the lamp lights, weighted against that the next vertex lies
+    // there.
+    void join(const Vertex& vertex, std::uint32_t reflections) {
+        if (!lit_.found || lit_.density <= 0.0f)
+            return;
+        const vec3 way = lit_.vertex.position - vertex.position;
+        const float squared = glm::dot(way, way), length = std::sqrt(squared);
+        const float here = glm::dot(way, vertex.normal), there = -glm::dot(way, lit_.vertex.normal);
+        if (here <= 0.0f || there <= 0.0f)
+            return;
+        const float cosines = here * there / squared;
+        ArrivingLight light;
+        light.irradiance = lit_.radiance * (there / length / (cosines / pi + lit_.density * squared));
+        light.to_light = way;
+        add(vertex, light, 1.0f, number(reflections, ~lit_.lamp));
     }
 
     // About the irradiance that the emitter gives to a place, were nothing in its way.
@@ -123,35 +174,48 @@ private:
 
     // To the surface in this direction; false if there is none, or it ends the path.
     bool advance(Vertex& vertex, vec3 direction) {
-        raytrace::Ray ray{vertex.position + vertex.offset * vertex.normal, direction, 0.0f, 1e30f, index_};
+        const vec3 from = vertex.position, origin = from + vertex.offset * vertex.normal;
+        const float density = glm::dot(direction, vertex.normal) / pi;
+        const std::optional<Vertex> met = surface_along(origin, direction);
+        if (!met) {
+            for (const Emitter& sky : scene_.skies)
+                path_.light += throughput_ * pi * sky.environment_radiance(direction);
+            path_.extent.add(from + 1e6f * direction);
+            return false;
+        }
+        vertex = *met;
+        const vec3 way = vertex.position - from;
+        const float squared = std::max(glm::dot(way, way), 1e-30f);
+        vertex.density = std::max(density * -glm::dot(direction, vertex.normal) / squared, 0.0f);
+        throughput_ *= vertex.albedo;
+        return largest(vertex.albedo) > 0.0f;
+    }
+
+    // Light passes what casts no shadow.
+    std::optional<Vertex> surface_along(vec3 origin, vec3 direction) {
+        raytrace::Ray ray{origin, direction, 0.0f, 1e30f, index_};
         for (int layer = 0; layer < most_layers; ++layer) {
             ++path_.rays;
             const auto hit = scene_.rays->closest_hit(ray);
-            if (!hit) {
-                for (const Emitter& sky : scene_.skies)
-                    path_.light += throughput_ * pi * sky.environment_radiance(direction);
-                path_.extent.add(vertex.position + 1e6f * direction);
-                return false;
-            }
+            if (!hit)
+                return std::nullopt;
             const raytrace::SurfacePoint point = scene_.rays->surface(ray, *hit);
             const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
             const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
-            if (point.casts_shadow) {
-                albedo_ = mean_reflectance(point.material);
-                throughput_ *= albedo_;
-                vertex = {point.on_triangle, normal, point.offset};
-                return largest(albedo_) > 0.0f;
-            }
-            ray.origin = point.on_triangle - point.offset * normal; // light passes
+            if (point.casts_shadow)
+                return Vertex{point.on_triangle, normal, point.offset, 0.0f, mean_reflectance(point.material)};
+            ray.origin = point.on_triangle - point.offset * normal;
         }
-        return false;
+        return std::nullopt;
     }
 
     const SensorScene& scene_;
     const SensorPlace& place_;
     std::uint32_t index_;
     RandomSequence random_;
-    vec3 throughput_{1.0f}, albedo_{1.0f};
+    LampChoice lamps_;
+    LitVertex lit_;
+    vec3 throughput_{1.0f};
     SensorPath path_;
 };
 

@@ -1,7 +1,7 @@
 // One path of light to a sensor, followed backwards: from the sensor to a surface, from there to the next, and from
-// each of them to emitters (next-event estimation: J. Kajiya, "The Rendering Equation", 1986). The mean over a sensor's
-// paths is the irradiance without what emitters without extent send straight to it, which light_of_points has exactly.
-// What a surface reflects is taken as diffuse (mean_reflectance).
+// each of them to emitters (next-event estimation: J. Kajiya, "The Rendering Equation", 1986), and to a surface that a
+// lamp lights (lamp_path.h). The mean over a sensor's paths is the irradiance without what emitters without extent send
+// straight to it, which light_of_points has exactly. What a surface reflects is taken as diffuse (mean_reflectance).
 #pragma once
 
 #include "gi_module/light_sensors/sensor_scene.h"
