@@ -37,6 +37,8 @@ void add_run_options(CLI::App& program, Options& options) {
                       "Simulation steps of 1/60 s per frame of a headless run");
     viewer::add_flag(program, "--hitches", options.hitches,
                      "Print which frames take more than twice the median of the 30 before, and why");
+    viewer::add_flag(program, "--each-frame", options.each_frame,
+                     "Headless: stats.json also has what every frame took, and every pass and stage in it, in ms");
     viewer::add_name(program, "--device", options.device, "Vulkan device, by index or part of its name");
     viewer::add_flag(program, "--validation", options.validation,
                      "Khronos validation layer with synchronization checks");

@@ -47,6 +47,13 @@ nlohmann::ordered_json medians(const std::map<std::string, Series>& times) {
     return result;
 }
 
+nlohmann::ordered_json values(const std::map<std::string, Series>& times) {
+    nlohmann::ordered_json result = nlohmann::ordered_json::object();
+    for (const auto& [name, series] : times)
+        result[name] = series.values();
+    return result;
+}
+
 Status write_numbered(const std::string& folder, std::uint32_t frame, const io::Picture& picture) {
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05u.png", frame);
@@ -245,7 +252,10 @@ Status play(const Options& options, const simulation::Recording& recorded,
     const Status played = caught([&] { return playback.run(*level); });
     SUNFLECK_TRY(playback.finish());
     SUNFLECK_TRY(played);
-    const auto statistics = statistics_of(*level, options, settings, playback, device->traits().name);
+    auto statistics = statistics_of(*level, options, settings, playback, device->traits().name);
+    if (const Times& times = playback.times(); options.each_frame)
+        statistics["each_frame"] = {
+            {"frame_ms", times.frames.values()}, {"cpu_ms", values(times.cpu)}, {"gpu_ms", values(times.gpu)}};
     SUNFLECK_TRY(
         write_file(statistics_file, statistics.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"));
     if (device->validation_messages() > 0)

@@ -10,6 +10,7 @@ namespace sunfleck::demo {
 struct Options {
     bool headless = false, validation = false;
     bool hitches = false;              // says which frames took long, and why
+    bool each_frame = false;           // a headless run's stats.json has the times of every frame, too
     std::uint32_t frames = 0;          // 0: until the window is closed, or the input ends
     std::uint32_t pictures = 8;        // written by a headless run, evenly spaced from the first frame to the last
     std::uint32_t steps_per_frame = 2; // of a headless run

@@ -27,8 +27,8 @@ TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
     EXPECT_NE(first.output.find("; 2 pictures and stats.json in 'first'\n"), std::string::npos) << first.output;
     EXPECT_EQ(first.output.find("warning"), std::string::npos) << first.output;
     EXPECT_EQ(first.output.find("error"), std::string::npos) << first.output;
-    const Outcome second =
-        shell(in_folder + "LP_NUM_THREADS=1 taskset -c 0 " + SUNFLECK_DEMO + common + "-o second --input walk.txt");
+    const Outcome second = shell(in_folder + "LP_NUM_THREADS=1 taskset -c 0 " + SUNFLECK_DEMO + common +
+                                 "-o second --input walk.txt --each-frame");
     ASSERT_EQ(second.status, 0) << second.output;
     const auto a = nlohmann::json::parse(read_file(folder / "first/stats.json").value());
     const auto b = nlohmann::json::parse(read_file(folder / "second/stats.json").value());
@@ -36,6 +36,10 @@ TEST_F(CommandLine, TheDemoPlaysBackTheSameEveryTime) {
     EXPECT_EQ(a["world_hash"], b["world_hash"]);
     for (const char* key : {"frame_ms", "cpu_ms", "gpu_ms", "counters", "preset"})
         EXPECT_TRUE(a.contains(key)) << key;
+    EXPECT_FALSE(a.contains("each_frame"));
+    EXPECT_EQ(b["each_frame"]["frame_ms"].size(), std::size_t(frames));
+    EXPECT_EQ(b["each_frame"]["gpu_ms"]["g-buffer"].size(), std::size_t(frames));
+    EXPECT_FALSE(b["each_frame"]["cpu_ms"].empty());
     EXPECT_EQ(a["counters"]["player_rescued"], 0);
     int pictures = 0;
     for (const auto& entry : fs::directory_iterator(folder / "first"))

@@ -2,6 +2,7 @@
 #include "engine/core/exit_status.h"
 #include "tests/bench/smoothness/measure.h"
 #include "tests/bench/smoothness/report.h"
+#include "tests/bench/smoothness/views.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,8 @@ namespace sunfleck {
 namespace {
 
 constexpr const char* usage = "smoothness_bench rooms FOLDER\n"
+                              "smoothness_bench views LEVEL FOLDER\n"
+                              "smoothness_bench halve PICTURE OUTPUT\n"
                               "smoothness_bench pacing DEMO ROOMS ROOM SECONDS OUTPUT [ARGUMENTS OF THE DEMO...]\n"
                               "smoothness_bench latency DEMO ROOMS ROOM SAMPLES OUTPUT [ARGUMENTS OF THE DEMO...]\n"
                               "smoothness_bench report FOLDER\n";
@@ -25,6 +28,10 @@ int run(const std::vector<std::string>& arguments) {
     const std::string what = arguments.empty() ? "" : arguments[0];
     if (what == "rooms" && arguments.size() == 2)
         return fail(bench::write_rooms(arguments[1]));
+    if (what == "views" && arguments.size() == 3)
+        return fail(bench::write_views(arguments[1], arguments[2]));
+    if (what == "halve" && arguments.size() == 3)
+        return fail(bench::halve_picture(arguments[1], arguments[2]));
     if (what == "report" && arguments.size() == 2) {
         const Result<bool> held = bench::report(arguments[1]);
         return held ? (*held ? exit_done : exit_failed) : fail(held.error());

@@ -3,6 +3,8 @@
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
 #include "engine/statistics/summary.h"
+#include "tests/bench/smoothness/pass_times.h"
+#include "tests/bench/smoothness/picture_errors.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -23,6 +25,12 @@ struct Side { // of one commit
     std::vector<std::string> ends, long_frames;
     unsigned lost = 0;
     double state_ms = 0.0; // the most that telling its state took of a run's frames
+    PassTimes passes;
+};
+
+struct Results {
+    std::map<std::string, Side> sides;
+    PictureErrors pictures;
 };
 
 void append(std::vector<double>& to, const nlohmann::json& from, const char* name) {
@@ -43,7 +51,7 @@ std::vector<double> after_reaching(const nlohmann::json& file) {
     return late;
 }
 
-void add_file(Side& side, const nlohmann::json& file) {
+void add_frames(Side& side, const nlohmann::json& file) {
     const std::string room = file.value("room", std::string());
     if (file.value("measured", std::string()) == "latency") {
         append(side.looking, file, "looking_ms");
@@ -62,8 +70,17 @@ void add_file(Side& side, const nlohmann::json& file) {
         side.long_frames.push_back(room + ": " + line.get<std::string>());
 }
 
-Result<std::map<std::string, Side>> read_all(const fs::path& folder) {
-    std::map<std::string, Side> sides;
+void add_file(Results& results, const std::string& side, const nlohmann::json& file) {
+    if (file.value("measured", std::string()) == "picture")
+        results.pictures.add(side, file);
+    else if (file.contains("each_frame")) // as the program writes it
+        results.sides[side].passes.add(file["each_frame"]);
+    else
+        add_frames(results.sides[side], file);
+}
+
+Result<Results> read_all(const fs::path& folder) {
+    Results results;
     std::error_code code;
     for (const auto& entry : fs::directory_iterator(folder, code)) {
         const std::string name = entry.path().filename().string();
@@ -73,9 +90,9 @@ Result<std::map<std::string, Side>> read_all(const fs::path& folder) {
         const auto file = nlohmann::json::parse(text, nullptr, false);
         if (!file.is_object())
             return Error{"'" + entry.path().string() + "' is damaged: remove it and run the bench once more"};
-        add_file(sides[name.substr(0, name.find('-'))], file);
+        add_file(results, name.substr(0, name.find('-')), file);
     }
-    return sides;
+    return results;
 }
 
 // A line of the report; true if it is within the bound.
@@ -145,7 +162,8 @@ bool report_latency(const Side& side) {
 }
 
 // What was not measured has met no bound.
-bool all_measured(const std::map<std::string, Side>& sides) {
+bool all_measured(const Results& results) {
+    const auto& sides = results.sides;
     bool all = true;
     const auto need = [&](bool there, const char* what) {
         if (!there)
@@ -161,14 +179,27 @@ bool all_measured(const std::map<std::string, Side>& sides) {
     need(has("after", &Side::looking) && has("after", &Side::walking), "latency");
     for (const char* target : {"target100", "target66", "target50"})
         need(has(target, &Side::frames), target);
+    const auto has_passes = [&](const char* name) { return sides.count(name) && !sides.at(name).passes.empty(); };
+    need(has_passes("before") && has_passes("after"), "passes");
+    need(results.pictures.has("before") && results.pictures.has("after"), "pictures");
     return all;
+}
+
+bool compare_sides(const Side& before, const Side& after) {
+    if (before.frames.empty() || after.frames.empty())
+        return false;
+    std::printf("after / before\n");
+    const bool held = judge("median", median(after.frames) / median(before.frames), 0.41);
+    const double long_frames = percentile(after.frames, 0.95) / percentile(before.frames, 0.95);
+    return judge("95th percentile", long_frames, 0.35) && held;
 }
 
 } // namespace
 
 Result<bool> report(const fs::path& folder) {
-    SUNFLECK_ASSIGN(const auto sides, read_all(folder));
-    bool held = all_measured(sides);
+    SUNFLECK_ASSIGN(const Results results, read_all(folder));
+    const auto& sides = results.sides;
+    bool held = all_measured(results);
     for (const auto& [name, side] : sides) {
         if (!side.frames.empty())
             print_frames(name, side);
@@ -179,12 +210,12 @@ Result<bool> report(const fs::path& folder) {
         held = held && (name == "before" || (ended && paced && quick)); // targets are for what is measured now
     }
     const auto before = sides.find("before"), after = sides.find("after");
-    if (before == sides.end() || after == sides.end() || before->second.frames.empty() || after->second.frames.empty())
-        return false;
-    const Side &b = before->second, &a = after->second;
-    std::printf("after / before\n");
-    held = judge("median", median(a.frames) / median(b.frames), 0.41) && held;
-    return judge("95th percentile", percentile(a.frames, 0.95) / percentile(b.frames, 0.95), 0.35) && held;
+    const bool both = before != sides.end() && after != sides.end();
+    held = both && compare_sides(before->second, after->second) && held;
+    if (both && !(before->second.passes.empty() && after->second.passes.empty()))
+        std::fputs(pass_table(before->second.passes, after->second.passes).c_str(), stdout);
+    std::fputs(results.pictures.table().c_str(), stdout);
+    return results.pictures.held() && held;
 }
 
 } // namespace sunfleck::bench

@@ -2,6 +2,8 @@
 #include "tests/bench/smoothness/report.h"
 
 #include "engine/core/file.h"
+#include "tests/bench/smoothness/pass_times.h"
+#include "tests/bench/smoothness/picture_errors.h"
 #include "tests/support/folder.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +33,20 @@ struct SmoothnessReport : testing::Test {
                 {"frames_ms", std::vector<double>(50, 50.0)},
                 {"lost", lost}};
     }
+    // Of the program itself: a pass runs in every frame, another in half of them, a stage in every frame.
+    static Json passes(double milliseconds) {
+        const std::vector<double> all(200, milliseconds), half(100, 3.0 * milliseconds);
+        return {{"each_frame",
+                 {{"frame_ms", all}, {"gpu_ms", {{"shade", all}, {"bake", half}}}, {"cpu_ms", {{"sort", all}}}}}};
+    }
+    static Json picture(double flip, const char* room = "porch") {
+        return {{"measured", "picture"}, {"room", room}, {"moment", "settled"}, {"spp", 64}, {"flip", flip}};
+    }
     void write_all() {
+        write("before-passes1", passes(150.0));
+        write("after-passes1", passes(50.0));
+        write("before-picture-porch-settled", picture(0.100));
+        write("after-picture-porch-settled", picture(0.109));
         write("before-pacing-porch", pacing(150.0));
         write("after-pacing-porch", pacing(50.0));
         write("after-latency-porch", latency(1));
@@ -50,8 +65,10 @@ TEST_F(SmoothnessReport, HoldsWhereAllIsMeasuredAndWithinBounds) {
 }
 
 TEST_F(SmoothnessReport, WhatWasNotMeasuredIsMissed) {
-    for (const char* name : {"before-pacing-porch", "after-pacing-porch", "after-latency-porch",
-                             "target100-pacing-porch", "target66-pacing-porch", "target50-pacing-porch"}) {
+    for (const char* name :
+         {"before-pacing-porch", "after-pacing-porch", "after-latency-porch", "target100-pacing-porch",
+          "target66-pacing-porch", "target50-pacing-porch", "before-passes1", "after-passes1",
+          "before-picture-porch-settled", "after-picture-porch-settled"}) {
         write_all();
         std::filesystem::remove(folder.path / (std::string(name) + ".json"));
         EXPECT_FALSE(held()) << name;
@@ -72,6 +89,68 @@ TEST_F(SmoothnessReport, BoundsAreHeld) {
     write("after-pacing-corner", pacing(50.0));
     write("target50-pacing-porch", pacing(60.0));
     EXPECT_FALSE(held()) << "a target that is missed";
+    write_all();
+    EXPECT_TRUE(held());
+    write("after-picture-porch-settled", picture(0.111));
+    EXPECT_FALSE(held()) << "a picture that is worse";
+    write_all();
+    write("after-picture-corner-settled", picture(0.01, "corner"));
+    EXPECT_FALSE(held()) << "a view that was not measured before";
+}
+
+// Where a line begins with this, what stands behind it.
+std::string behind(const std::string& table, const std::string& name) {
+    const std::size_t at = table.find("\n    " + name + " ");
+    if (at == std::string::npos)
+        return "no line";
+    const std::size_t from = at + 5 + name.size();
+    std::string line = table.substr(from, table.find('\n', from) - from), squeezed;
+    for (const char c : line)
+        if (c != ' ' || (!squeezed.empty() && squeezed.back() != ' '))
+            squeezed += c;
+    squeezed.erase(squeezed.find_last_not_of(' ') + 1);
+    return squeezed;
+}
+
+TEST(SmoothnessPasses, TableHasBothSidesTheLongestFirst) {
+    using List = std::vector<double>;
+    PassTimes before, after;
+    const nlohmann::json whole = List{100.0, 100.0, 100.0};
+    before.add(
+        {{"frame_ms", whole}, {"gpu_ms", {{"shade", {8.0, 9.0, 10.0}}, {"gone", {5.0, 5.0, 5.0}}, {"load", {0.001}}}}});
+    after.add({{"frame_ms", whole}, {"gpu_ms", {{"shade", {3.0, 2.0, 1.0}}}}, {"cpu_ms", {{"sort", {4.0, 4.0, 4.0}}}}});
+    after.add({{"frame_ms", whole},
+               {"gpu_ms", {{"shade", {2.0, 2.0, 2.0}}, {"new", {1.0}}}},
+               {"cpu_ms", {{"sort", {4.0, 4.0, 4.0}}}}});
+    const std::string table = pass_table(before, after);
+    EXPECT_EQ(behind(table, "whole frame"), "100.00 100.00 ..100.00 100.00 100.00 ..100.00");
+    EXPECT_EQ(behind(table, "shade"), "9.00 8.10 .. 9.90 2.00 1.25 .. 2.75");
+    EXPECT_EQ(behind(table, "sort (CPU)"), "- 4.00 4.00 .. 4.00");
+    EXPECT_EQ(behind(table, "gone"), "5.00 5.00 .. 5.00 -");
+    EXPECT_EQ(behind(table, "new"), "- 0.00 0.00 .. 0.75") << "frames without it are frames in which it takes nothing";
+    for (const auto& [first, second] :
+         {std::pair("whole frame", "sort"), {"sort", "shade"}, {"shade", "new"}, {"new", "gone"}})
+        EXPECT_LT(table.find(first), table.find(second)) << first << ", " << second;
+}
+
+TEST(SmoothnessPictures, TableHasTheRatioAndWhatIsBeyondTheTarget) {
+    PictureErrors errors;
+    const auto add = [&](const char* side, const char* room, double flip) {
+        errors.add(side, {{"room", room}, {"moment", "settled"}, {"spp", 64}, {"flip", flip}});
+    };
+    add("before", "porch", 0.1);
+    add("after", "porch", 0.05);
+    add("reference", "porch", 0.01);
+    EXPECT_TRUE(errors.held());
+    add("before", "corner", 0.1);
+    EXPECT_FALSE(errors.held());
+    EXPECT_EQ(behind(errors.table(), "corner, settled"), "not measured after MISSED");
+    add("after", "corner", 0.12);
+    EXPECT_FALSE(errors.held());
+    EXPECT_EQ(behind(errors.table(), "porch, settled"), "0.1000 0.0500 0.50");
+    EXPECT_EQ(behind(errors.table(), "corner, settled"), "0.1000 0.1200 1.20 MISSED");
+    EXPECT_NE(errors.table().find("64 samples"), std::string::npos);
+    EXPECT_NE(errors.table().find("porch: 0.0100"), std::string::npos);
 }
 
 } // namespace
