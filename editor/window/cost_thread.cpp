@@ -1,6 +1,7 @@
 #include "editor/window/cost_thread.h"
 
 #include "engine/core/caught.h"
+#include "engine/core/memory_limit.h"
 #include "engine/statistics/clipped_sum.h"
 #include "engine/statistics/summary.h"
 #include "viewer/preparation.h"
@@ -364,6 +365,8 @@ void CostThread::run() {
                 cost_.finished = true;
             }
         }
+        work.reset();
+        return_free_memory(); // the copies'
         wake_();
     }
 }

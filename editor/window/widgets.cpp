@@ -1,5 +1,6 @@
 #include "editor/window/widgets.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <imgui_stdlib.h>
 
@@ -24,6 +25,20 @@ bool overlaps(ImVec2 low, ImVec2 high, ImVec2 clip_low, ImVec2 clip_high) {
 // What one sees of a name: what comes before "##".
 std::string_view visible(std::string_view name) {
     return name.substr(0, name.find("##"));
+}
+
+constexpr float widest_tooltip = 24.0f; // in units
+
+// Below the item, or above it near the window's lower edge: beside the pointer it would cover the items to the right,
+// as those of a row of buttons. What is high, such as a picture, has it beside the pointer all the same.
+void place_tooltip() {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), display = ImGui::GetIO().DisplaySize;
+    if (high.y - low.y > 4.0f * unit())
+        return;
+    const bool above = high.y > 0.75f * display.y;
+    const float x = std::max(std::min(low.x, display.x - (widest_tooltip + 2.0f) * unit()), 0.0f), gap = 0.3f * unit();
+    ImGui::SetNextWindowPos(ImVec2(x, above ? low.y - gap : high.y + gap), ImGuiCond_Always,
+                            ImVec2(0.0f, above ? 1.0f : 0.0f));
 }
 
 } // namespace
@@ -68,9 +83,10 @@ Scope::~Scope() {
 void tooltip(std::string_view text) {
     if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
         return;
+    place_tooltip();
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0.55f * unit(), 0.4f * unit())); // over the picture, too
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(24.0f * unit());
+    ImGui::PushTextWrapPos(widest_tooltip * unit());
     ImGui::TextUnformatted(text.data(), text.data() + text.size());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();

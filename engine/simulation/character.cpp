@@ -115,13 +115,16 @@ void Character::ride(const PhysicsWorld& world) {
     capsule_.foot += motion * share;
 }
 
+// A person who is squeezed has no place that is free. They stay on this side of walls and floors, and overlap with what
+// moves, which gives way.
 void Character::leave_overlaps(const PhysicsWorld& world) {
-    for (int round = 0; round < 4; ++round) {
-        const vec3 out = world.depenetration(capsule_);
-        if (glm::length(out) < 1e-4f)
-            return;
-        capsule_.foot += out;
-    }
+    for (const auto obstacles : {PhysicsWorld::Obstacles::all, PhysicsWorld::Obstacles::fixed})
+        for (int round = 0; round < 4; ++round) {
+            const vec3 out = world.depenetration(capsule_, obstacles);
+            if (glm::length(out) < 1e-4f)
+                return;
+            capsule_.foot += out;
+        }
 }
 
 // Moves as far as possible, then slides along the obstacle.

@@ -278,30 +278,39 @@ std::optional<SweepHit> PhysicsWorld::sweep(const Capsule& capsule, vec3 motion,
 
 namespace {
 
+// What follows its Transform counts as static with Bullet, too, since its mass is none.
+bool is_fixed(const btCollisionObject& object) {
+    return object.isStaticObject() && !object.isKinematicObject();
+}
+
 struct DeepestContacts : btCollisionWorld::ContactResultCallback {
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* first, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-        if (point.getDistance() >= 0.0f)
+                             const btCollisionObjectWrapper* second, int, int) override {
+        const bool self_first = first->getCollisionObject() == self;
+        const btCollisionObject* other = (self_first ? second : first)->getCollisionObject();
+        if (point.getDistance() >= 0.0f || (fixed_alone && !is_fixed(*other)))
             return 0.0f;
-        const float sign = first->getCollisionObject() == self ? 1.0f : -1.0f;
+        const float sign = self_first ? 1.0f : -1.0f;
         const vec3 out = from_bullet(point.m_normalWorldOnB) * (-float(point.getDistance()) * sign);
         if (glm::length(out) > glm::length(deepest))
             deepest = out;
         return 0.0f;
     }
     const btCollisionObject* self = nullptr;
+    bool fixed_alone = false;
     vec3 deepest{0.0f};
 };
 
 } // namespace
 
-vec3 PhysicsWorld::depenetration(const Capsule& capsule) const {
+vec3 PhysicsWorld::depenetration(const Capsule& capsule, Obstacles obstacles) const {
     btCapsuleShape shape = capsule_shape(capsule);
     btCollisionObject object;
     object.setCollisionShape(&shape);
     object.setWorldTransform(capsule_place(capsule));
     DeepestContacts contacts;
     contacts.self = &object;
+    contacts.fixed_alone = obstacles == Obstacles::fixed;
     implementation_->world.contactTest(&object, contacts);
     return contacts.deepest;
 }

@@ -40,8 +40,9 @@ public:
 
     // Sweeps the capsule by `motion`. `ignored` is not hit.
     std::optional<SweepHit> sweep(const Capsule& capsule, vec3 motion, ecs::Entity ignored = ecs::null_entity) const;
-    // Displacement that resolves the capsule's overlaps: the sum of the deepest ones, or zero.
-    vec3 depenetration(const Capsule& capsule) const;
+    // Displacement that resolves the capsule's deepest overlap, or zero: with anything, or with what never moves.
+    enum class Obstacles { all, fixed };
+    vec3 depenetration(const Capsule& capsule, Obstacles obstacles = Obstacles::all) const;
     bool overlaps(const Capsule& capsule) const;
     // The first hit of a ray of this length.
     std::optional<SweepHit> ray(vec3 origin, vec3 motion, ecs::Entity ignored = ecs::null_entity) const;

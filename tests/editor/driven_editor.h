@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace sunfleck::tests {
@@ -187,6 +189,18 @@ public:
     std::string log() const { return read_file(folder_ / "log").value(); }
     std::string file(const std::string& name) const { return (folder_ / name).string(); }
     pid_t process() const { return editor_; }
+    // What it has used of the processors since it began, s.
+    double processor_seconds() const {
+        std::ifstream file("/proc/" + std::to_string(editor_) + "/stat");
+        std::string word, line;
+        std::getline(file, line);
+        std::istringstream rest(line.substr(std::min(line.rfind(')') + 2, line.size())));
+        std::vector<std::string> words;
+        while (rest >> word)
+            words.push_back(word);
+        return words.size() < 13 ? 0.0
+                                 : double(std::stol(words[11]) + std::stol(words[12])) / double(sysconf(_SC_CLK_TCK));
+    }
     // As xdotool names it.
     const std::string& window() const { return window_; }
     bool focus() const { return display_.focus(window_); }

@@ -157,16 +157,7 @@ TEST_F(EditorWindow, RestsWhileNothingHappens) {
     ASSERT_TRUE(editor->settles());
     editor->point_at(30, 300);
     std::this_thread::sleep_for(std::chrono::seconds(1));
-    const auto processor = [&] {
-        std::ifstream file("/proc/" + std::to_string(editor->process()) + "/stat");
-        std::string word, line;
-        std::getline(file, line);
-        std::istringstream rest(line.substr(line.rfind(')') + 2));
-        std::vector<std::string> words;
-        while (rest >> word)
-            words.push_back(word);
-        return double(std::stol(words[11]) + std::stol(words[12])) / double(sysconf(_SC_CLK_TCK));
-    };
+    const auto processor = [&] { return editor->processor_seconds(); };
     const auto now = [] {
         return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
     };

@@ -273,6 +273,36 @@ TEST(Simulation, DoorsDoNotCrushPeople) {
     EXPECT_EQ(house.simulation->player().rescued(), 0u);
 }
 
+// Pressed into a corner by the edge of something that moves, a person overlaps it, and neither wall nor floor.
+TEST(Simulation, NobodyIsPressedThroughWallsAndFloors) {
+    ecs::Registry registry;
+    scene::register_components(registry);
+    scene::MeshStore meshes;
+    assets::SceneBuilder builder(registry, meshes);
+    const scene::Material grey = assets::diffuse(vec3(0.5f));
+    builder.box("floor", vec3(-3.0f, -0.5f, -3.0f), vec3(3.0f, 0.0f, 3.0f), grey);
+    builder.box("wall", vec3(-1.0f, 0.0f, -3.0f), vec3(0.0f, 3.0f, 3.0f), grey);
+    const ecs::Entity slanted = builder.box("slanted", vec3(-0.5f), vec3(0.5f), grey);
+    builder.mover(slanted, {});
+    registry.patch<scene::Transform>(slanted, [](scene::Transform& transform) {
+        transform.rotation = glm::angleAxis(glm::radians(30.0f), vec3(0.0f, 0.0f, 1.0f));
+        transform.position = vec3(0.9f, 2.6f, 0.0f);
+    });
+    scene::update_world_transforms(registry);
+    PhysicsWorld world(registry, meshes);
+    Character person(vec3(0.32f, 0.0f, 0.0f), 0.0f, 1.7f);
+    for (int step = 0; step < 60; ++step) { // down and towards the wall
+        registry.patch<scene::Transform>(
+            slanted, [](scene::Transform& transform) { transform.position += vec3(-0.008f, -0.012f, 0.0f); });
+        scene::update_world_transforms(registry);
+        world.step(registry);
+        person.step(world, {});
+        EXPECT_LE(glm::length(world.depenetration(person.capsule(), PhysicsWorld::Obstacles::fixed)), 0.005f)
+            << "in step " << step;
+    }
+    EXPECT_TRUE(world.overlaps(person.capsule())) << "it presses";
+}
+
 // A registry whose movers show any moment.
 struct MovedScene {
     MovedScene() { scene::register_components(registry); }
