@@ -284,6 +284,7 @@ bool is_fixed(const btCollisionObject& object) {
 }
 
 struct DeepestContacts : btCollisionWorld::ContactResultCallback {
+    // Bullet's own parameters. NOLINTNEXTLINE(readability-function-size)
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* first, int, int,
                              const btCollisionObjectWrapper* second, int, int) override {
         const bool self_first = first->getCollisionObject() == self;
