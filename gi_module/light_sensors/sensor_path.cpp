@@ -117,6 +117,7 @@ private:
         path_.vertices.add(emitted.origin); // whenever the lamp changes, so does the path
         visit(emitted.origin);
         const std::optional<Vertex> met = surface_along(emitted.origin, emitted.direction);
+        visit(met ? met->position : emitted.origin + 1e6f * emitted.direction); // as in advance
         if (!met || largest(met->albedo) <= 0.0f)
             return;
         const ArrivingLight light = light_from(lamp, sample_emitter_point(lamp, 0.0f, 0.0f), met->position);
