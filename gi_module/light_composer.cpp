@@ -66,6 +66,8 @@ Status LightComposer::add_part(gpu::FrameGraph& graph, std::span<const std::uniq
     }
     if (contributors.empty())
         return {};
+    if (!services.input.light_pixels)
+        return light_sum_->clear(graph, target.g_buffer, target.irradiance, services.resources);
     return low_resolution_->add_passes(graph, services.settings, frame, contributors, services.resources);
 }
 

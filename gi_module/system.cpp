@@ -279,7 +279,7 @@ Status System::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sce
     if (restart_)
         graph.add_full_barrier();
     if (!shadows_->slots_are_shared(samples_.size()))
-        SUNFLECK_TRY(shadows_->add_passes(graph, gpu_scene, samples_, resources_));
+        SUNFLECK_TRY(shadows_->add_passes(graph, gpu_scene, samples_, input_.light_pixels, resources_));
     Services shared = services();
     LightTarget target{gpu_scene, g_buffer, camera, output};
     target.view = view_;

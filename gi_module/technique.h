@@ -55,6 +55,9 @@ struct FrameInput {
     double measured_map_milliseconds = 0.0;
     // Reflected light is multiplied by this: 0 shows direct light alone, from the same samples.
     float indirect_scale = 1.0f;
+    // False: the picture of this frame is not used. Shadow maps, light maps and baked light are brought up to date, and
+    // no pixel is lit by the techniques that do so one by one: for hosts that prepare lighting beside their frames.
+    bool light_pixels = true;
     // Name of a debug view (debug_views()) in place of the irradiance; empty: none.
     std::string_view view{};
     // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the

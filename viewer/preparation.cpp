@@ -18,6 +18,10 @@ double gpu_milliseconds(const FrameStatistics& statistics) {
 } // namespace
 
 Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options) {
+    // Pixels are lit once, at the end. Until then that would be done by kernels that no later frame may need, and some
+    // drivers compile a kernel only when it runs, while all wait who share the queue; and maps that are still to be
+    // drawn, often hundreds of MiB, would be cleared first.
+    request.light_pixels = false;
     request.map_budget = 0;
     request.progress = [&](float share) { return options.progress(samples_until * share); };
     SUNFLECK_TRY(renderer.render_and_wait(request));
@@ -39,7 +43,8 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
         else if (milliseconds > 1.6 * options.portion)
             request.map_budget = std::max(request.map_budget / 2, 1u);
     }
-    return {};
+    request.light_pixels = true;
+    return renderer.render_and_wait(request);
 }
 
 } // namespace sunfleck::viewer

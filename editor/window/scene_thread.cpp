@@ -152,7 +152,9 @@ bool SceneThread::take_work() {
         changed_.wait_for(lock, light_interval, wakes);
     else if (!changed_.wait_for(lock, rest, wakes)) {
         lock.unlock();
-        return_free_memory(); // of old lighting, large geometry, the widest picture
+        if (std::exchange(is_other_scene_, false))
+            device_->pipelines().drop_unused(); // kernels that only the scene before needed
+        return_free_memory();                   // of old lighting, large geometry, the widest picture
         lock.lock();
         changed_.wait(lock, wakes);
     }
@@ -285,7 +287,7 @@ Status SceneThread::apply_change() {
         light_.reset();
         play_.reset();
         copy_.reset();
-        exposure_is_old_ = true;
+        exposure_is_old_ = is_other_scene_ = true;
         SUNFLECK_ASSIGN(copy_, SceneCopy::create(*device_));
         light_ = std::make_unique<viewer::LightingChanges>(*device_);
         light_is_slow_ = false;

@@ -221,6 +221,7 @@ private:
     double owed_steps_ = 0.0;
     int frames_left_ = 0;
     bool failed_ = false, exposure_is_old_ = true;
+    bool is_other_scene_ = false; // than at the last rest
     // Light of its scene takes so long to make that it is made behind the frames; else the frame makes it. Once it is
     // so, it stays: a frame that makes light is one that the window waits for.
     bool light_is_slow_ = false;

@@ -211,8 +211,8 @@ Status ShadowService::draw(gpu::FrameGraph& graph, const scene::GpuScene& gpu_sc
 }
 
 Status ShadowService::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
-                                 gpu::FrameResources& resources) {
-    if (settings_.shadows)
+                                 bool read, gpu::FrameResources& resources) {
+    if (settings_.shadows && read)
         clear_undefined(graph, samples);
     return draw(graph, gpu_scene, samples, to_draw_, resources);
 }

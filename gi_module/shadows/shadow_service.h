@@ -59,8 +59,9 @@ public:
     // GPU time of an earlier frame's maps, ms; only used for ShadowSettings::map_milliseconds.
     void measured(std::uint64_t serial, double milliseconds) { budget_.add_time(serial, milliseconds); }
 
-    // Adds the passes that redraw the chosen maps.
-    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples,
+    // Adds the passes that redraw the chosen maps. `read`: also that no other map lights anything if it has not been
+    // drawn yet; else these hold anything, until a frame reads them.
+    Status add_passes(gpu::FrameGraph& graph, const scene::GpuScene& gpu_scene, const SampleSet& samples, bool read,
                       gpu::FrameResources& resources);
     // For more samples than slots, which then share them in turn: adds the passes that draw the maps of samples
     // [first, first + count) over those that used the slots before.

@@ -94,6 +94,20 @@ TEST_F(LightingChangeTest, TheLastOfManyRequestsCounts) {
     ASSERT_TRUE(changes.advance(*world.renderer));
 }
 
+// Frames that light no pixel draw the maps of those that do.
+TEST_F(LightingChangeTest, MapsAreDrawnThoughNoPixelIsLit) {
+    MovingBox world(lights(60));
+    world.settled(0);
+    world.request.light_pixels = false;
+    const io::Picture unlit = world.settled(37);
+    EXPECT_EQ(std::ranges::count_if(unlit.pixels, [](const vec4& pixel) { return vec3(pixel) != vec3(0.0f); }), 0);
+    world.request.light_pixels = true;
+    world.render_step(37);
+    EXPECT_EQ(counter_of(world, "shadow_map_updates"), 0u) << "they are up to date";
+    MovingBox fresh(lights(60));
+    expect_same_picture(world.settled(37), fresh.settled(37));
+}
+
 // A lamp that is known to vary only scales its samples; new lighting knows it, too.
 TEST_F(LightingChangeTest, ItKnowsWhichLampsVary) {
     MovingBox world(lights(40));
