@@ -123,7 +123,6 @@ TEST_F(CommandLine, TheGamesWholeSolutionIsTheSameInSoftware) {
     ASSERT_EQ(expected["steps"], solution->size());
     EXPECT_GE(expected["opened"].size(), 5u);
     EXPECT_EQ(drawn["steps"], expected["steps"]);
-    EXPECT_EQ(drawn["opened"], expected["opened"]);
     EXPECT_EQ(drawn["steps_hash"], expected["steps_hash"]) << "a step differs";
     EXPECT_EQ(drawn["world_hash"], expected["world_hash"]);
 }

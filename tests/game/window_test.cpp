@@ -99,12 +99,13 @@ public:
             return std::exchange(before, now)[what] == now[what];
         });
     }
-    // From the paused game: the menu's entry of this name is selected, then taken.
+    // From the paused game: the menu's entry of this name is selected, then taken. A key is pressed once: one that
+    // comes late on a busy machine would be followed by a second.
     bool take(const std::string& entry) const {
         for (int round = 0; round < 16 && value("selected") != entry; ++round) {
             const std::string before = value("selected");
             display_.run("xdotool key Down");
-            DrivenDisplay::wait_until([&] { return value("selected") != before; }, 3.0);
+            DrivenDisplay::wait_until([&] { return value("selected") != before; }, 20.0);
         }
         if (value("selected") != entry)
             return false;
