@@ -366,7 +366,8 @@ void CostThread::run() {
             }
         }
         work.reset();
-        return_free_memory(); // the copies'
+        device_.pipelines().drop_unused(); // of what the settings were compared with
+        return_free_memory();              // the copies'
         wake_();
     }
 }

@@ -22,15 +22,15 @@ constexpr std::chrono::seconds rest{1};                 // without anything to d
 
 } // namespace
 
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 SceneThread::SceneThread(gpu::Device& device, std::function<void()> wake)
     : device_(&device), wake_(std::move(wake)), thread_([this] { run(); }) {}
 
 SceneThread::~SceneThread() {
     end();
+    const bool has_device = copy_ != nullptr;
+    forget_device();
+    if (has_device)
+        device_->pipelines().drop_unused();
 }
 
 void SceneThread::end() {

@@ -104,7 +104,9 @@ struct FrameNote {
     double at = 0.0; // s on the system's clock
     double milliseconds = 0.0;
 };
-double seconds_now();
+inline double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 class SceneThread {
 public:
