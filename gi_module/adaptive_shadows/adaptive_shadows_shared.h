@@ -11,7 +11,7 @@ SHARED_CONSTANT uint tile_border = 2u;
 SHARED_CONSTANT uint tile_inner = tile_side - 2u * tile_border;
 SHARED_CONSTANT uint tile_levels = 8u; // levels 0 to 7: up to 32,256 texels along a side
 
-// What a light's map shows; a pass has lights of one kind.
+// What a light's map shows; a pass lights by lights of one kind.
 SHARED_CONSTANT uint map_of_sphere = 0u;     // point lights, wide spots
 SHARED_CONSTANT uint map_of_cone = 1u;       // narrow spots
 SHARED_CONSTANT uint map_of_directions = 2u; // suns
@@ -26,15 +26,25 @@ struct TileLight {
     uint unused0, unused1;
 };
 
-SHARED_CONSTANT uint lights_per_pass = 128u; // 12 KiB: within the uniform buffer range of every device
+SHARED_CONSTANT uint map_kinds = 3u;
+
+SHARED_CONSTANT uint lights_per_pass = 32u; // a bit for each in a word
+
+// The picture is lit in blocks of 8 rows. A word for each says which lights of the batch may light any of its pixels;
+// for each kind of map, those that have any are listed.
+SHARED_CONSTANT uint block_rows = 8u;
+struct LitBlock {
+    uint block; // row after row
+    uint lights;
+};
 
 struct PunctualConstants {
     uint width;
     uint height;
     uint light_count;
-    uint first_pass; // 1: sums start at zero, or at what the picture holds; otherwise they continue from the buffer of
-                     // sums
-    uint last_pass;  // 1: the result is written to the picture, otherwise to the buffer of sums
+    uint block_columns; // blocks side by side
+    uint block_count;
+    uint kind_lights[map_kinds]; // of the batch, by kind of map
 };
 
 SHARED_END

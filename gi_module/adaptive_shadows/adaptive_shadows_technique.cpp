@@ -303,11 +303,13 @@ shared::TileLight AdaptiveShadowsTechnique::make_table(std::uint32_t light, std:
 std::vector<PunctualBatch> AdaptiveShadowsTechnique::make_batches(std::vector<std::uint32_t>& table) const {
     std::vector<PunctualBatch> batches;
     for (std::uint32_t light = 0; light < lights_.size(); ++light) {
-        const std::uint32_t kind = map_kind(lights_[light].row, lights_[light].light_class);
-        if (batches.empty() || batches.back().map_kind != kind ||
-            batches.back().lights.size() == shared::lights_per_pass)
-            batches.push_back({kind, {}});
-        batches.back().lights.push_back(make_table(light, table));
+        if (!lit(lights_[light]))
+            continue;
+        if (batches.empty() || batches.back().lights.size() == shared::lights_per_pass)
+            batches.emplace_back();
+        PunctualBatch& batch = batches.back();
+        batch.kind_lights[map_kind(lights_[light].row, lights_[light].light_class)] |= 1u << batch.lights.size();
+        batch.lights.push_back(make_table(light, table));
     }
     return batches;
 }
@@ -324,7 +326,7 @@ Status AdaptiveShadowsTechnique::add_passes(gpu::FrameGraph& graph, Services& se
     if (!dark)
         batches = make_batches(table);
     if (batches.empty())
-        batches.push_back({shared::map_of_sphere, {}});
+        batches.emplace_back();
     if (table.empty())
         table.push_back(0);
     return kernel_->add_passes({graph, target.g_buffer, target.camera, shadows ? &maps_->texels() : nullptr,

@@ -22,51 +22,95 @@ PunctualKernel::~PunctualKernel() {
     device_.vk.vkDestroySampler(device_.handle(), sampler_, nullptr);
 }
 
-Status PunctualKernel::grow_sums(const PunctualFrame& frame, bool needed, gpu::FrameResources& resources) {
-    const VkDeviceSize bytes = needed ? VkDeviceSize(frame.g_buffer.width) * frame.g_buffer.height * sizeof(vec4) : 16;
-    if (sums_ && sums_.size() >= bytes)
+Status PunctualKernel::grow_buffers(std::size_t blocks, gpu::FrameResources& resources) {
+    if (masks_ && masks_.size() >= blocks * sizeof(std::uint32_t))
         return {};
-    if (sums_)
-        resources.retire(std::move(sums_));
-    SUNFLECK_ASSIGN(sums_,
-                    gpu::Buffer::create(device_, {"sums of punctual light", bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                                  gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    const auto make = [&](gpu::Buffer& buffer, const char* name, VkDeviceSize bytes,
+                          VkBufferUsageFlags more) -> Status {
+        if (buffer)
+            resources.retire(std::move(buffer));
+        SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device_, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | more,
+                                                              gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+        return {};
+    };
+    SUNFLECK_TRY(make(masks_, "lights of blocks", blocks * sizeof(std::uint32_t), 0));
+    SUNFLECK_TRY(make(blocks_, "blocks with lights", shared::map_kinds * blocks * sizeof(shared::LitBlock), 0));
+    return make(commands_, "punctual light commands", sizeof(VkDispatchIndirectCommand) * shared::map_kinds,
+                VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+}
+
+shared::PunctualConstants PunctualKernel::constants_of(const PunctualFrame& frame, const PunctualBatch& batch) const {
+    shared::PunctualConstants result;
+    result.width = frame.g_buffer.width;
+    result.height = frame.g_buffer.height;
+    result.light_count = std::uint32_t(batch.lights.size());
+    result.block_columns = (result.width + 8 * pixels() - 1) / (8 * pixels());
+    result.block_count = result.block_columns * ((result.height + shared::block_rows - 1) / shared::block_rows);
+    std::copy(batch.kind_lights.begin(), batch.kind_lights.end(), result.kind_lights);
+    return result;
+}
+
+Status PunctualKernel::add_lists(const PunctualFrame& frame, const PunctualBatch& batch, const gpu::UploadSlice& lights,
+                                 bool clears) {
+    const shared::PunctualConstants constants = constants_of(frame, batch);
+    SUNFLECK_ASSIGN(const gpu::Pipeline* lists, pipelines_.compute({"gi_module/adaptive_shadows/punctual_lists.comp",
+                                                                    {pixels(), clears ? 1u : 0u},
+                                                                    "punctual lists"}));
+    SUNFLECK_ASSIGN(const gpu::Pipeline* blocks,
+                    pipelines_.compute({"gi_module/adaptive_shadows/punctual_blocks.comp", {}, "punctual blocks"}));
+    gpu::ComputePass(frame.graph, "punctual lists", *lists)
+        .uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .uniform(lights)
+        .storage_write(masks_)
+        .storage_write(frame.picture)
+        .push(constants)
+        .dispatch(constants.block_columns, constants.block_count / constants.block_columns);
+    gpu::ComputePass(frame.graph, "punctual blocks", *blocks)
+        .storage_read(masks_)
+        .storage_write(blocks_)
+        .storage_write(commands_)
+        .push(constants)
+        .dispatch(shared::map_kinds);
+    return {};
+}
+
+Status PunctualKernel::add_light(const PunctualFrame& frame, const PunctualBatch& batch, std::uint32_t map_kind,
+                                 const gpu::UploadSlice& lights, const gpu::UploadSlice& table) {
+    gpu::ComputeDescription description;
+    description.shader = frame.graph.description(frame.picture).format == VK_FORMAT_R32G32B32A32_SFLOAT
+                             ? "gi_module/adaptive_shadows/punctual_light_32.comp"
+                             : "gi_module/adaptive_shadows/punctual_light_16.comp";
+    description.specialization = {map_kind, frame.maps != nullptr ? shared::maps_texel_buffer : shared::maps_none,
+                                  pixels()};
+    description.name = "punctual light";
+    SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
+    gpu::ComputePass(frame.graph, "punctual light", *kernel)
+        .uniform(frame.camera)
+        .sampled(frame.g_buffer.depth, sampler_)
+        .sampled(frame.g_buffer.normals, sampler_)
+        .uniform(lights)
+        .storage_read(table)
+        .texels(frame.maps != nullptr ? *frame.maps : no_texels_)
+        .storage_read(blocks_)
+        .storage_read_write(frame.picture)
+        .push(constants_of(frame, batch))
+        .dispatch_indirect(commands_, sizeof(VkDispatchIndirectCommand) * map_kind);
     return {};
 }
 
 Status PunctualKernel::add_passes(const PunctualFrame& frame, std::span<const PunctualBatch> batches,
                                   std::span<const std::uint32_t> table, gpu::FrameResources& resources) {
-    // A CPU device reads a light's row once for each invocation; a GPU wants many small invocations instead.
-    const std::uint32_t pixels = device_.traits().software ? 8 : 1, columns = 8 * pixels;
-    SUNFLECK_TRY(grow_sums(frame, batches.size() > 1, resources));
+    SUNFLECK_TRY(grow_buffers(constants_of(frame, {}).block_count, resources));
     SUNFLECK_ASSIGN(const gpu::UploadSlice entries, resources.upload(table));
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-        gpu::ComputeDescription description;
-        description.shader = frame.graph.description(frame.picture).format == VK_FORMAT_R32G32B32A32_SFLOAT
-                                 ? "gi_module/adaptive_shadows/punctual_light_32.comp"
-                                 : "gi_module/adaptive_shadows/punctual_light_16.comp";
-        description.specialization = {batches[i].map_kind,
-                                      frame.maps != nullptr ? shared::maps_texel_buffer : shared::maps_none, pixels,
-                                      frame.adds ? 1u : 0u};
-        description.name = "punctual light";
-        SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
+    for (const PunctualBatch& batch : batches) {
         SUNFLECK_ASSIGN(const gpu::UploadSlice lights,
                         resources.allocate(sizeof(shared::TileLight) * shared::lights_per_pass));
-        std::memcpy(lights.data, batches[i].lights.data(), sizeof(shared::TileLight) * batches[i].lights.size());
-        const shared::PunctualConstants constants{frame.g_buffer.width, frame.g_buffer.height,
-                                                  std::uint32_t(batches[i].lights.size()), i == 0 ? 1u : 0u,
-                                                  i + 1 == batches.size() ? 1u : 0u};
-        gpu::ComputePass(frame.graph, "punctual light", *kernel)
-            .uniform(frame.camera)
-            .sampled(frame.g_buffer.depth, sampler_)
-            .sampled(frame.g_buffer.normals, sampler_)
-            .uniform(lights)
-            .storage_read(entries)
-            .texels(frame.maps != nullptr ? *frame.maps : no_texels_)
-            .storage_read_write(sums_)
-            .storage_read_write(frame.picture)
-            .push(constants)
-            .dispatch((constants.width + columns - 1) / columns, (constants.height + 7) / 8);
+        std::memcpy(lights.data, batch.lights.data(), sizeof(shared::TileLight) * batch.lights.size());
+        SUNFLECK_TRY(add_lists(frame, batch, lights, !frame.adds && &batch == batches.data()));
+        for (std::uint32_t kind = 0; kind < shared::map_kinds; ++kind)
+            if (batch.kind_lights[kind] != 0)
+                SUNFLECK_TRY(add_light(frame, batch, kind, lights, entries));
     }
     return {};
 }

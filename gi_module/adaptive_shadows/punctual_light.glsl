@@ -1,7 +1,7 @@
 #extension GL_EXT_control_flow_attributes : require
-// Light straight from suns, point lights and spots at every pixel, with shadows from tiles of maps. As in
-// brute_force.comp, the pixels of an invocation share each light's loads, and a pass has one kind of lights. The
-// including shader declares the image `picture`, which is read and written, so that GLSL requires its format.
+// Light straight from suns, point lights and spots, with shadows from tiles of maps: added to the pixels of the listed
+// blocks. As in brute_force.comp, the pixels of an invocation share each light's loads, and a pass has one kind of
+// lights. The including shader declares the image `picture`, which is read and written, so that GLSL requires its format.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/adaptive_shadows/adaptive_shadows_shared.h"
@@ -11,7 +11,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint map_kind = map_of_sphere;
 layout(constant_id = 1) const uint maps = maps_texel_buffer; // or maps_none
 layout(constant_id = 2) const uint pixels = 8;               // lit by an invocation, which share the loads of lights
-layout(constant_id = 3) const uint adds = 0;                  // 1: to what the picture holds
 
 const uint light_class = map_kind == map_of_directions ? light_class_directional : light_class_point;
 const uint filtered = 1, map_bits = 32, stale_maps = 0, simplified_movers = 0;
@@ -22,7 +21,7 @@ layout(set = 0, binding = 2) uniform usampler2D normals_image;
 layout(set = 0, binding = 3) uniform Lights { TileLight lights[lights_per_pass]; };
 layout(set = 0, binding = 4) readonly buffer Table { uint table[]; };
 layout(set = 0, binding = 5) uniform usamplerBuffer map_words;
-layout(set = 0, binding = 6) buffer Sums { vec4 sums[]; };
+layout(set = 0, binding = 6) readonly buffer Blocks { LitBlock lit_blocks[]; };
 layout(push_constant) uniform Constants { PunctualConstants constants; };
 
 float map_side() { return float(tile_side); }
@@ -115,8 +114,10 @@ float tile_visibility(TileLight light, Pixel pixel) {
 }
 
 void main() {
-    const int row = int(gl_GlobalInvocationID.y);
-    const int first_column = int(gl_WorkGroupID.x * 8u * pixels + gl_LocalInvocationID.x);
+    const LitBlock listed = lit_blocks[map_kind * constants.block_count + gl_WorkGroupID.x];
+    const uint block = listed.block;
+    const int row = int(block / constants.block_columns * block_rows + gl_LocalInvocationID.y);
+    const int first_column = int(block % constants.block_columns * 8u * pixels + gl_LocalInvocationID.x);
     const ivec2 last = ivec2(constants.width, constants.height) - 1;
     Pixel surface[pixels];
     bool covered[pixels];
@@ -128,16 +129,11 @@ void main() {
         covered[k] = depth > 0.0;
         surface[k] = Pixel(camera_position_at(camera, vec2(pixel) + 0.5, max(depth, 1e-7)), unpack_normal(normals.x),
                            unpack_normal(normals.y), 0.0);
-        sum[k] = vec3(0.0);
-        if (constants.first_pass != 0u && adds != 0)
-            sum[k] = imageLoad(picture, pixel).rgb;
-        if (constants.first_pass == 0u)
-            sum[k] = sums[pixel.y * int(constants.width) + pixel.x].rgb;
+        sum[k] = imageLoad(picture, pixel).rgb;
     }
-    uint i = 0u;
-    // None where a plan leaves the technique no light: then the picture is set to zero. Tested at its end: see light.comp.
-    if (constants.light_count > 0u) do {
-        const TileLight light = lights[i];
+    uint rest = listed.lights; // at least one
+    do { // tested at its end: see light.comp
+        const TileLight light = lights[findLSB(rest)];
         [[unroll]] for (uint k = 0; k < pixels; ++k) {
             const float unshadowed = unshadowed_factor(light.row, surface[k]).unshadowed;
             float visibility = 1.0;
@@ -145,14 +141,11 @@ void main() {
                 visibility = tile_visibility(light, surface[k]);
             sum[k] += light.row.intensity_slot.rgb * (unshadowed * visibility);
         }
-    } while (++i < constants.light_count);
+        rest &= rest - 1u;
+    } while (rest != 0u);
     [[unroll]] for (uint k = 0; k < pixels; ++k) {
         const ivec2 pixel = ivec2(first_column + int(k) * 8, row);
-        if (pixel.x <= last.x && pixel.y <= last.y) {
-            if (constants.last_pass != 0u)
-                imageStore(picture, pixel, covered[k] ? vec4(sum[k], 1.0) : vec4(0.0));
-            else
-                sums[pixel.y * int(constants.width) + pixel.x] = vec4(sum[k], 0.0);
-        }
+        if (covered[k] && pixel.x <= last.x && pixel.y <= last.y)
+            imageStore(picture, pixel, vec4(sum[k], 1.0));
     }
 }
