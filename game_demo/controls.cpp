@@ -50,9 +50,14 @@ void Controls::take(const app::InputState& input, const DemoSettings& settings, 
     const float bent = glm::length(input.gamepad.right); // finer control near the centre
     look_ += settings.sensitivity * key_speed * float(seconds) *
              vec2(axis(Action::look_left, Action::look_right), axis(Action::look_up, Action::look_down));
-    look_ += settings.sensitivity * pointer_speed * vec2(-input.mouse_motion.x, upwards * input.mouse_motion.y);
+    turn(input.mouse_motion, settings);
     look_ += settings.sensitivity * stick_speed * float(seconds) * bent *
              vec2(-input.gamepad.right.x, upwards * input.gamepad.right.y);
+}
+
+void Controls::turn(vec2 pointer_motion, const DemoSettings& settings) {
+    const float upwards = settings.invert_look ? 1.0f : -1.0f;
+    look_ += settings.sensitivity * pointer_speed * vec2(-pointer_motion.x, upwards * pointer_motion.y);
 }
 
 void Controls::watch_gamepad(const app::InputState& input) {

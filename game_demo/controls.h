@@ -10,6 +10,8 @@ class Controls {
 public:
     // Accumulates a poll's input; `seconds` since the last one. If not `playing`, everything is released.
     void take(const app::InputState& input, const DemoSettings& settings, double seconds, bool playing);
+    // What the pointer did since, in pixels: a view that is drawn need not wait for the next poll.
+    void turn(vec2 pointer_motion, const DemoSettings& settings);
     // Input of the next step: all accumulated look motion, and the held keys.
     simulation::StepInput next_step();
     // Look motion that no step has taken yet, rad to the left and up.

@@ -242,6 +242,7 @@ private:
     Status show(const app::InputState& input, double seconds) {
         const VkExtent2D extent = display_->swapchain().extent();
         viewer::SceneRenderer& renderer = level_->renderer();
+        controls_.turn(window_->poll_motion(), settings_); // none where the pointer is not captured
         const simulation::DrawnMoment moment{clock_.fraction(), controls_.pending_look()};
         const FrameQuality quality =
             pace_.choose(settings_, *level_, seconds_since(began_), moment.look != vec2(0.0f), playing());

@@ -258,13 +258,16 @@ const InputState& Window::poll() {
     read_gamepad();
     take_events();
     input_ = pending_;
-    pending_.went_down.clear();
-    pending_.dropped.clear();
-    pending_.text.clear();
-    pending_.mouse_motion = vec2(0.0f);
-    pending_.scroll = 0.0f;
+    pending_ = input_.still();
     pending_.lost_focus = false;
     return input_;
+}
+
+vec2 Window::poll_motion() {
+    glfwPollEvents();
+    for (; !events_.empty() && events_.front().kind == Event::Kind::pointer; events_.pop_front())
+        take(events_.front());
+    return std::exchange(pending_.mouse_motion, vec2(0.0f));
 }
 
 // The first one in the mapping database; gamepads may come and go.

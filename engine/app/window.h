@@ -72,6 +72,9 @@ public:
     std::vector<const char*> instance_extensions() const;
     // Handles pending events. All keys count as released while the window is not focused.
     const InputState& poll();
+    // The way of the captured pointer since the last poll, in pixels, up to what else came in the meantime. The next
+    // poll has the rest. For a view that is drawn long after its frame began.
+    vec2 poll_motion();
     const InputState& input() const { return input_; }
     // The next poll finds what the last one found once more, files that were dropped left out, and whatever came since
     // waits for the one after: for a frame that could not be drawn, in which it would be lost.

@@ -209,7 +209,7 @@ for part in "${parts[@]}"; do
                 measure pacing "${run%-*}" "pacing${run#*-}" "$room" "$seconds"
             done
         done ;;
-    latency) for room in corner tower; do measure latency after latency "$room" 40; done ;;
+    latency) for room in corner "red wall"; do measure latency after latency "$room" 40; done ;;
     target)
         for target in 100 66 50; do
             for room in corner shutters tower; do

@@ -234,6 +234,23 @@ TEST(Controls, HandOnWhatIsHeldAndAllOfTheLook) {
     EXPECT_EQ(second.forward, 100);
 }
 
+// What a view is drawn with before a step takes it is all that the pointer did, and the step takes all of it once.
+TEST(Controls, DrawWithMotionThatCameAfterThePoll) {
+    DemoSettings settings;
+    settings.invert_look = true;
+    Controls controls;
+    app::InputState input;
+    input.mouse_motion = vec2(10.0f, 0.0f);
+    controls.take(input, settings, 0.016, true);
+    controls.turn(vec2(30.0f, 20.0f), settings);
+    EXPECT_NEAR(controls.pending_look().x, -0.088f, 1e-6f);
+    EXPECT_NEAR(controls.pending_look().y, 0.044f, 1e-6f);
+    const simulation::StepInput step = controls.next_step();
+    EXPECT_EQ(step.turn, -880);
+    EXPECT_EQ(step.look_up, 440);
+    EXPECT_EQ(controls.pending_look(), vec2(0.0f));
+}
+
 TEST(Controls, MissNoKeyAndKeepStillWhilePaused) {
     DemoSettings settings;
     Controls controls;
