@@ -11,7 +11,7 @@ SHARED_CONSTANT uint tile_border = 2u;
 SHARED_CONSTANT uint tile_inner = tile_side - 2u * tile_border;
 SHARED_CONSTANT uint tile_levels = 8u; // levels 0 to 7: up to 32,256 texels along a side
 
-// What a light's map shows; a pass lights by lights of one kind.
+// What a light's map shows; the lights that a dispatch adds are of one kind.
 SHARED_CONSTANT uint map_of_sphere = 0u;     // point lights, wide spots
 SHARED_CONSTANT uint map_of_cone = 1u;       // narrow spots
 SHARED_CONSTANT uint map_of_directions = 2u; // suns
@@ -37,6 +37,15 @@ struct LitBlock {
     uint block; // row after row
     uint lights;
 };
+// Every device dispatches so many groups side by side. Pictures with more blocks take several rows of groups, and a
+// list is filled up with blocks below the picture until its rows are equally long.
+SHARED_CONSTANT uint most_groups = 65535u;
+SHARED_FUNCTION uint rows_of_groups(uint blocks) {
+    return (blocks + most_groups - 1u) / most_groups;
+}
+SHARED_FUNCTION uint list_stride(uint blocks) {
+    return blocks + rows_of_groups(blocks);
+}
 
 struct PunctualConstants {
     uint width;

@@ -22,7 +22,8 @@ void main() {
         count += (block_lights[block] & wanted) != 0u ? 1u : 0u;
     counts[self] = count;
     barrier();
-    uint next = kind * constants.block_count;
+    const uint first = kind * list_stride(constants.block_count);
+    uint next = first;
     for (uint i = 0u; i < self; ++i)
         next += counts[i];
     for (uint block = begin; block < end; ++block) {
@@ -31,7 +32,11 @@ void main() {
             lit_blocks[next++] = LitBlock(block, lights);
     }
     if (self == 63u) {
-        commands[3u * kind] = next - kind * constants.block_count;
-        commands[3u * kind + 1u] = commands[3u * kind + 2u] = 1u;
+        const uint listed = next - first, rows = max(rows_of_groups(listed), 1u), columns = (listed + rows - 1u) / rows;
+        while (next - first < columns * rows)
+            lit_blocks[next++] = LitBlock(constants.block_count, wanted);
+        commands[3u * kind] = columns;
+        commands[3u * kind + 1u] = rows;
+        commands[3u * kind + 2u] = 1u;
     }
 }

@@ -34,7 +34,8 @@ Status PunctualKernel::grow_buffers(std::size_t blocks, gpu::FrameResources& res
         return {};
     };
     SUNFLECK_TRY(make(masks_, "lights of blocks", blocks * sizeof(std::uint32_t), 0));
-    SUNFLECK_TRY(make(blocks_, "blocks with lights", shared::map_kinds * blocks * sizeof(shared::LitBlock), 0));
+    SUNFLECK_TRY(make(blocks_, "blocks with lights",
+                      shared::map_kinds * shared::list_stride(std::uint32_t(blocks)) * sizeof(shared::LitBlock), 0));
     return make(commands_, "punctual light commands", sizeof(VkDispatchIndirectCommand) * shared::map_kinds,
                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }

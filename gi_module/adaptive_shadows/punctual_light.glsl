@@ -114,7 +114,8 @@ float tile_visibility(TileLight light, Pixel pixel) {
 }
 
 void main() {
-    const LitBlock listed = lit_blocks[map_kind * constants.block_count + gl_WorkGroupID.x];
+    const LitBlock listed = lit_blocks[map_kind * list_stride(constants.block_count) +
+                                        gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x];
     const uint block = listed.block;
     const int row = int(block / constants.block_columns * block_rows + gl_LocalInvocationID.y);
     const int first_column = int(block % constants.block_columns * 8u * pixels + gl_LocalInvocationID.x);

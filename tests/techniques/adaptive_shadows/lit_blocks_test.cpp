@@ -1,6 +1,8 @@
 // Lights are added in the blocks of the picture that they may reach, and in no others: the sum is that of all.
-#include "tests/support/techniques.h"
+#include "tests/support/gpu_world.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <random>
 
@@ -9,7 +11,7 @@ namespace {
 
 class LitBlocks : public GpuTest {};
 
-// 75 spots, of which some are narrower than a pixel's block and some wider than a hemisphere, point lights, one of them
+// 75 spots, of which some light less than a block of pixels and some nearly a hemisphere, point lights, one of them
 // dark, and a sun: more than are lit at once.
 void make_many_lamps(assets::SceneBuilder& builder) {
     std::mt19937 random(5);
