@@ -4,6 +4,7 @@
 #include "engine/simulation/path_movers.h"
 #include "gi_module/light_sampling/importance_warping.h"
 #include "gi_module/reference/path_tracer.h"
+#include "gi_module/splatting/splatting_shared.h"
 
 #include <cmath>
 
@@ -78,6 +79,63 @@ Status splat_occlusion(SplatExperiment& experiment) {
     return {};
 }
 
+namespace {
+
+struct CutWay {
+    const char* name;
+    const char* levels;
+    std::uint32_t scale;
+};
+constexpr CutWay cut_ways[] = {{"every pixel", "off", 1},
+                               {"multiresolution", "on", 1},
+                               {"every fourth pixel, interpolated and repaired", "off", 4}};
+
+// Evaluations of a light at a pixel or a node, by the number of the picture's pixels, were all of them lit.
+Result<double> evaluations_of(Bench& bench) {
+    bench.request.lighting_view = "overdraw";
+    SUNFLECK_ASSIGN(const io::Picture overdraw, splat_picture(bench, 0));
+    bench.request.lighting_view.clear();
+    double sum = 0.0;
+    for (const vec4& pixel : overdraw.pixels)
+        sum += double(pixel.x) * double(shared::most_overdraw) / double(overdraw.pixels.size());
+    return sum;
+}
+
+// Light that is far from a flat piece of the picture, evaluated at few of its places instead of being cut.
+Status multiresolution_rows(SplatExperiment& experiment, const char* scene) {
+    SUNFLECK_ASSIGN(const auto bench, open_splat_scene(experiment.options, scene, splat_time_size));
+    io::Picture whole;
+    double all = 0.0, all_ms = 0.0;
+    for (const CutWay& way : cut_ways) {
+        gi::Settings settings = splats_alone(1024, "none");
+        settings.low_resolution = way.scale;
+        settings.with("splat_levels", way.levels);
+        SUNFLECK_TRY(bench->renderer->lighting().set_settings(settings));
+        SUNFLECK_ASSIGN(const io::Picture picture, splat_picture(*bench, 0));
+        SUNFLECK_ASSIGN(double evaluations, evaluations_of(*bench));
+        SUNFLECK_ASSIGN(Measurement m, bench->measure(settings, 2, experiment.options.repeat, true));
+        if (way.scale > 1)
+            evaluations *=
+                1.0 / double(way.scale * way.scale) + m.counters["pixels_repaired"] / double(picture.pixels.size());
+        const double ms = passes_ms(m, {"splat", "repair splat", "reconstruction", "compaction"});
+        if (whole.pixels.empty()) {
+            whole = picture;
+            all = evaluations;
+            all_ms = ms;
+        }
+        experiment.row(scene, way.name, "evaluations a pixel", evaluations);
+        experiment.row(scene, way.name, "of every pixel's", evaluations / all,
+                       "target of multiresolution: 0.125; gallery 0.2");
+        experiment.row(scene, way.name, "relative MSE to every pixel's",
+                       compare_pictures(picture, whole, true).relative_mean_square_error,
+                       "target of multiresolution: 0.002");
+        experiment.row(scene, way.name, "time of the passes, relative", ms / all_ms);
+    }
+    return {};
+}
+
+} // namespace
+
 // Fig. 11: a threshold of irradiance, here relative to the mean of the picture's light.
 Status splat_cutoff(SplatExperiment& experiment) {
     for (const char* scene : {"arena", "hall", "gallery"}) {
@@ -89,12 +147,7 @@ Status splat_cutoff(SplatExperiment& experiment) {
             settings.with("splat_cutoff", cutoff);
             SUNFLECK_TRY(bench->renderer->lighting().set_settings(settings));
             SUNFLECK_ASSIGN(const io::Picture picture, splat_picture(*bench, 0));
-            bench->request.lighting_view = "overdraw";
-            SUNFLECK_ASSIGN(const io::Picture overdraw, splat_picture(*bench, 0));
-            bench->request.lighting_view.clear();
-            double evaluations = 0.0;
-            for (const vec4& pixel : overdraw.pixels)
-                evaluations += double(pixel.x) * 256.0 / double(overdraw.pixels.size()); // white: 256
+            SUNFLECK_ASSIGN(const double evaluations, evaluations_of(*bench));
             if (whole.pixels.empty()) {
                 whole = picture;
                 all = evaluations;
@@ -106,6 +159,7 @@ Status splat_cutoff(SplatExperiment& experiment) {
             experiment.row(scene, what, "relative MSE to all",
                            compare_pictures(picture, whole, true).relative_mean_square_error);
         }
+        SUNFLECK_TRY(multiresolution_rows(experiment, scene));
     }
     return {};
 }

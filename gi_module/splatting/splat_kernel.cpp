@@ -12,6 +12,10 @@ bool is_glossy(const shared::PixelLightRow& light) {
     return light.lobe.w > 1.0f;
 }
 
+bool has_diffuse(std::span<const shared::PixelLightRow> lights) {
+    return !std::ranges::all_of(lights, is_glossy);
+}
+
 // Lights from `first` on that are all diffuse, or all have lobes.
 std::span<const shared::PixelLightRow> batch_at(std::span<const shared::PixelLightRow> lights, std::size_t first) {
     std::size_t end = first + 1;
@@ -21,12 +25,20 @@ std::span<const shared::PixelLightRow> batch_at(std::span<const shared::PixelLig
     return lights.subspan(first, end - first);
 }
 
+// Of a tile's radii, how far from it a light is smooth over it. Interpolated irradiance is then within a few
+// hundredths; and where there are shadows, a tile is seen from the light no wider than the texels that blend in its
+// map.
+float nearest_radii(std::uint32_t map_side) {
+    return std::max(2.0f, 0.5f * float(map_side));
+}
+
 } // namespace
 
 Result<std::unique_ptr<SplatKernel>> SplatKernel::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<SplatKernel> kernel(new SplatKernel(device, pipelines));
     const VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &kernel->sampler_), "creating a sampler");
+    kernel->levels_ = std::make_unique<SplatLevels>(device, pipelines, kernel->sampler_);
     return kernel;
 }
 
@@ -61,6 +73,22 @@ Status SplatKernel::set_maps(gpu::FrameGraph& graph, std::span<const std::uint16
     return {};
 }
 
+shared::SplattingConstants SplatKernel::constants_of(const PixelStage& stage) const {
+    const shared::LowResolutionConstants& low = stage.constants;
+    return {low.width,
+            low.height,
+            low.group_count,
+            0,
+            map_side_,
+            least_,
+            low.scale,
+            low.group_columns,
+            low.group_columns > 0 ? low.group_count / low.group_columns : 0,
+            0,
+            1,
+            nearest_radii(map_side_)};
+}
+
 Status SplatKernel::add_passes(const PixelStage& stage, std::span<const shared::PixelLightRow> lights,
                                gpu::FrameResources& resources) {
     if (stage.first)
@@ -69,24 +97,35 @@ Status SplatKernel::add_passes(const PixelStage& stage, std::span<const shared::
     if (lights.empty())
         return writes_picture ? stage.low_resolution.resolve(stage) : Status();
     SUNFLECK_TRY(make_masks(stage, resources));
+    shared::SplattingConstants constants = constants_of(stage);
+    const bool by_levels = levels_on_ && lists_ && !stage.repair && !shared::shows_places(show_);
+    if (by_levels)
+        SUNFLECK_TRY(levels_->add_tiles(stage, constants, resources));
     for (std::size_t first = 0; first < lights.size();) {
         const std::span<const shared::PixelLightRow> batch = batch_at(lights, first);
         first += batch.size();
-        SUNFLECK_ASSIGN(const gpu::UploadSlice rows,
-                        resources.allocate(sizeof(shared::PixelLightRow) * shared::splats_per_batch));
-        std::memcpy(rows.data, batch.data(), batch.size_bytes());
-        const shared::SplattingConstants constants{stage.constants.width,
-                                                   stage.constants.height,
-                                                   stage.constants.group_count,
-                                                   std::uint32_t(batch.size()),
-                                                   map_side_,
-                                                   least_};
-        if (lists_)
-            SUNFLECK_TRY(add_lists(stage, rows, constants));
-        SUNFLECK_TRY(
-            add_light(stage, rows, constants, is_glossy(batch.front()), writes_picture && first == lights.size()));
+        constants.light_count = std::uint32_t(batch.size());
+        const bool glossy = is_glossy(batch.front()), nodes = by_levels && !glossy;
+        const BatchKind kind{glossy, nodes, nodes && !has_diffuse(lights.subspan(first)),
+                             writes_picture && first == lights.size()};
+        SUNFLECK_TRY(add_batch(stage, batch, constants, kind, resources));
+        constants.first = constants.first != 0 && !nodes;
     }
     return {};
+}
+
+Status SplatKernel::add_batch(const PixelStage& stage, std::span<const shared::PixelLightRow> batch,
+                              const shared::SplattingConstants& constants, const BatchKind& kind,
+                              gpu::FrameResources& resources) {
+    SUNFLECK_ASSIGN(const gpu::UploadSlice rows,
+                    resources.allocate(sizeof(shared::PixelLightRow) * shared::splats_per_batch));
+    std::memcpy(rows.data, batch.data(), batch.size_bytes());
+    if (kind.by_levels)
+        SUNFLECK_TRY(
+            levels_->add_batch(stage, constants, {rows, masks_, maps_.buffer(), map_side_ > 0, filtered_, show_}));
+    else if (lists_)
+        SUNFLECK_TRY(add_lists(stage, rows, constants));
+    return add_light(stage, rows, constants, kind);
 }
 
 Status SplatKernel::add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
@@ -109,18 +148,19 @@ Status SplatKernel::add_lists(const PixelStage& stage, const gpu::UploadSlice& r
 }
 
 Status SplatKernel::add_light(const PixelStage& stage, const gpu::UploadSlice& rows,
-                              const shared::SplattingConstants& constants, bool glossy, bool to_image) {
+                              const shared::SplattingConstants& constants, const BatchKind& kind) {
     const std::uint32_t lanes = device_.traits().software ? 8 : 64;
     gpu::ComputeDescription description;
     description.shader = "gi_module/splatting/splat_light.comp";
     description.specialization = {shared::pixel_group_size / lanes,
                                   lanes,
-                                  to_image,
+                                  kind.to_image,
                                   map_side_ > 0 ? shared::maps_texel_buffer : shared::maps_none,
                                   filtered_,
-                                  glossy,
+                                  kind.glossy,
                                   show_,
-                                  lists_};
+                                  lists_,
+                                  kind.takes_nodes};
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
     gpu::ComputePass pass(stage.graph, stage.repair ? "repair splat light" : "splat light", *kernel);
     pass.uniform(stage.camera)
@@ -131,8 +171,12 @@ Status SplatKernel::add_light(const PixelStage& stage, const gpu::UploadSlice& r
         .storage_read(masks_)
         .storage_read_write(stage.sums)
         .storage_write(stage.output)
-        .texels(maps_.buffer())
-        .push(constants);
+        .texels(maps_.buffer());
+    if (kind.takes_nodes)
+        pass.storage_read(levels_->points()).storage_read(levels_->patches()).storage_read(levels_->places());
+    else
+        pass.unused(masks_).unused(masks_).unused(masks_);
+    pass.push(constants);
     stage.dispatch(pass, shared::command_groups);
     return {};
 }

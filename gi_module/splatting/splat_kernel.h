@@ -1,8 +1,10 @@
-// Runs splat_lists.comp and splat_light.comp: adds the light of pixel lights to the sums of a stage's pixels.
+// Runs splat_lists.comp (or splat_levels.h) and splat_light.comp: adds the light of pixel lights to the sums of a
+// stage's pixels.
 #pragma once
 
 #include "engine/gpu/uploaded_buffer.h"
 #include "gi_module/low_resolution/low_resolution.h"
+#include "gi_module/splatting/splat_levels.h"
 #include "gi_module/splatting/splatting_shared.h"
 
 #include <memory>
@@ -21,6 +23,9 @@ public:
                     gpu::FrameResources& resources);
     // Whether groups of pixels have lists of lights, from the next add_passes on.
     void set_lists(bool lists) { lists_ = lists; }
+    // Whether lights are evaluated at nodes of tiles where they are smooth (splat_levels.h), from the next add_passes
+    // on.
+    void set_levels(bool levels) { levels_on_ = levels; }
     // Irradiance, W/m2, below which light may be cut, from the next add_passes on.
     void set_least(float least) { least_ = least; }
     // show_... of splatting_shared.h, from the next add_passes on.
@@ -30,23 +35,33 @@ public:
                       gpu::FrameResources& resources);
     // Its memory for a group of pixels.
     static constexpr std::uint64_t bytes_per_group = shared::splat_mask_words * 4;
-    std::uint64_t memory_bytes() const { return masks_.size() + maps_.buffer().size(); }
+    std::uint64_t memory_bytes() const { return masks_.size() + maps_.buffer().size() + levels_->memory_bytes(); }
 
 private:
     SplatKernel(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
     Status make_masks(const PixelStage& stage, gpu::FrameResources& resources);
     Status add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
                      const shared::SplattingConstants& constants);
+    struct BatchKind {
+        bool glossy = false, by_levels = false;
+        bool takes_nodes = false; // the last by levels, which adds what all gave the nodes
+        bool to_image = false;    // the last of all, which writes the picture
+    };
+    shared::SplattingConstants constants_of(const PixelStage& stage) const;
+    Status add_batch(const PixelStage& stage, std::span<const shared::PixelLightRow> batch,
+                     const shared::SplattingConstants& constants, const BatchKind& kind,
+                     gpu::FrameResources& resources);
     Status add_light(const PixelStage& stage, const gpu::UploadSlice& rows, const shared::SplattingConstants& constants,
-                     bool glossy, bool to_image);
+                     const BatchKind& kind);
 
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     VkSampler sampler_ = VK_NULL_HANDLE;
     gpu::Buffer masks_;
     gpu::UploadedBuffer maps_;
+    std::unique_ptr<SplatLevels> levels_;
     std::uint32_t map_side_ = 0; // 0: there are none
-    bool filtered_ = false, lists_ = true;
+    bool filtered_ = false, lists_ = true, levels_on_ = false;
     float least_ = 0.0f;
     std::uint32_t show_ = shared::show_no_splats;
 };

@@ -16,6 +16,7 @@ layout(constant_id = 4) const uint filtered = 0;
 layout(constant_id = 5) const uint glossy = 0; // the batch's lights have lobes
 layout(constant_id = 6) const uint show = show_no_splats;
 layout(constant_id = 7) const uint lists = 1; // 0: all lights of the batch reach all pixels
+layout(constant_id = 8) const uint nodes = 0; // 1: groups have nodes and points, with the rest of all batches' light
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -26,6 +27,9 @@ layout(set = 0, binding = 5) readonly buffer Masks { uint masks[]; };
 layout(set = 0, binding = 6) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 7) writeonly uniform image2D output_image;
 layout(set = 0, binding = 8) uniform samplerBuffer map_texels;
+layout(set = 0, binding = 9) readonly buffer Points { vec4 point_light[]; };
+layout(set = 0, binding = 10) readonly buffer Patches { GroupPatches groups[]; };
+layout(set = 0, binding = 11) readonly buffer Places { uint places[]; };
 layout(push_constant) uniform Constants { SplattingConstants constants; };
 
 const uint light_class = light_class_surface, map_bits = 16, stale_maps = 0, simplified_movers = 0;
@@ -36,13 +40,7 @@ float map_value(uint slot, ivec2 texel) {
 }
 #include "gi_module/shadows/shadowed_light.glsl"
 
-// Eq. 1 and 2, as a factor of the intensity, of a light that is softened: see softened_term.
-float softened_factor(PixelLightRow light, Pixel pixel) {
-    const vec3 v = pixel.position - light.row.position_bound.xyz;
-    const float along = dot(light.row.normal_offset.xyz, v);
-    const bool faces = along > 0.0 && dot(pixel.geometric_normal, v) < 0.0;
-    return softened_term(along, faces ? max(-dot(pixel.normal, v), 0.0) : 0.0, dot(v, v), light.extent.x);
-}
+#include "gi_module/splatting/splat_factor.glsl"
 
 // Eq. 3, as a factor of the intensity on the lobe's axis, with the lobe wider near the light, and clamped as diffuse ones.
 float lobe_factor(PixelLightRow light, Pixel pixel) {
@@ -62,22 +60,6 @@ float lobe_factor(PixelLightRow light, Pixel pixel) {
     return min(factor, light.row.position_bound.w);
 }
 
-// What a light adds to a pixel: its light, or what the debug view shows.
-vec3 contribution(LightRow light, LightFactor factor, Pixel pixel) {
-    const vec3 intensity = light.intensity_slot.rgb;
-    const float brightness = max(intensity.r, max(intensity.g, intensity.b));
-    if (show == show_overdraw)
-        return vec3(1.0);
-    if (show == show_splat_occlusion)
-        return brightness * factor.unshadowed * vec3(factor.visibility, 1.0, 0.0);
-    if (shows_places(show)) {
-        const float radius = (show == show_splat_places ? 0.01 : 0.006) * distance(pixel.position, camera.position.xyz);
-        const vec3 colour = show == show_splat_places ? intensity / max(brightness, 1e-30) : intensity;
-        return distance(pixel.position, light.position_bound.xyz) < radius ? colour : vec3(0.0);
-    }
-    return intensity * (factor.unshadowed * factor.visibility);
-}
-
 vec3 shown(vec3 total) {
     if (show == show_overdraw)
         return total / most_overdraw;
@@ -94,12 +76,25 @@ uint lights_of(uint group, uint word) {
     return left >= 32u ? 0xffffffffu : (1u << left) - 1u;
 }
 
+// What the nodes of its patch, or its point, give a pixel.
+vec3 interpolated(uint group, uint entry, uint patches, bool curved) {
+    const uint place = places[entry] & ((1u << place_bits) - 1u), first = group * pixel_group_size;
+    if (place >= group_patches)
+        return point_light[first + patches * tile_nodes + place - group_patches].rgb;
+    const uvec2 own = uvec2(entry % pixel_group_side, entry % pixel_group_size / pixel_group_side);
+    const vec2 at = curved ? vec2(own) / 3.5 - 1.0 : (vec2(own) + 0.5) * (2.0 / float(pixel_group_side)) - 1.0;
+    vec3 sum = vec3(0.0);
+    [[unroll]] for (uint node = 0; node < tile_nodes; ++node)
+        sum += node_weight(node, at) * point_light[first + place * tile_nodes + node].rgb;
+    return max(sum, vec3(0.0));
+}
+
 void main() {
     const uint group = gl_WorkGroupID.x;
     uint any = 0u;
     for (uint word = 0; word < splat_mask_words; ++word)
         any |= lights_of(group, word);
-    if (to_image == 0 && any == 0u)
+    if (to_image == 0 && nodes == 0 && any == 0u)
         return; // nothing to add
     Pixel surface[pixels_per_invocation];
     vec3 sum[pixels_per_invocation];
@@ -131,6 +126,8 @@ void main() {
         const uint entry = group * pixel_group_size + k * lanes + gl_LocalInvocationID.x;
         const uint packed = pixels[entry];
         const bool lit = (packed & unlit_pixel) == 0u;
+        if (nodes != 0 && groups[group].patches + groups[group].points > 0u)
+            sum[k] += interpolated(group, entry, groups[group].patches, groups[group].curved != 0u);
         const vec4 total = sums[entry] + vec4(lit ? sum[k] : vec3(0.0), 0.0);
         if (to_image == 0) {
             sums[entry] = total;

@@ -41,6 +41,10 @@ const TypeDescription& SplattingSettings::description() {
          SUNFLECK_FIELD(S, splat_lists, "", 0, 1,
                         "Each group of pixels has a list of the pixel lights that may reach it; off: each pixel gets "
                         "the light of all, for comparison"),
+         SUNFLECK_FIELD(
+             S, splat_levels, "", 0, 1,
+             "Multiresolution: the light of those that are far from a flat piece of the picture is evaluated "
+             "at eight places of it and interpolated in between. Needs the lists"),
          SUNFLECK_CHOICE(S, splat_occlusion,
                          "What blocks the light of pixel lights: nothing; what is near them, as a factor (ambient "
                          "occlusion); or all that a shadow map of each shows, movers included",

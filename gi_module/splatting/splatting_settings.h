@@ -31,6 +31,7 @@ struct SplattingSettings {
     std::uint32_t splat_warp_levels = 6;
     float splat_cutoff = 0.0f; // of the mean irradiance
     bool splat_lists = true;
+    bool splat_levels = false;
     SplatOcclusion splat_occlusion = SplatOcclusion::maps;
     std::uint32_t splat_map_side = 32; // texels
     bool splat_map_filter = true;

@@ -121,6 +121,7 @@ Status SplattingTechnique::add_passes(gpu::FrameGraph& graph, Services& services
     target.bytes_per_group = std::max(target.bytes_per_group, SplatKernel::bytes_per_group);
     kernel_->set_show(target.view != nullptr ? target.view->code : shared::show_no_splats);
     kernel_->set_lists(services.settings.of<SplattingSettings>().splat_lists);
+    kernel_->set_levels(services.settings.of<SplattingSettings>().splat_levels);
     view_rows_.clear();
     if (target.view != nullptr &&
         (target.view->code == shared::show_map_flux || target.view->code == shared::show_importance))

@@ -81,6 +81,7 @@ inline constexpr SettingValues host_settings[] = {
     {"splat_warp_levels", {"6", "0", "10"}},
     {"splat_cutoff", {"0", "0.01", "1"}},
     {"splat_lists", {"true", "false", "true"}},
+    {"splat_levels", {"false", "true", "false"}},
     {"splat_occlusion", {"maps", "none", "ambient"}},
     {"splat_map_side", {"32", "4", "8"}},
     {"splat_map_filter", {"true", "false", "true"}},
