@@ -1,6 +1,6 @@
 #include "gi_module/splatting/splat_levels.h"
 
-#include "gi_module/transport/pixel_light_shared.h"
+#include "gi_module/shadows/octahedral_map.h"
 
 namespace sunfleck::gi {
 namespace {
