@@ -32,6 +32,7 @@ struct ReferenceOptions {
     bool unlimited = false;
     bool lambertian = false;
     bool caustics = true;
+    bool light_paths = false; // LightTracer in place of PathTracer
     std::string statistics;
     float save_interval = 30.0f; // s
 };

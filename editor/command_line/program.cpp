@@ -135,11 +135,20 @@ Command make_render_command(CLI::App& program) {
             }};
 }
 
+void add_light_paths(CLI::App& app, ReferenceOptions& options) {
+    viewer::add_flag(app, "--light-paths", options.light_paths,
+                     "Trace particles from the emitters and connect them with the camera (light tracing): finds the "
+                     "light of point, spot and directional lights through smooth glass, which paths from the camera "
+                     "cannot, but not what is seen through glass. Pixels show the mean over their area")
+        ->excludes("--caustics");
+}
+
 Command make_reference_command(CLI::App& program) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* app = program.add_subcommand("reference", "Renders a scene with the path tracer: the truth, slowly");
     app->footer(
-        "Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
+        "Examples: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
+        "          sunfleck reference glass -o caustic.exr --spp 1024 --view irradiance --light-paths\n"
         "Whatever ends it, the same command goes on from what was saved last: beside the picture there are two\n"
         "files, NAME.state and NAME.state2, until it is done. Ctrl-C and other signals save first.");
     add_scene_options(*app, options->scene);
@@ -159,6 +168,7 @@ Command make_reference_command(CLI::App& program) {
            "on the path from the eye: it is what makes fireflies, and no light sample carries it (default on)")
         ->type_name("on | off")
         ->check(CLI::IsMember({"on", "off"}));
+    add_light_paths(*app, *options);
     viewer::add_flag(*app, "--lambertian", options->lambertian,
                      "Only the materials' base colours: no metal, gloss, glass, normal maps or patterns");
     viewer::add_name(*app, "--stats", options->statistics, "Write seconds and rays per second as JSON", "FILE");

@@ -12,6 +12,7 @@
 #include "engine/scene/deformation.h"
 #include "engine/simulation/path_movers.h"
 #include "gi_module/reference/accumulation_file.h"
+#include "gi_module/reference/light_tracer.h"
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -139,6 +140,8 @@ std::uint64_t picture_key(const ReferenceOptions& options, const ReferenceSettin
                  {"antialiasing", settings.antialiasing},
                  {"caustics", settings.caustics},
                  {"lambertian", options.lambertian}};
+    if (options.light_paths)
+        json["light_paths"] = true;
     return hash_text(json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
@@ -147,9 +150,15 @@ class Tracing {
 public:
     Tracing(const ReferenceOptions& options, TracedScene& scene, const ReferenceSettings& settings,
             SavedAccumulation& state)
-        : options_(options), scene_(scene), settings_(settings), state_(state), clock_(options.save_interval),
-          tracer_(*scene.rays, gi::collect_emitters(scene.registry, scene.meshes, scene.bounds, {}, {}, &warned_of_),
-                  gi::collect_backgrounds(scene.registry)) {}
+        : options_(options), scene_(scene), settings_(settings), state_(state), clock_(options.save_interval) {
+        std::set<ecs::Entity> warned_of; // lights that are ignored
+        const std::vector<gi::Emitter> emitters =
+            gi::collect_emitters(scene.registry, scene.meshes, scene.bounds, {}, {}, &warned_of);
+        if (options.light_paths)
+            light_tracer_.emplace(*scene.rays, emitters, gi::collect_backgrounds(scene.registry));
+        else
+            tracer_.emplace(*scene.rays, emitters, gi::collect_backgrounds(scene.registry));
+    }
 
     // Takes up the saved state, if there is one.
     Status resume() {
@@ -207,8 +216,11 @@ private:
     void trace_for(double slice) {
         const std::uint32_t batch = std::min({std::max(1u, accumulation_.samples), 16u, goal_ - accumulation_.samples});
         const Stopwatch watch;
-        tracer_.accumulate(accumulation_, scene_.camera, settings_, batch,
-                           [&] { return interrupted() || watch.seconds() > slice; });
+        const auto cancelled = [&] { return interrupted() || watch.seconds() > slice; };
+        if (light_tracer_)
+            light_tracer_->accumulate(accumulation_, scene_.camera, settings_, batch, cancelled);
+        else
+            tracer_->accumulate(accumulation_, scene_.camera, settings_, batch, cancelled);
     }
     void show(Progress& progress) const {
         double samples = 0.0;
@@ -225,8 +237,8 @@ private:
     const ReferenceSettings& settings_;
     SavedAccumulation& state_;
     SaveClock clock_;
-    std::set<ecs::Entity> warned_of_; // lights that are ignored
-    PathTracer tracer_;
+    std::optional<PathTracer> tracer_; // one of the two
+    std::optional<LightTracer> light_tracer_;
     Accumulation accumulation_;
     std::uint32_t goal_ = 0;
     std::uint64_t rays_before_ = 0;

@@ -143,6 +143,7 @@ BsdfSample Bsdf::sample_glass(vec3 outgoing, bool entering, float number) const 
     // Radiance scales with 1/eta^2 when it enters and back when it leaves. Paths start and end outside of closed glass,
     // so the factors cancel and are left out.
     result.weight = tint_;
+    result.index_ratio2 = eta * eta;
     return result;
 }
 

@@ -15,6 +15,9 @@ struct BsdfSample {
     float pdf = 0.0f;     // solid angle; 0 for delta scattering
     bool delta = false;
     bool diffuse = false; // chosen by the diffuse part
+    // Squared index of refraction of the side that the path goes to over that of the side it came from; 1 for
+    // reflections.
+    float index_ratio2 = 1.0f;
 };
 
 class Bsdf {
@@ -35,6 +38,9 @@ public:
     // numbers: three in [0, 1). False: the path ends here.
     bool sample(vec3 outgoing, const float numbers[3], BsdfSample& result) const;
 
+    // Share of samples whose direction is a facet's reflection; the others are cosine-distributed.
+    float microfacet_probability(vec3 outgoing) const;
+
     // Glass: reflection or refraction chosen by Fresnel. `entering`: outgoing is on the outer side.
     BsdfSample sample_glass(vec3 outgoing, bool entering, float number) const;
 
@@ -42,7 +48,6 @@ private:
     Bsdf() = default;
     vec3 microfacets(vec3 outgoing, vec3 incoming) const;
     vec3 diffuse(vec3 outgoing, vec3 incoming) const;
-    float microfacet_probability(vec3 outgoing) const;
 
     std::optional<GgxLayer> coat_, metal_; // of equal width
     float metallic_ = 0.0f;

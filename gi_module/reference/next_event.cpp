@@ -5,15 +5,12 @@
 #include <algorithm>
 
 namespace sunfleck::gi::reference {
-namespace {
 
 // Emitters of mirrored meshes have their second and third corner swapped.
 vec3 textured_emission(const raytrace::RayScene& rays, const Emitter& emitter, const EmittedPoint& point) {
     const bool mirrored = glm::determinant(mat3(emitter.matrix)) < 0.0f;
     return rays.emission_at(emitter.entity, point.triangle, mirrored ? point.v : point.u, mirrored ? point.u : point.v);
 }
-
-} // namespace
 
 // A point on an emitter, as a path vertex receives its light.
 struct PathTracer::EmitterSample {

@@ -1,4 +1,4 @@
-// A path of the reference path tracer while it is traced. For the files that implement PathTracer.
+// A path of the reference while it is traced. For the files that implement PathTracer and LightTracer.
 #pragma once
 
 #include "engine/core/random.h"
@@ -28,13 +28,18 @@ struct Frame {
     vec3 tangent, bitangent, normal;
 };
 
+// A local direction to a viewer; a shading normal that faces away from it would make the surface black.
+inline vec3 visible(vec3 outgoing) {
+    return {outgoing.x, outgoing.y, std::max(outgoing.z, 1e-4f)};
+}
+
 // A path vertex: a surface that scatters light, seen from the side that the path came from.
-struct PathTracer::Vertex {
+struct Vertex {
     vec3 position;
     float offset; // of ray origins from the surface, m
     vec3 geometric_normal;
     Frame frame;   // of the shading normal
-    vec3 outgoing; // local
+    vec3 outgoing; // local, to where the path came from
     Bsdf bsdf;
     bool entering = true; // glass: the path comes from outside
 
@@ -43,12 +48,25 @@ struct PathTracer::Vertex {
         const bool front = glm::dot(point.geometric_normal, direction) < 0.0f;
         const Frame frame(front ? point.shading_normal : -point.shading_normal);
         const vec3 normal = front ? point.geometric_normal : -point.geometric_normal;
-        Vertex vertex{point.on_triangle, point.offset, normal, frame, frame.to_local(-direction), bsdf, front};
-        // A shading normal that faces away from the viewer would make the surface black.
-        vertex.outgoing.z = std::max(vertex.outgoing.z, 1e-4f);
-        return vertex;
+        return {point.on_triangle, point.offset, normal, frame, visible(frame.to_local(-direction)), bsdf, front};
     }
 };
+
+// The first surface that the camera sees along the ray; single-sided surfaces are not seen from behind. `count`: of
+// rays, is raised.
+std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& rays, raytrace::Ray ray,
+                                                      std::uint64_t& count);
+
+// Radiance that a textured mesh emits at a point, W/(sr m2).
+vec3 textured_emission(const raytrace::RayScene& rays, const Emitter& emitter, const EmittedPoint& point);
+
+// On its front alone.
+inline vec3 emitted(const raytrace::SurfacePoint& point, vec3 direction) {
+    return glm::dot(point.geometric_normal, direction) < 0.0f ? point.material.emission : vec3(0.0f);
+}
+
+// Makes room for the settings' picture.
+void start(Accumulation& accumulation, const ReferenceSettings& settings);
 
 struct PathTracer::Path {
     RandomSequence random;

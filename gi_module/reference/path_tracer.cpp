@@ -21,7 +21,8 @@ Bsdf bsdf_at(const raytrace::SurfacePoint& point, const RandomSequence& random, 
     return Bsdf(point.material, random.at(first_dimension(reflections) + 3));
 }
 
-// The first surface that the camera sees along the ray; single-sided surfaces are not seen from behind.
+} // namespace
+
 std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& rays, raytrace::Ray ray,
                                                       std::uint64_t& count) {
     constexpr int max_layers = 64;
@@ -37,8 +38,6 @@ std::optional<raytrace::SurfacePoint> visible_surface(const raytrace::RayScene& 
     }
     return std::nullopt;
 }
-
-} // namespace
 
 PathTracer::PathTracer(const raytrace::RayScene& rays, std::vector<Emitter> emitters, std::vector<Emitter> backgrounds)
     : rays_(rays), backgrounds_(std::move(backgrounds)) {
@@ -64,10 +63,6 @@ vec3 PathTracer::environment(vec3 direction) const {
         for (const Emitter& emitter : *list)
             sum += emitter.environment_radiance(direction);
     return sum;
-}
-
-vec3 PathTracer::emitted(const raytrace::SurfacePoint& point, vec3 direction) const {
-    return glm::dot(point.geometric_normal, direction) < 0.0f ? point.material.emission : vec3(0.0f);
 }
 
 // Scatters the path at the vertex; false if it ends.
@@ -184,8 +179,6 @@ PathTracer::PixelSample PathTracer::pixel_sample(glm::uvec2 pixel, std::uint32_t
     return result;
 }
 
-namespace {
-
 void start(Accumulation& accumulation, const ReferenceSettings& settings) {
     const std::size_t pixels = std::size_t(settings.width) * settings.height;
     accumulation.width = settings.width;
@@ -194,8 +187,6 @@ void start(Accumulation& accumulation, const ReferenceSettings& settings) {
     accumulation.counts.assign(pixels, 0);
     accumulation.covered.assign(pixels, 0);
 }
-
-} // namespace
 
 // Sample by sample in double precision: the same sums however the samples are split over calls.
 std::uint64_t PathTracer::add_samples(Accumulation& accumulation, std::size_t pixel, std::uint32_t until,

@@ -39,6 +39,9 @@ struct Accumulation {
     std::uint64_t rays = 0;
 };
 
+// A path vertex (path.h).
+struct Vertex;
+
 class PathTracer {
 public:
     // The registry's emitters and the ray scene must not change while rendering. `backgrounds`: see
@@ -58,7 +61,6 @@ public:
 
 private:
     struct Path;
-    struct Vertex;
     struct EmitterSample;
     static constexpr std::size_t not_sampled = std::size_t(-1);
     struct PixelSample {
@@ -83,7 +85,6 @@ private:
     vec3 direct_light(Path& path, const Vertex& vertex) const;
     vec3 environment(vec3 direction) const;
     vec3 environment_found(vec3 receiver, vec3 direction, float pdf, bool delta) const;
-    vec3 emitted(const raytrace::SurfacePoint& point, vec3 direction) const;
     float emitter_density(vec3 receiver, const raytrace::SurfacePoint& point, vec3 direction) const;
     static Whereabouts find(const Emitter& emitter);
     std::optional<raytrace::SurfacePoint> follow(Path& path, const Vertex& vertex, std::uint32_t reflections,

@@ -86,6 +86,7 @@ std::vector<OptionCase> reference_cases() {
         {"--antialiasing", "four_pillars", {"--antialiasing"}},
         {"--unlimited", "four_pillars", {"--unlimited", "--spp", "64"}},
         {"--caustics", "ring", {"--caustics", "off", "--spp", "64"}},
+        {"--light-paths", "glass", {"--light-paths", "--view", "irradiance"}},
         {"--lambertian", "glass", {"--lambertian"}},
         {"--save-interval", "", {}, Effect::none, "the same picture, in whichever parts it is saved"},
     };
