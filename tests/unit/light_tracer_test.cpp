@@ -238,6 +238,17 @@ TEST(LightTracer, ALampWithinGlassIsThatOfThePathTracer) {
     expect_same_light(scene, by_size(128u, 2048u), "a lamp within glass", {by_size(0.02, 0.008), 8.0});
 }
 
+// A panel's light through a ball of glass with shading normals, which scattered rays of the path tracer find, too.
+TEST(LightTracer, APanelThroughAGlassBallIsThatOfThePathTracer) {
+    Scene scene;
+    furnish(scene);
+    scene.builder.ceiling_light("lamp", vec3(-0.2f, 2.9f, 0.6f), 1.2f, 1.2f, vec3(9.0f));
+    scene.builder.add("glass", scene::make_sphere(0.5f, 64, 32), clear_glass(), aimed(vec3(0.5f, 0.9f, 0.9f), vec3(0)));
+    scene.finish();
+    scene.settings.bounces = 2;
+    expect_same_light(scene, by_size(64u, 1024u), "a panel through a glass ball", {by_size(0.012, 0.003)});
+}
+
 // The brightest 40 cm of the caustic within `ring`, from above: what the metal reflects to the plate.
 struct Ring : Scene {
     Ring() {
