@@ -41,6 +41,11 @@ float facing_area(const Emitter& emitter, float distance, std::uint32_t texels) 
     return all / float(texels);
 }
 
+raytrace::Ray ray_from(const EmittedRay& emitted, const raytrace::RayScene& rays) {
+    const float offset = emitted.normal == vec3(0.0f) ? 0.0f : rays.ray_offset_anywhere();
+    return {emitted.origin + offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
+}
+
 struct Tracer {
     const Emitter& emitter;
     const MapSurfaces& surfaces;
@@ -48,28 +53,11 @@ struct Tracer {
     const ecs::Registry& registry;
     std::uint32_t side;
 
-    // Light passes movers that cast no shadow, such as the glass of a lantern.
-    struct LitSurface {
-        raytrace::Hit hit;
-        raytrace::SurfacePoint point;
-    };
-    std::optional<LitSurface> lit_surface(const raytrace::Ray& emitted) const {
-        raytrace::Ray ray = emitted;
-        while (const auto hit = rays.closest_hit(ray)) {
-            const raytrace::SurfacePoint point = rays.surface(ray, *hit);
-            if (point.casts_shadow)
-                return LitSurface{*hit, point};
-            ray.minimum = hit->distance * (1.0f + 0x1p-17f);
-        }
-        return std::nullopt;
-    }
-
     ReflectiveTexel texel(std::uint32_t x, std::uint32_t y) const {
         ReflectiveTexel texel;
         const EmittedRay emitted = ray_of(emitter, x, y, side);
-        const float offset = emitted.normal == vec3(0.0f) ? 0.0f : rays.ray_offset_anywhere();
-        const raytrace::Ray ray{emitted.origin + offset * emitted.normal, emitted.direction, 0.0f, 1e30f};
-        const std::optional<LitSurface> met = lit_surface(ray);
+        const raytrace::Ray ray = ray_from(emitted, rays);
+        const std::optional<LitSurface> met = lit_surface(rays, ray);
         if (!met)
             return texel;
         const raytrace::SurfacePoint& point = met->point;
@@ -90,9 +78,10 @@ struct Tracer {
         texel.mirror = glm::normalize(ray.direction + 2.0f * cosine * texel.normal);
         const LobeReflectance lobes = lobe_reflectance(point.material, cosine);
         const std::uint32_t texels = side * side;
-        const vec3 arriving = emitter.flux * emitted.weight * emitted.tint / float(texels);
-        texel.diffuse = arriving * lobes.diffuse;
-        texel.glossy = arriving * lobes.glossy;
+        texel.arriving = emitter.flux * emitted.weight * emitted.tint / float(texels);
+        texel.is_glass = point.material.transmission > 0.0f;
+        texel.diffuse = texel.arriving * lobes.diffuse;
+        texel.glossy = texel.arriving * lobes.glossy;
         texel.exponent = lobes.exponent;
         const float distance = glm::length(point.position - ray.origin);
         texel.area = facing_area(emitter, distance, texels) / std::max(cosine, least_cosine);
@@ -101,6 +90,21 @@ struct Tracer {
 };
 
 } // namespace
+
+std::optional<LitSurface> lit_surface(const raytrace::RayScene& rays, raytrace::Ray ray) {
+    while (const auto hit = rays.closest_hit(ray)) {
+        const raytrace::SurfacePoint point = rays.surface(ray, *hit);
+        if (point.casts_shadow)
+            return LitSurface{*hit, point};
+        ray.minimum = hit->distance * (1.0f + 0x1p-17f);
+    }
+    return std::nullopt;
+}
+
+raytrace::Ray reflective_map_ray(const Emitter& emitter, std::size_t texel, std::uint32_t side,
+                                 const raytrace::RayScene& rays) {
+    return ray_from(ray_of(emitter, std::uint32_t(texel % side), std::uint32_t(texel / side), side), rays);
+}
 
 ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t side, const MapSurfaces& surfaces,
                                          const raytrace::RayScene& rays, const ecs::Registry& registry) {

@@ -8,6 +8,9 @@
 #include "gi_module/light_sampling/emitters.h"
 #include "gi_module/transport/pixel_light.h"
 
+#include <optional>
+#include <vector>
+
 namespace sunfleck::gi {
 
 struct ReflectiveTexel {
@@ -25,6 +28,9 @@ struct ReflectiveTexel {
     std::uint32_t primitive = 0;
     float u = 0.0f, v = 0.0f;
     bool on_front = true;
+    vec3 arriving{0.0f};              // flux, W
+    bool is_glass = false;            // the surface transmits a part of it
+    std::uint32_t glass_surfaces = 0; // that the light met before (refracted_light.h)
 };
 
 struct ReflectiveShadowMap {
@@ -43,6 +49,17 @@ struct ReflectiveShadowMap {
 struct MapSurfaces {
     bool fixed = true, movers = true;
 };
+
+// The first surface that casts a shadow: light passes movers that cast none, such as the glass of a lantern.
+struct LitSurface {
+    raytrace::Hit hit;
+    raytrace::SurfacePoint point;
+};
+std::optional<LitSurface> lit_surface(const raytrace::RayScene& rays, raytrace::Ray ray);
+
+// On which a texel of a map lies.
+raytrace::Ray reflective_map_ray(const Emitter& emitter, std::size_t texel, std::uint32_t side,
+                                 const raytrace::RayScene& rays);
 
 // A pure function of emitter and scene. `side`: a power of two. `is_mover`: by entity.
 ReflectiveShadowMap trace_reflective_map(const Emitter& emitter, std::uint32_t side, const MapSurfaces& surfaces,

@@ -7,16 +7,6 @@
 
 namespace sunfleck::gi::reference {
 
-float fresnel_dielectric(float cosine, float eta) {
-    const float c = std::clamp(cosine, 0.0f, 1.0f);
-    const float transmitted2 = 1.0f - (1.0f - c * c) / (eta * eta);
-    if (transmitted2 <= 0.0f)
-        return 1.0f;
-    const float t = std::sqrt(transmitted2);
-    const float parallel = (eta * c - t) / (eta * c + t), perpendicular = (c - eta * t) / (c + eta * t);
-    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
-}
-
 Bsdf::Bsdf(const scene::Material& material, float choice)
     : metallic_(material.metallic), base_(material.base_colour), glass_(choice < material.transmission),
       tint_(material.base_colour), index_of_refraction_(material.index_of_refraction) {

@@ -57,7 +57,4 @@ private:
     float index_of_refraction_ = 1.5f;
 };
 
-// Unpolarised Fresnel reflectance of a dielectric; eta: index on the far side over that on the near side.
-float fresnel_dielectric(float cosine, float eta);
-
 } // namespace sunfleck::gi::reference

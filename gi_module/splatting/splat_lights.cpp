@@ -30,7 +30,8 @@ void set_footprint(const ReflectiveShadowMap& map, std::size_t index, float texe
             place[axis] = std::clamp(place[axis] + 2 * end - 1, 0, side - 1);
             ends[end] = &map.texels[std::size_t(place[1]) * map.side + std::size_t(place[0])];
             // Over an edge there is another surface.
-            if (!ends[end]->lit || ends[end]->entity != map.texels[index].entity ||
+            if (!ends[end]->lit || ends[end]->glass_surfaces != map.texels[index].glass_surfaces ||
+                ends[end]->entity != map.texels[index].entity ||
                 glm::dot(ends[end]->normal, light.normal) < least_cosine_across || place[axis] == at[axis])
                 ends[end] = &map.texels[index];
             else
@@ -100,8 +101,25 @@ void SplatLights::trace(const Emitter& emitter, bool dynamic, std::uint32_t side
         map.emitter_hash = hash;
         map.geometry = scene.rays.generation();
     }
+    trace_refracted(map, emitter, scene, request);
     lit_.push_back(
         {&map, dynamic, hash_combine(request.seed, emitter.entity.index * 16 + std::uint32_t(emitter.kind))});
+}
+
+void SplatLights::trace_refracted(Map& map, const Emitter& emitter, const SceneView& scene,
+                                  const SplatRequest& request) {
+    const std::vector<ReflectiveTexel>& texels = map.texels.texels;
+    const Refraction wanted = request.settings.glossy_splats > 0 ? request.settings.splat_refraction : Refraction::off;
+    if (!map.is_new && map.refraction == wanted)
+        return;
+    map.refraction = wanted;
+    map.refracted = {};
+    const auto glass =
+        std::count_if(texels.begin(), texels.end(), [](const ReflectiveTexel& texel) { return texel.is_glass; });
+    if (wanted == Refraction::off || glass == 0)
+        return;
+    map.refracted = trace_refracted_map(emitter, map.texels, wanted, scene.rays, scene.registry);
+    rays_ += std::uint64_t(glass);
 }
 
 // Of the blocks of all maps, smoothed over frames: they say where lights are, not what they give, and may lag behind.
@@ -172,38 +190,43 @@ void SplatLights::add_sources_of(const Lit& lit, const SplatRequest& request) {
 }
 
 // Of the texels that count: their flux, or what it does for the picture. Lobes are chosen by their peak: flux times
-// exponent. Light that nobody sees keeps a hundredth of the importance, so that it is not lost.
-std::vector<float> SplatLights::importance_of(const Map& map, const Texels& texels, bool glossy,
+// exponent. Light that nobody sees keeps a hundredth of the importance, so that it is not lost. What light behind glass
+// does is not known.
+std::vector<float> SplatLights::importance_of(const Source& source, const Texels& texels,
                                               const SplatRequest& request) const {
-    std::vector<float> values(map.texels.texels.size(), 0.0f);
+    const bool by_contribution = mean_contribution_ > 0.0f && source.texels == &source.map->texels;
+    std::vector<float> values(source.texels->texels.size(), 0.0f);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const ReflectiveTexel& texel = map.texels.texels[i];
-        const vec3 flux = reflected_flux(texel, glossy, request.settings.glossy_splats > 0);
+        const ReflectiveTexel& texel = source.texels->texels[i];
+        const vec3 flux = reflected_flux(texel, source.glossy, request.settings.glossy_splats > 0);
         if (!texel.lit || !(texel.on_mover ? texels.movers : texels.fixed) || !is_bright(flux))
             continue;
-        values[i] = luminance(flux) * (glossy ? texel.exponent : 1.0f);
-        if (mean_contribution_ > 0.0f)
-            values[i] *= map.contribution(i) / mean_contribution_ + unseen_share;
+        values[i] = luminance(flux) * (source.glossy ? texel.exponent : 1.0f);
+        if (by_contribution)
+            values[i] *= source.map->contribution(i) / mean_contribution_ + unseen_share;
     }
     return values;
 }
 
 void SplatLights::add_sources(Map& map, bool dynamic, const Texels& texels, std::uint32_t random,
                               const SplatRequest& request) {
-    for (const bool glossy : {false, true}) {
-        if (glossy && request.settings.glossy_splats == 0)
-            continue;
-        Source source{&map, hash_combine(random, glossy ? 2 : 3), dynamic, glossy, {}, 0.0, 0.0, 0};
-        std::vector<float> values = importance_of(map, texels, glossy, request);
-        source.weight = std::accumulate(values.begin(), values.end(), 0.0);
-        if (source.weight <= 0.0)
-            continue;
-        if (request.settings.splat_importance == SplatImportance::none)
-            for (float& value : values)
-                value = value > 0.0f ? 1.0f : 0.0f;
-        source.importance = ImportanceMap(values, map.side);
-        sources_.push_back(std::move(source));
-    }
+    add_source({&map, &map.texels, hash_combine(random, 3), dynamic, false, {}, 0.0, 0.0, 0}, texels, request);
+    if (request.settings.glossy_splats == 0)
+        return;
+    add_source({&map, &map.texels, hash_combine(random, 2), dynamic, true, {}, 0.0, 0.0, 0}, texels, request);
+    add_source({&map, &map.refracted, hash_combine(random, 4), dynamic, true, {}, 0.0, 0.0, 0}, texels, request);
+}
+
+void SplatLights::add_source(Source source, const Texels& texels, const SplatRequest& request) {
+    std::vector<float> values = importance_of(source, texels, request);
+    source.weight = std::accumulate(values.begin(), values.end(), 0.0);
+    if (source.weight <= 0.0)
+        return;
+    if (request.settings.splat_importance == SplatImportance::none)
+        for (float& value : values)
+            value = value > 0.0f ? 1.0f : 0.0f;
+    source.importance = ImportanceMap(values, source.texels->side);
+    sources_.push_back(std::move(source));
 }
 
 // In proportion to what the sources reflect, each a run of a sequence of `count` equal shares: sources with at least a
@@ -235,13 +258,13 @@ void SplatLights::place(const Source& source, const SplatRequest& request) {
     for (std::uint32_t i = 0; i < source.count; ++i) {
         const RandomSequence random(SequenceKind::sobol, hash_combine(splat_pattern_seed, source.random), i);
         const WarpedPoint point = source.importance.warp(vec2(random.at(0), random.at(1)), settings.splat_warp, levels);
-        const std::size_t index = source.map->texels.index(point.place);
+        const std::size_t index = source.texels->index(point.place);
         if (source.importance.values()[index] <= 0.0f)
             continue;
-        const ReflectiveTexel& texel = source.map->texels.texels[index];
+        const ReflectiveTexel& texel = source.texels->texels[index];
         PixelLight light = pixel_light_of(texel, scale * point.weight, source.glossy, settings.glossy_splats > 0);
         if (source.glossy && settings.splat_footprints)
-            set_footprint(source.map->texels, index, std::sqrt(scale * point.weight), light);
+            set_footprint(*source.texels, index, std::sqrt(scale * point.weight), light);
         light.dynamic = source.dynamic;
         lights_.push_back(light);
     }
@@ -294,7 +317,7 @@ std::vector<SplatLights::SeenTexel> SplatLights::texels(std::size_t most) const 
     for (const Source& source : sources_)
         for (std::size_t i = 0; i < source.importance.values().size(); ++i)
             if (const float value = source.importance.values()[i]; value > 0.0f && counted++ % stride == 0) {
-                const ReflectiveTexel& texel = source.map->texels.texels[i];
+                const ReflectiveTexel& texel = source.texels->texels[i];
                 result.push_back({texel.position, texel.diffuse + texel.glossy, value / greatest});
             }
     return result;
@@ -303,7 +326,7 @@ std::vector<SplatLights::SeenTexel> SplatLights::texels(std::size_t most) const 
 std::uint64_t SplatLights::memory_bytes() const {
     std::uint64_t bytes = lights_.capacity() * sizeof(PixelLight);
     for (const auto& [key, map] : maps_)
-        bytes += map.texels.texels.size() * sizeof(ReflectiveTexel);
+        bytes += (map.texels.texels.size() + map.refracted.texels.size()) * sizeof(ReflectiveTexel);
     return bytes;
 }
 

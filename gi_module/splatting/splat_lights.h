@@ -57,6 +57,8 @@ private:
     // What one emitter sees.
     struct Map {
         ReflectiveShadowMap texels;
+        ReflectiveShadowMap refracted; // what glass lets through; empty: nothing
+        Refraction refraction = Refraction::off;
         std::uint64_t emitter_hash = 0, geometry = 0;
         std::uint32_t side = 0;
         bool used = false;
@@ -71,9 +73,10 @@ private:
     // A part of a map's texels and of the light that they reflect, among which pixel lights are chosen.
     struct Source {
         Map* map = nullptr;
-        std::uint32_t random = 0; // seed
+        const ReflectiveShadowMap* texels = nullptr; // of the map: reflecting ones, or those behind glass
+        std::uint32_t random = 0;                    // seed
         bool dynamic = false;
-        bool glossy = false; // what is reflected in a lobe
+        bool glossy = false; // what is reflected in a lobe, or passes glass
         ImportanceMap importance;
         double weight = 0.0;     // what the budget is divided by
         double share = 0.0;      // of the budget, in lights
@@ -91,9 +94,10 @@ private:
     void find_contributions(const SceneView& scene, const SplatRequest& request);
     void add_sources_of(const Lit& lit, const SplatRequest& request);
     void find_mean_contribution();
-    std::vector<float> importance_of(const Map& map, const Texels& texels, bool glossy,
-                                     const SplatRequest& request) const;
+    void trace_refracted(Map& map, const Emitter& emitter, const SceneView& scene, const SplatRequest& request);
+    std::vector<float> importance_of(const Source& source, const Texels& texels, const SplatRequest& request) const;
     void add_sources(Map& map, bool dynamic, const Texels& texels, std::uint32_t random, const SplatRequest& request);
+    void add_source(Source source, const Texels& texels, const SplatRequest& request);
     void divide(bool glossy, std::uint32_t count);
     void place(const Source& source, const SplatRequest& request);
     void place_followed(const Source& source, const SplatRequest& request, const raytrace::RayScene& rays);

@@ -20,6 +20,11 @@ const TypeDescription& SplattingSettings::description() {
          SUNFLECK_FIELD(S, splat_footprints, "", 0, 1,
                         "Glossy pixel lights have the shape of the beam that their piece of surface reflects, so that "
                         "caustics have no spots; off: round lobes about the mirror direction"),
+         SUNFLECK_CHOICE(S, splat_refraction,
+                         "Glossy pixel lights where light leaves smooth glass: nowhere; refracted once, where it "
+                         "leaves a body; or by every surface on its way, also total reflections within. Without "
+                         "glossy_splats there are none",
+                         "off", "single", "traced"),
          SUNFLECK_FIELD(S, splat_rays, "rays", 16, 1048576,
                         "Texels of all reflective shadow maps together, each a ray"),
          SUNFLECK_CHOICE(S, splat_pattern,

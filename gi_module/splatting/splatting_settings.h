@@ -3,6 +3,7 @@
 
 #include "engine/core/description.h"
 #include "gi_module/light_sampling/importance_warping.h"
+#include "gi_module/light_sampling/refracted_light.h"
 
 namespace sunfleck::gi {
 
@@ -24,6 +25,7 @@ struct SplattingSettings {
     std::uint32_t splats = 256;
     std::uint32_t glossy_splats = 0;
     bool splat_footprints = true;
+    Refraction splat_refraction = Refraction::traced;
     std::uint32_t splat_rays = 4096;
     SplatPattern splat_pattern = SplatPattern::followed;
     SplatImportance splat_importance = SplatImportance::flux;

@@ -158,6 +158,16 @@ std::span<const vec2> facet_table() {
     return table;
 }
 
+float fresnel_dielectric(float cosine, float eta) {
+    const float c = std::clamp(cosine, 0.0f, 1.0f);
+    const float transmitted2 = 1.0f - (1.0f - c * c) / (eta * eta);
+    if (transmitted2 <= 0.0f)
+        return 1.0f;
+    const float t = std::sqrt(transmitted2);
+    const float parallel = (eta * c - t) / (eta * c + t), perpendicular = (c - eta * t) / (c + eta * t);
+    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
 float dielectric_reflectance(float index_of_refraction) {
     const float root = (index_of_refraction - 1.0f) / (index_of_refraction + 1.0f);
     return root * root;

@@ -46,6 +46,9 @@ std::span<const vec2> facet_table();
 // Reflectance of a dielectric at normal incidence.
 float dielectric_reflectance(float index_of_refraction);
 
+// Unpolarised Fresnel reflectance of a dielectric; eta: index on the far side over that on the near side.
+float fresnel_dielectric(float cosine, float eta);
+
 // Share of light from all directions alike that the material reflects, colour by colour. Transmission counts as
 // reflection by the base: light walks do not enter glass.
 vec3 mean_reflectance(const scene::Material& material);

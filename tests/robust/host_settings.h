@@ -74,6 +74,7 @@ inline constexpr SettingValues host_settings[] = {
     {"splats", {"256", "0", "16"}},
     {"glossy_splats", {"0", "16", "1"}},
     {"splat_footprints", {"true", "false", "true"}},
+    {"splat_refraction", {"traced", "single", "off"}},
     {"splat_rays", {"4096", "16", "256"}},
     {"splat_pattern", {"followed", "fixed", "followed"}},
     {"splat_importance", {"flux", "none", "contribution"}},
