@@ -238,6 +238,24 @@ TEST(LightTracer, ALampWithinGlassIsThatOfThePathTracer) {
     expect_same_light(scene, by_size(128u, 2048u), "a lamp within glass", {by_size(0.02, 0.008), 8.0});
 }
 
+// All that is seen is what a white ball of 24 triangles reflects, whose shading normals are up to 45 degrees off
+// theirs.
+TEST(LightTracer, ShadingNormalsReflectAsInThePathTracer) {
+    Scene scene;
+    const scene::Material black = assets::diffuse(vec3(0.0f));
+    scene.builder.quad("floor", vec3(-3, 0, 3), vec3(6, 0, 0), vec3(0, 0, -6), black);
+    scene.builder.quad("back", vec3(-3, 0, -1), vec3(6, 0, 0), vec3(0, 3, 0), black);
+    scene.builder.add("ball", scene::make_sphere(0.6f, 6, 3), assets::diffuse(vec3(1.0f)),
+                      aimed(vec3(0, 0.8f, 0), vec3(0)));
+    scene.builder.spot_light("lamp", aimed(vec3(1.5f, 2.5f, 1.5f), vec3(0, 0.8f, 0)), {vec3(20.0f), 0.2f, 0.25f});
+    scene.finish();
+    scene.settings.bounces = 1;
+    scene.settings.view = ReferenceView::indirect;
+    scene.camera.position = vec3(0.5f, 2.0f, 3.0f);
+    scene.camera.target = vec3(0.0f, 0.5f, -0.3f);
+    expect_same_light(scene, by_size(512u, 8192u), "a coarse ball", {by_size(0.01, 0.003)});
+}
+
 // A panel's light through a ball of glass with shading normals, which scattered rays of the path tracer find, too.
 TEST(LightTracer, APanelThroughAGlassBallIsThatOfThePathTracer) {
     Scene scene;
