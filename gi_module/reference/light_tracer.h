@@ -1,7 +1,8 @@
 // The same truth from the other end: particles leave the emitters, and each surface that one meets is connected with
 // the pinhole camera (E. Veach, 1997, sec. 10.2: light tracing, the paths of bidirectional path tracing with a single
 // vertex on the eye's side). It finds what the path tracer cannot, light of points, spots and suns that arrives through
-// smooth glass. What it cannot find itself is seen only by way of glass: no connection passes a smooth surface.
+// smooth glass. What it cannot find itself is seen only by way of glass: no connection passes a smooth surface. Where
+// light is on one side of glass by the shading normal and on the other by the triangle, it ends.
 #pragma once
 
 #include "gi_module/reference/path_tracer.h"
