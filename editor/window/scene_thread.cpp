@@ -154,7 +154,8 @@ bool SceneThread::take_work() {
         lock.unlock();
         if (std::exchange(is_other_scene_, false))
             device_->pipelines().drop_unused(); // kernels that only the scene before needed
-        return_free_memory();                   // of old lighting, large geometry, the widest picture
+        device_->memory().free_spares();
+        return_free_memory(); // of old lighting, large geometry, the widest picture
         lock.lock();
         changed_.wait(lock, wakes);
     }

@@ -10,8 +10,18 @@
 namespace sunfleck::gpu {
 namespace {
 constexpr VkDeviceSize block_size = VkDeviceSize(32) << 20;
+// A CPU device's memory is the process's own: pages of a block that were written once count for as long as the block is
+// there, whatever is free in it. So blocks are small there, and most pieces have memory of their own, which costs no
+// more than other memory.
+constexpr VkDeviceSize software_block_size = VkDeviceSize(2) << 20;
+
+VkDeviceSize size_of_blocks(const DeviceTraits& traits) {
+    return traits.software ? software_block_size : block_size;
+}
 // Larger requests get memory of their own: a block would mostly hold just them.
-constexpr VkDeviceSize dedicated_size = block_size / 4;
+VkDeviceSize largest_in_block(VkDeviceSize size_of_block) {
+    return size_of_block / 4;
+}
 
 struct UsageEntry {
     std::map<std::string, std::uint64_t>& usage;
@@ -133,7 +143,8 @@ Result<Allocation> Memory::allocate(const VkMemoryRequirements& requirements, Me
     const std::lock_guard lock(mutex_);
     SUNFLECK_ASSIGN(const std::uint32_t type, choose_type(requirements.memoryTypeBits, use));
     const bool map = use != MemoryUse::device;
-    const bool dedicated = requirements.size > dedicated_size;
+    const VkDeviceSize size_of_block = size_of_blocks(device_.traits());
+    const bool dedicated = requirements.size > largest_in_block(size_of_block);
     Allocation allocation;
     allocation.size = requirements.size;
     std::uint64_t& used = usage_[what];
@@ -149,7 +160,7 @@ Result<Allocation> Memory::allocate(const VkMemoryRequirements& requirements, Me
     }
     if (!found) {
         SUNFLECK_ASSIGN(allocation.block,
-                        make_block(dedicated ? requirements.size : block_size, type, linear, dedicated, map, what));
+                        make_block(dedicated ? requirements.size : size_of_block, type, linear, dedicated, map, what));
         take(blocks_[allocation.block], requirements, allocation.offset);
     }
     const Block& block = blocks_[allocation.block];
@@ -168,10 +179,28 @@ void Memory::free(const Allocation& allocation, const std::string& what) {
     assert(entry != usage_.end() && entry->second >= allocation.size);
     if ((entry->second -= allocation.size) == 0)
         usage_.erase(entry);
-    if (block.dedicated) {
+    if (block.dedicated || (block.allocations == 0 && has_spare(block))) {
         device_.vk.vkFreeMemory(device_.handle(), block.memory, nullptr);
         block = Block{};
     }
+}
+
+// One empty block of a kind is kept, for what comes and goes from frame to frame.
+bool Memory::has_spare(const Block& block) const {
+    return std::ranges::any_of(blocks_, [&](const Block& other) {
+        return &other != &block && other.memory != VK_NULL_HANDLE && !other.dedicated && other.allocations == 0 &&
+               other.type == block.type && other.linear == block.linear &&
+               (other.mapped != nullptr) == (block.mapped != nullptr);
+    });
+}
+
+void Memory::free_spares() {
+    const std::lock_guard lock(mutex_);
+    for (Block& block : blocks_)
+        if (block.memory != VK_NULL_HANDLE && block.allocations == 0) {
+            device_.vk.vkFreeMemory(device_.handle(), block.memory, nullptr);
+            block = Block{};
+        }
 }
 
 std::map<std::string, std::uint64_t> Memory::usage() const {

@@ -41,6 +41,9 @@ public:
                                 const std::string& what);
     void free(const Allocation& allocation, const std::string& what);
 
+    // Frees what is kept for later, though nothing is in it. For moments of rest.
+    void free_spares();
+
     // Bytes in use by name.
     std::map<std::string, std::uint64_t> usage() const;
     std::uint64_t total() const;
@@ -63,6 +66,7 @@ private:
     Result<std::uint32_t> choose_type(std::uint32_t allowed, MemoryUse use) const;
     Result<std::uint32_t> make_block(VkDeviceSize size, std::uint32_t type, bool linear, bool dedicated, bool map,
                                      const std::string& what);
+    bool has_spare(const Block& block) const;
     static bool take(Block& block, const VkMemoryRequirements& requirements, VkDeviceSize& offset);
     static void give_back(Block& block, Range range);
 
