@@ -9,7 +9,7 @@ std::uint32_t tiles_of(const shared::SplattingConstants& constants, std::uint32_
     return shared::tiles_of_level(constants.columns, constants.rows, level);
 }
 
-// From the largest tiles down, or up to them.
+// Of passes that handle one level after the other.
 shared::SplattingConstants at_level(shared::SplattingConstants constants, std::uint32_t level) {
     constants.level = level;
     return constants;
