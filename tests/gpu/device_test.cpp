@@ -9,6 +9,7 @@
 
 #include <fstream>
 #include <thread>
+#include <vector>
 
 namespace sunfleck::tests {
 namespace {
@@ -130,6 +131,45 @@ TEST_F(DeviceTest, RunningOutOfMemoryIsOneClearMessageWhereverItHappens) {
         EXPECT_NE(status.error().message.find("MiB of GPU memory for '"), std::string::npos) << status.error().message;
     }
     EXPECT_GT(failures, 3);
+}
+
+// Blocks of memory that the driver has given and not got back.
+int memory_blocks = 0;
+PFN_vkFreeMemory true_free = nullptr;
+
+VKAPI_ATTR VkResult VKAPI_CALL counting_allocate(VkDevice device, const VkMemoryAllocateInfo* info,
+                                                 const VkAllocationCallbacks* callbacks, VkDeviceMemory* memory) {
+    ++memory_blocks;
+    return true_allocate(device, info, callbacks, memory);
+}
+
+VKAPI_ATTR void VKAPI_CALL counting_free(VkDevice device, VkDeviceMemory memory,
+                                         const VkAllocationCallbacks* callbacks) {
+    --memory_blocks;
+    true_free(device, memory, callbacks);
+}
+
+// 64 MiB in pieces that share blocks: of those that are empty one is kept, and none at rest.
+TEST_F(DeviceTest, EmptyBlocksOfMemoryGoBackToTheDriver) {
+    auto own = gpu::Device::create({}).value();
+    own->memory().free_spares();
+    true_allocate = own->vk.vkAllocateMemory;
+    true_free = own->vk.vkFreeMemory;
+    own->vk.vkAllocateMemory = counting_allocate;
+    own->vk.vkFreeMemory = counting_free;
+    memory_blocks = 0;
+    {
+        std::vector<gpu::Buffer> buffers;
+        for (int i = 0; i < 256; ++i)
+            buffers.push_back(gpu::Buffer::create(*own, {"piece", 256 * 1024, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                         gpu::MemoryUse::device, VK_FORMAT_UNDEFINED})
+                                  .value());
+        EXPECT_GE(memory_blocks, 2);
+        EXPECT_LT(memory_blocks, 256);
+    }
+    EXPECT_EQ(memory_blocks, 1);
+    own->memory().free_spares();
+    EXPECT_EQ(memory_blocks, 0);
 }
 
 TEST_F(DeviceTest, ALostDeviceIsOneClearMessage) {
