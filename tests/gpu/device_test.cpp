@@ -160,6 +160,7 @@ TEST_F(DeviceTest, EmptyBlocksOfMemoryGoBackToTheDriver) {
     memory_blocks = 0;
     {
         std::vector<gpu::Buffer> buffers;
+        buffers.reserve(256);
         for (int i = 0; i < 256; ++i)
             buffers.push_back(gpu::Buffer::create(*own, {"piece", 256 * 1024, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                                          gpu::MemoryUse::device, VK_FORMAT_UNDEFINED})
