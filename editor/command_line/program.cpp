@@ -147,8 +147,8 @@ Command make_reference_command(CLI::App& program) {
     auto options = std::make_shared<ReferenceOptions>();
     CLI::App* app = program.add_subcommand("reference", "Renders a scene with the path tracer: the truth, slowly");
     app->footer(
-        "Examples: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
-        "          sunfleck reference glass -o caustic.exr --spp 1024 --view irradiance --light-paths\n"
+        "Example: sunfleck reference cornell -o cornell.exr --spp 1024 --view irradiance\n"
+        "Example: sunfleck reference glass -o caustic.exr --spp 1024 --view irradiance --light-paths\n"
         "Whatever ends it, the same command goes on from what was saved last: beside the picture there are two\n"
         "files, NAME.state and NAME.state2, until it is done. Ctrl-C and other signals save first.");
     add_scene_options(*app, options->scene);

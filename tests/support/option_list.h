@@ -3,6 +3,7 @@
 
 #include "editor/command_line/program.h"
 
+#include <algorithm>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -15,7 +16,8 @@ struct Option {
     std::string type; // "INT 1 to 60"; empty: a flag
 };
 
-// Flags have their text after two spaces or more; values' types begin after one.
+// Flags have their text after two spaces or more; values' types begin after one, and so do the options that one may not
+// be given beside.
 inline std::vector<Option> options_of(const std::string& help) {
     std::vector<Option> options;
     std::istringstream lines(help);
@@ -28,6 +30,7 @@ inline std::vector<Option> options_of(const std::string& help) {
         if (end != std::string::npos && line.compare(end, 2, "  ") != 0) {
             const std::size_t text = line.find("  ", end);
             option.type = line.substr(end + 1, text == std::string::npos ? text : text - end - 1);
+            option.type.erase(std::min(option.type.find("Excludes: "), option.type.size()));
         }
         if (option.name != "--help")
             options.push_back(std::move(option));
