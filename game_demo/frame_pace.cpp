@@ -1,5 +1,7 @@
 #include "game_demo/frame_pace.h"
 
+#include "engine/core/log.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,9 +21,11 @@ FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, doubl
     const FrameQuality quality =
         control_.next(std::max(work_ms_, gpu_ms), now, control_.on() && (turns || level.moves()));
     level.set_map_budget(quality.maps);
-    if (control_.out_of_reach() && std::exchange(told_of_, target) != target)
+    if (control_.out_of_reach() && std::exchange(told_of_, target) != target) {
         message_ = "Frames of " + std::to_string(std::lround(target)) +
                    " ms are out of reach here: they take longer with the least settings";
+        log_information(message_);
+    }
     return quality;
 }
 

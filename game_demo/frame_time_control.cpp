@@ -11,12 +11,14 @@ namespace {
 
 // Of the target, for the median and the 95th percentile of what was seen. They leave room for what comes round the next
 // corner; that the median is then low costs no evenness, since short frames wait.
-constexpr double usual_share = 0.85, high_share = 0.97;
+constexpr double usual_share = 0.85, high_share = 0.88;
 constexpr double low_load = 0.85;                              // below it, the picture may become larger
 constexpr double first_look = 0.6;                             // s after the start until the first choice of a size
 constexpr double maps_regained = 0.01;                         // of the usual number, in a frame with time to spare
+constexpr double maps_lost = 0.02;                             // of those drawn, where the size can't become less
 constexpr std::uint32_t settling = 2;                          // frames after a change that do not count
 constexpr std::size_t fewest = 6, most = 60, remembered = 100; // frames that a choice looks at
+constexpr std::size_t sure = 30;                               // frames after which what is out of reach is said
 
 } // namespace
 
@@ -35,6 +37,14 @@ double FrameTimeControl::usual() const {
 
 double FrameTimeControl::high() const {
     return statistics::percentile({history_.begin(), history_.end()}, 0.95);
+}
+
+double FrameTimeControl::load() const {
+    return std::max(usual() / (usual_share * target_), high() / (high_share * target_));
+}
+
+bool FrameTimeControl::has_least() const {
+    return quality_.render_scale <= least_scale && maps_ <= std::min(double(usual_.maps), double(least_maps));
 }
 
 void FrameTimeControl::remember(double work_ms) {
@@ -61,8 +71,8 @@ FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
         remember(work_ms);
         choose_maps(work_ms);
     }
-    if (times_.size() >= fewest)
-        out_of_reach_ = quality_.render_scale <= least_scale && maps_ <= least_maps && usual() > target_;
+    if (times_.size() >= sure)
+        out_of_reach_ = has_least() && high() > most_time * target_;
     if (times_.size() >= fewest && now - changed_ >= scale_interval && moves)
         choose_scale(now);
     return quality_;
@@ -82,7 +92,7 @@ void FrameTimeControl::learn() {
 
 void FrameTimeControl::choose_scale(double now) {
     learn();
-    const double load = std::max(usual() / (usual_share * target_), high() / (high_share * target_));
+    const double load = this->load();
     if (load <= 1.0 && load > low_load)
         return;
     const double pixels = std::clamp((0.97 / load - fixed_) / (1.0 - fixed_), 0.2, 2.0);
@@ -105,12 +115,16 @@ void FrameTimeControl::choose_scale(double now) {
     skipped_ = 0;
 }
 
-// Two long frames in a row take maps away; a single one may have any cause.
+// Two long frames in a row take maps away; a single one may have any cause. So do too many single ones, where the size
+// is the least.
 void FrameTimeControl::choose_maps(double work_ms) {
     const double full = usual_.maps;
+    const bool too_small = quality_.render_scale <= least_scale && times_.size() >= fewest && load() > 1.0;
     const double shorter = std::min(work_ms, std::exchange(last_ms_, work_ms));
     if (shorter > target_)
         maps_ *= std::max(0.5, usual_share * target_ / shorter);
+    else if (too_small)
+        maps_ -= maps_lost * maps_;
     else if (work_ms < usual_share * target_)
         maps_ += maps_regained * full;
     maps_ = std::clamp(maps_, std::min(full, double(least_maps)), full);

@@ -195,6 +195,25 @@ void pause_and_lose_focus(const DrivenGame& game) {
     EXPECT_TRUE(DrivenDisplay::wait_until([&] { return game.state().value("steps", std::uint64_t(0)) > steps; }));
 }
 
+// What the paused game offers besides: a hint, and the room as it was at its entry.
+void ask_for_a_hint_and_reset(const DrivenGame& game) {
+    const auto choose = [&](const char* entry) {
+        ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
+        ASSERT_TRUE(game.take(entry)) << entry << " " << game.state();
+        EXPECT_TRUE(game.shows("playing"));
+        EXPECT_TRUE(game.rests()) << game.state();
+    };
+    const auto hint = [&] { return game.state().value("hint", false); };
+    EXPECT_FALSE(hint()) << "whoever goes on knows what the game is about";
+    ASSERT_NO_FATAL_FAILURE(choose("Hint"));
+    EXPECT_TRUE(hint()) << game.state();
+    ASSERT_NO_FATAL_FAILURE(choose("Reset this room"));
+    const float entry = game.place(2);
+    ASSERT_TRUE(game.hold_until("w", [&] { return std::abs(game.place(2) - entry) > 0.5f; })) << game.state();
+    ASSERT_NO_FATAL_FAILURE(choose("Reset this room"));
+    EXPECT_NEAR(game.place(2), entry, 0.05f) << game.state();
+}
+
 TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     ASSERT_TRUE(write_file(folder / "settings.json", "{\"subtitles\": true, \"preset\": \"software\"}\n"));
     DrivenGame game(folder);
@@ -225,6 +244,7 @@ TEST_F(GameWindow, IsPlayedPausedLeftAndContinued) {
     ASSERT_TRUE(game.take("Last checkpoint")) << game.state();
     EXPECT_TRUE(game.shows("playing"));
     EXPECT_TRUE(DrivenDisplay::wait_until(bounced)) << game.state();
+    ASSERT_NO_FATAL_FAILURE(ask_for_a_hint_and_reset(game));
 
     // Whoever quits within a room goes on where they stood, and looked by keys alone.
     const auto yaw = [&] { return game.state().value("yaw", 0.0); };

@@ -109,6 +109,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
         {"state_ms", told.state_ms},
         {"own_share", (own_seconds() - idle) / seconds_since(began)},
         {"frames_ms", frames},
+        {"out_of_reach", !lines_with(game->log(), " ms are out of reach here").empty()},
         {"long_frames", lines_with(game->log().substr(logged), " times the median")}};
     return write_file(output, result.dump(1) + "\n");
 }

@@ -34,10 +34,13 @@ struct SmoothnessReport : testing::Test {
                 {"lost", lost}};
     }
     // Of the program itself: a pass runs in every frame, another in half of them, a stage in every frame.
-    static Json passes(double milliseconds) {
-        const std::vector<double> all(200, milliseconds), half(100, 3.0 * milliseconds);
+    static Json passes(double milliseconds, double sensors = 0.04) {
+        const std::vector<double> all(200, milliseconds), half(100, 3.0 * milliseconds),
+            rays(200, sensors * milliseconds);
         return {{"each_frame",
-                 {{"frame_ms", all}, {"gpu_ms", {{"shade", all}, {"bake", half}}}, {"cpu_ms", {{"sort", all}}}}}};
+                 {{"frame_ms", all},
+                  {"gpu_ms", {{"shade", all}, {"bake", half}}},
+                  {"cpu_ms", {{"sort", all}, {"light sensors", rays}}}}}};
     }
     static Json picture(double flip, const char* room = "porch") {
         return {{"measured", "picture"}, {"room", room}, {"moment", "settled"}, {"spp", 64}, {"flip", flip}};
@@ -89,6 +92,16 @@ TEST_F(SmoothnessReport, BoundsAreHeld) {
     write("after-pacing-corner", pacing(50.0));
     write("target50-pacing-porch", pacing(60.0));
     EXPECT_FALSE(held()) << "a target that is missed";
+    Json beyond = pacing(60.0);
+    beyond["out_of_reach"] = true;
+    write("target50-pacing-porch", beyond);
+    EXPECT_TRUE(held()) << "the game said that it is out of reach there";
+    write("target50-pacing-corner", pacing(60.0));
+    EXPECT_FALSE(held()) << "another room, of which it said nothing";
+    std::filesystem::remove(folder.path / "target50-pacing-corner.json");
+    write_all();
+    write("after-passes1", passes(50.0, 0.06));
+    EXPECT_FALSE(held()) << "rays that take more than a twentieth of a frame";
     write_all();
     EXPECT_TRUE(held());
     write("after-picture-porch-settled", picture(0.111));
