@@ -1,5 +1,7 @@
 #include "engine/core/jobs.h"
 
+#include "engine/core/divide_up.h"
+
 #include <algorithm>
 
 #if defined(__SANITIZE_THREAD__)
@@ -46,7 +48,7 @@ void parallel_for_chunks(std::size_t count, std::size_t chunk_size,
                          const std::function<void(std::size_t, std::size_t)>& body) {
     if (count == 0)
         return;
-    const std::size_t chunks = (count + chunk_size - 1) / chunk_size;
+    const std::size_t chunks = divide_up(count, chunk_size);
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, chunks, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {

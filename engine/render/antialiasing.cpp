@@ -1,5 +1,6 @@
 #include "engine/render/antialiasing.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/maths.h"
 #include "engine/gpu/compute_pass.h"
 
@@ -36,7 +37,7 @@ void AntialiasingPass::add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline
         .storage_read(source)
         .storage_write(target)
         .push(glm::ivec2(int(size.width), int(size.height)))
-        .dispatch((size.width + 7) / 8, (size.height + 8 * antialiasing_rows - 1) / (8 * antialiasing_rows));
+        .dispatch(divide_up(size.width, 8), divide_up(size.height, 8 * antialiasing_rows));
 }
 
 } // namespace sunfleck::render

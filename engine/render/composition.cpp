@@ -1,5 +1,6 @@
 #include "engine/render/composition.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "engine/gpu/rendering.h"
 #include "engine/render/tone_map.h"
@@ -214,7 +215,7 @@ void CompositionPass::add_view(gpu::FrameGraph& graph, const scene::GpuScene& sc
     else
         pass.sampled(stand_in, sampler_);
     pass.sampled(input.specular.valid() ? input.specular : stand_in, sampler_);
-    pass.push(constants).dispatch((constants.width + 7) / 8, (constants.height + 7) / 8);
+    pass.push(constants).dispatch(divide_up(constants.width, 8), divide_up(constants.height, 8));
 }
 
 } // namespace sunfleck::render

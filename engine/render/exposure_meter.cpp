@@ -1,5 +1,6 @@
 #include "engine/render/exposure_meter.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 namespace sunfleck::render {
@@ -41,7 +42,7 @@ Status ExposureMeter::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
         .storage_read(scene.rows())
         .storage_write({slot->buffer, 0, bytes})
         .push(composition_constants(g_buffer, input))
-        .dispatch((shared::meter_columns + 7) / 8, (shared::meter_rows + 7) / 8);
+        .dispatch(divide_up(shared::meter_columns, 8), divide_up(shared::meter_rows, 8));
     points_.add_pass(graph, *slot, frame.serial);
     return {};
 }

@@ -1,5 +1,6 @@
 #include "engine/render/glare.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 constexpr VkFormat glare_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 std::uint32_t groups(std::uint32_t pixels) {
-    return (pixels + 7) / 8;
+    return divide_up(pixels, 8);
 }
 
 } // namespace
@@ -51,8 +52,8 @@ gpu::ResourceId GlarePass::add(gpu::FrameGraph& graph, const scene::GpuScene& sc
     const auto image = [&](std::uint32_t level) {
         const std::uint32_t side = shared::glare_block << level;
         return graph.create_image("glare " + std::to_string(level), glare_format,
-                                  std::max((g_buffer.width + side - 1) / side, 1u),
-                                  std::max((g_buffer.height + side - 1) / side, 1u));
+                                  std::max(divide_up(g_buffer.width, side), 1u),
+                                  std::max(divide_up(g_buffer.height, side), 1u));
     };
     gpu::ResourceId levels[shared::glare_levels];
     for (std::uint32_t level = 0; level < shared::glare_levels; ++level)

@@ -1,5 +1,6 @@
 #include "engine/render/stipple.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
@@ -80,7 +81,7 @@ void StipplePass::add(gpu::FrameGraph& graph, const GBuffer& g_buffer, const Pix
         .sampled(g_buffer.depth, sampler_)
         .storage_write(blended)
         .push(rectangle)
-        .dispatch((rectangle.width + 7) / 8, (rectangle.height + 7) / 8);
+        .dispatch(divide_up(rectangle.width, 8), divide_up(rectangle.height, 8));
     graph.add_pass("stippled surfaces copy")
         .read(blended, gpu::Usage::blit_source)
         .write(picture, gpu::Usage::blit_destination)

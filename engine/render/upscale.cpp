@@ -1,5 +1,6 @@
 #include "engine/render/upscale.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/maths.h"
 #include "engine/gpu/compute_pass.h"
 
@@ -45,7 +46,7 @@ void UpscalePass::add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline, boo
         .storage_read(source)
         .storage_write(target)
         .push(Constants{{int(from.width), int(from.height)}, {int(to.width), int(to.height)}})
-        .dispatch((columns + 7) / 8, (rows + 7) / 8);
+        .dispatch(divide_up(columns, 8), divide_up(rows, 8));
 }
 
 } // namespace sunfleck::render

@@ -1,5 +1,6 @@
 #include "gi_module/adaptive_shadows/punctual_kernel.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "gi_module/shadows/octahedral_map.h"
 
@@ -45,8 +46,8 @@ shared::PunctualConstants PunctualKernel::constants_of(const PunctualFrame& fram
     result.width = frame.g_buffer.width;
     result.height = frame.g_buffer.height;
     result.light_count = std::uint32_t(batch.lights.size());
-    result.block_columns = (result.width + 8 * pixels() - 1) / (8 * pixels());
-    result.block_count = result.block_columns * ((result.height + shared::block_rows - 1) / shared::block_rows);
+    result.block_columns = divide_up(result.width, 8 * pixels());
+    result.block_count = result.block_columns * divide_up(result.height, shared::block_rows);
     std::copy(batch.kind_lights.begin(), batch.kind_lights.end(), result.kind_lights);
     return result;
 }

@@ -1,5 +1,6 @@
 #include "gi_module/brute_force/brute_force.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
@@ -8,12 +9,11 @@ namespace sunfleck::gi {
 namespace {
 
 std::uint32_t group_columns(std::uint32_t width, std::uint32_t pixels) {
-    const std::uint32_t tile = shared::kernel_lanes * pixels;
-    return (width + tile - 1) / tile;
+    return divide_up(width, shared::kernel_lanes * pixels);
 }
 
 std::uint32_t group_rows(std::uint32_t height) {
-    return (height + shared::kernel_rows - 1) / shared::kernel_rows;
+    return divide_up(height, shared::kernel_rows);
 }
 
 } // namespace

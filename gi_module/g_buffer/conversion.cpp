@@ -1,12 +1,13 @@
 #include "gi_module/g_buffer/conversion.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 namespace sunfleck::gi {
 namespace {
 
 std::uint32_t groups(std::uint32_t pixels) {
-    return (pixels + shared::conversion_side - 1) / shared::conversion_side;
+    return divide_up(pixels, shared::conversion_side);
 }
 
 std::uint32_t shader_encoding(NormalEncoding encoding) {

@@ -1,5 +1,6 @@
 #include "gi_module/gloss/gloss_technique.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "gi_module/gloss/gloss_lights.h"
 #include "gi_module/gloss/gloss_settings.h"
@@ -24,7 +25,7 @@ std::uint32_t stride_of(const SampleSet& samples, std::uint32_t most) {
     std::uint32_t reflected = 0;
     for (const LightSample& sample : samples.samples())
         reflected += sample.bounce > 0 ? 1 : 0;
-    return most > 0 ? std::max((reflected + most - 1) / most, 1u) : 1u;
+    return most > 0 ? std::max(divide_up(reflected, most), 1u) : 1u;
 }
 
 } // namespace
@@ -180,7 +181,7 @@ Status GlossTechnique::add_batches(const Pass& pass, std::span<const LightBatch>
             .storage_read_write(sums_)
             .storage_write(pass.target.specular)
             .push(constants)
-            .dispatch((area_.width + 7) / 8, (area_.height + 7) / 8);
+            .dispatch(divide_up(area_.width, 8), divide_up(area_.height, 8));
     }
     return {};
 }

@@ -1,5 +1,6 @@
 #include "gi_module/light_sampling/mover_reflections.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/hash.h"
 #include "engine/core/jobs.h"
 #include "gi_module/light_sampling/light_sampler.h"
@@ -246,7 +247,7 @@ void MoverReflections::move_samples() {
     std::sort(late.begin(), late.end(), [](const Late& a, const Late& b) {
         return std::tie(a.waits, a.order, a.sample) < std::tie(b.waits, b.order, b.sample);
     });
-    const std::size_t most = placed_ ? (on_movers_ + follow_frames - 1) / follow_frames : late.size();
+    const std::size_t most = placed_ ? divide_up(on_movers_, follow_frames) : late.size();
     placed_ = true;
     for (std::size_t k = 0; k < late.size(); ++k) {
         const std::uint32_t i = late[k].sample;

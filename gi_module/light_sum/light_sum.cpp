@@ -1,12 +1,13 @@
 #include "gi_module/light_sum/light_sum.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 namespace sunfleck::gi {
 namespace {
 
 std::uint32_t groups(std::uint32_t pixels) {
-    return (pixels + shared::light_sum_side - 1) / shared::light_sum_side;
+    return divide_up(pixels, shared::light_sum_side);
 }
 
 } // namespace

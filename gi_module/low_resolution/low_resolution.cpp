@@ -1,5 +1,7 @@
 #include "gi_module/low_resolution/low_resolution.h"
 
+#include "engine/core/divide_up.h"
+
 #include <algorithm>
 
 namespace sunfleck::gi {
@@ -17,10 +19,6 @@ constexpr Counter not_repaired{"pixels_not_repaired", "pixels", "pixels",
                                "Pixels that needed repair, but took their nearest neighbour's light: memory was full",
                                true};
 constexpr Counter memory{"low_resolution", "B", memory_group, "Lists and sums of pixels on the GPU"};
-
-std::uint32_t divide_up(std::uint32_t value, std::uint32_t by) {
-    return (value + by - 1) / by;
-}
 
 shared::LowResolutionConstants make_constants(const LowResolutionSettings& settings, const LowResolutionFrame& frame) {
     shared::LowResolutionConstants constants{};

@@ -1,5 +1,6 @@
 #include "gi_module/many_light/light_map_jobs.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/jobs.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ void LightMapJobs::add(shared::LightMapJob job, bool clear) {
 void LightMapJobs::add_all(std::size_t count,
                            const std::function<void(LightMapJobs& jobs, std::uint32_t index)>& add_one) {
     constexpr std::size_t at_once = 256;
-    std::vector<LightMapJobs> parts((count + at_once - 1) / at_once);
+    std::vector<LightMapJobs> parts(divide_up(count, at_once));
     parallel_for_chunks(count, at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t index = begin; index < end; ++index)
             add_one(parts[begin / at_once], std::uint32_t(index));

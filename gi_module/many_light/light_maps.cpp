@@ -1,5 +1,6 @@
 #include "gi_module/many_light/light_maps.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
@@ -202,7 +203,7 @@ Status LightMaps::add_passes(gpu::FrameGraph& graph, gpu::FrameResources& resour
             .storage_read(rows)
             .storage_read_write(texels_)
             .push(shared::LightMapConstants{fixed_point_, count, row_length, 0, 0.0f})
-            .dispatch(row_length, (count + row_length - 1) / row_length);
+            .dispatch(row_length, divide_up(count, row_length));
     }
     return {};
 }

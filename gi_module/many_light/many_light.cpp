@@ -1,3 +1,4 @@
+#include "engine/core/divide_up.h"
 #include "gi_module/many_light/many_light_frame.h"
 
 #include <algorithm>

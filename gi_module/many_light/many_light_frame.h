@@ -24,8 +24,4 @@ struct ManyLight::Frame {
     }
 };
 
-inline std::uint32_t divide_up(std::uint32_t value, std::uint32_t by) {
-    return (value + by - 1) / by;
-}
-
 } // namespace sunfleck::gi

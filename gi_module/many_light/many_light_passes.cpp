@@ -1,4 +1,5 @@
 // The passes of the many-light system, in the order of the frame.
+#include "engine/core/divide_up.h"
 #include "gi_module/many_light/many_light_frame.h"
 
 #include "engine/gpu/compute_pass.h"

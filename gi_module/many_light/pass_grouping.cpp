@@ -1,5 +1,7 @@
 #include "gi_module/many_light/pass_grouping.h"
 
+#include "engine/core/divide_up.h"
+
 #include <bit>
 
 namespace sunfleck::gi {
@@ -12,7 +14,7 @@ std::uint32_t light_count(const LightSet& set) {
 }
 
 std::int64_t PassGrouping::passes_for(std::uint32_t lights) const {
-    const std::uint32_t passes = (lights + lights_per_pass_ - 1) / lights_per_pass_;
+    const std::uint32_t passes = divide_up(lights, lights_per_pass_);
     return 2 * std::int64_t(passes + passes % 2);
 }
 

@@ -1,5 +1,7 @@
 #include "gi_module/many_light/visible_nodes.h"
 
+#include "engine/core/divide_up.h"
+
 namespace sunfleck::gi {
 
 std::map<std::uint32_t, PassLights> tested_lights_of_visible_nodes(const VisibilityDatabase& database,
@@ -10,7 +12,7 @@ std::map<std::uint32_t, PassLights> tested_lights_of_visible_nodes(const Visibil
         if (node < patches.size() && (!patches[node].is_leaf() || !may_be_seen(view_projection, patches[node].bounds)))
             continue;
         PassLights lights;
-        lights.needed.resize((database.sample_count() + 63) / 64, 0);
+        lights.needed.resize(divide_up(database.sample_count(), 64), 0);
         lights.harmless = lights.needed;
         for (std::uint32_t sample = 0; sample < database.sample_count(); ++sample) {
             const PairState state = database.state(node, sample);

@@ -1,5 +1,6 @@
 #include "gi_module/reference/light_tracer.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/jobs.h"
 #include "gi_module/reference/path.h"
 
@@ -269,7 +270,7 @@ bool LightTracer::look(const Picture& picture, std::size_t pixel, std::uint32_t 
 void LightTracer::trace_group(Accumulation& accumulation, const Picture& picture, std::size_t begin,
                               std::size_t end) const {
     const std::uint32_t sample = accumulation.counts[begin];
-    std::vector<Chunk> chunks((end - begin + chunk_particles - 1) / chunk_particles);
+    std::vector<Chunk> chunks(divide_up(end - begin, chunk_particles));
     parallel_for_chunks(end - begin, chunk_particles, [&](std::size_t first, std::size_t last) {
         Chunk& chunk = chunks[first / chunk_particles];
         for (std::size_t i = begin + first; i < begin + last; ++i) {

@@ -1,5 +1,6 @@
 #include "gi_module/shadows/map_chunk.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/jobs.h"
 #include "gi_module/shadows/shadow_jobs.h"
 
@@ -50,7 +51,7 @@ Result<ShadowMaps::Chunk> ShadowMaps::prepare_chunk(const scene::GpuScene& scene
                                                     bool detail, ShadowCounters& counters) const {
     constexpr std::size_t items_at_once = 128;
     const std::span<const scene::DrawItem> items = scene.draws();
-    std::vector<ChunkPart> parts((items.size() + items_at_once - 1) / items_at_once);
+    std::vector<ChunkPart> parts(divide_up(items.size(), items_at_once));
     parallel_for_chunks(items.size(), items_at_once, [&](std::size_t begin, std::size_t end) {
         ChunkPart& part = parts[begin / items_at_once];
         part.seen.resize(requests.size());

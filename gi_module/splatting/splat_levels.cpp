@@ -1,5 +1,6 @@
 #include "gi_module/splatting/splat_levels.h"
 
+#include "engine/core/divide_up.h"
 #include "gi_module/shadows/octahedral_map.h"
 
 namespace sunfleck::gi {
@@ -13,10 +14,6 @@ std::uint32_t tiles_of(const shared::SplattingConstants& constants, std::uint32_
 shared::SplattingConstants at_level(shared::SplattingConstants constants, std::uint32_t level) {
     constants.level = level;
     return constants;
-}
-
-std::uint32_t groups_of(std::uint32_t count, std::uint32_t size) {
-    return (count + size - 1) / size;
 }
 
 } // namespace
@@ -61,13 +58,13 @@ Status SplatLevels::add_tiles(const PixelStage& stage, const shared::SplattingCo
         .storage_write(patches_)
         .storage_read_write(places_)
         .push(constants)
-        .dispatch(groups_of(tiles_of(constants, 0), 8));
+        .dispatch(divide_up(tiles_of(constants, 0), 8));
     for (std::uint32_t level = 1; level < shared::tile_levels; ++level)
         gpu::ComputePass(stage.graph, "splat tiles", *kernel)
             .uniform(stage.camera)
             .storage_read_write(tiles_)
             .push(at_level(constants, level))
-            .dispatch(groups_of(tiles_of(constants, level), 8));
+            .dispatch(divide_up(tiles_of(constants, level), 8));
     return {};
 }
 
@@ -91,7 +88,7 @@ Status SplatLevels::add_masks(const PixelStage& stage, const shared::SplattingCo
             .storage_write(batch.masks)
             .storage_read(patches_)
             .push(at_level(constants, level))
-            .dispatch(groups_of(tiles_of(constants, level), 8));
+            .dispatch(divide_up(tiles_of(constants, level), 8));
     return {};
 }
 
@@ -118,7 +115,7 @@ Status SplatLevels::add_nodes(const PixelStage& stage, const shared::SplattingCo
             .storage_read(places_)
             .storage_read_write(points_)
             .push(at_level(constants, level))
-            .dispatch(groups_of(tiles_of(constants, level) * shared::tile_nodes, lanes));
+            .dispatch(divide_up(tiles_of(constants, level) * shared::tile_nodes, lanes));
     }
     return {};
 }

@@ -1,4 +1,5 @@
 // The static half of the database: patches, their subdivision, and what static geometry does to each pair.
+#include "engine/core/divide_up.h"
 #include "gi_module/visibility/build_progress.h"
 #include "gi_module/visibility/visibility_database.h"
 
@@ -269,7 +270,7 @@ void VisibilityDatabase::change_static_states(std::span<const std::uint32_t> cha
 // Each node has words of its own in the rows.
 void VisibilityDatabase::recount() {
     constexpr std::size_t nodes_at_once = 256;
-    std::vector<VisibilityCounters> parts((node_count() + nodes_at_once - 1) / nodes_at_once);
+    std::vector<VisibilityCounters> parts(divide_up(node_count(), nodes_at_once));
     parallel_for_chunks(node_count(), nodes_at_once, [&](std::size_t begin, std::size_t end) {
         VisibilityCounters& part = parts[begin / nodes_at_once];
         for (std::uint32_t node = std::uint32_t(begin); node < end; ++node)

@@ -1,6 +1,7 @@
 // The moving half of the database: states of pairs, and movers that come, change and go.
 #include "gi_module/visibility/visibility_database.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/jobs.h"
 
 #include <algorithm>
@@ -236,7 +237,7 @@ std::uint32_t VisibilityDatabase::flag_words() const {
 }
 
 std::uint32_t VisibilityDatabase::state_words() const {
-    return std::uint32_t(samples_.size() + shared::pairs_per_word - 1) / shared::pairs_per_word;
+    return divide_up(std::uint32_t(samples_.size()), shared::pairs_per_word);
 }
 
 std::uint32_t VisibilityDatabase::words_per_row() const {
