@@ -10,7 +10,7 @@
 namespace sunfleck::editor {
 namespace {
 
-constexpr std::size_t most_pictures = 8;
+constexpr std::size_t most_pictures = 8, most_notes = 20'000;
 // Of a usual frame: light for which one took longer is made behind the frames from then on.
 constexpr double longest_share = 1.5;
 
@@ -195,6 +195,20 @@ Status SceneThread::draw_picture() {
     }
     publish(std::move(picture));
     return {};
+}
+
+void SceneThread::publish(std::shared_ptr<ScenePicture> picture) {
+    last_frame_ = Clock::now();
+    {
+        const std::scoped_lock lock(mutex_);
+        if (frame_notes_.size() < most_notes)
+            frame_notes_.push_back({seconds_now(), picture->frame_ms});
+        status_.longest_frame_ms = std::max(status_.longest_frame_ms, picture->frame_ms);
+        newest_ = std::move(picture);
+        status_.error.clear();
+        ++status_.frames;
+    }
+    wake_();
 }
 
 } // namespace sunfleck::editor

@@ -16,9 +16,11 @@ constexpr int frames_after_view = 2;
 constexpr double longest_silence = 3.0; // s: edits do not cancel lighting while the picture has been old for so long
 constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
-constexpr std::size_t most_notes = 20'000;
 constexpr std::chrono::milliseconds light_interval{10}; // between looks at light that is being prepared
 constexpr std::chrono::seconds rest{1};                 // without anything to draw
+// A driver compiles for each view and setting that a pipeline is used with, and keeps that as long as the pipeline. New
+// pipelines take a second: the next scene begins with them only after so long.
+constexpr std::chrono::minutes pipelines_last{5};
 
 } // namespace
 
@@ -288,6 +290,10 @@ Status SceneThread::apply_change() {
         light_.reset();
         play_.reset();
         copy_.reset();
+        if (const auto now = Clock::now(); now - pipelines_made_ > pipelines_last) {
+            pipelines_made_ = now;
+            device_->pipelines().drop_unused();
+        }
         exposure_is_old_ = is_other_scene_ = true;
         SUNFLECK_ASSIGN(copy_, SceneCopy::create(*device_));
         light_ = std::make_unique<viewer::LightingChanges>(*device_);
@@ -370,20 +376,6 @@ void SceneThread::frame() {
         return;
     }
     fail(drawn.error());
-}
-
-void SceneThread::publish(std::shared_ptr<ScenePicture> picture) {
-    last_frame_ = Clock::now();
-    {
-        const std::scoped_lock lock(mutex_);
-        if (frame_notes_.size() < most_notes)
-            frame_notes_.push_back({seconds_now(), picture->frame_ms});
-        status_.longest_frame_ms = std::max(status_.longest_frame_ms, picture->frame_ms);
-        newest_ = std::move(picture);
-        status_.error.clear();
-        ++status_.frames;
-    }
-    wake_();
 }
 
 void SceneThread::fail(const Error& error) {

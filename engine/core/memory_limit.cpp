@@ -11,6 +11,10 @@
 #include <string>
 #include <unistd.h>
 
+// jemalloc's, in programs that have it.
+extern "C" int mallctl(const char* name, void* old_value, std::size_t* old_size, void* new_value, std::size_t new_size)
+    __attribute__((weak));
+
 namespace sunfleck {
 namespace {
 
@@ -59,6 +63,10 @@ std::uint64_t memory_in_use() {
 }
 
 void return_free_memory() {
+    if (mallctl != nullptr) {
+        mallctl("arena.4096.purge", nullptr, nullptr, nullptr, 0); // 4096: MALLCTL_ARENAS_ALL
+        return;
+    }
 #ifdef __GLIBC__
     ::malloc_trim(0);
 #endif

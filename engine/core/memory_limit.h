@@ -15,8 +15,8 @@ void set_memory_limit(std::uint64_t bytes);
 std::uint64_t memory_limit();
 // What the process has now; 0 where the system does not say.
 std::uint64_t memory_in_use();
-// What was freed goes back to the system, where the C library would keep it for what comes next: some milliseconds,
-// well spent when a program comes to rest after large work. Thread-safe; other C libraries than glibc are left to
+// What was freed goes back to the system, where the heap would keep it for what comes next: some milliseconds, well
+// spent when a program comes to rest after large work. Thread-safe; other heaps than glibc's and jemalloc's are left to
 // themselves.
 void return_free_memory();
 
