@@ -227,6 +227,31 @@ void add_overlay_commands(std::vector<Command>& list) {
     }
 }
 
+void add_play_commands(std::vector<Command>& list) {
+    list.push_back({"View",
+                    "Play",
+                    "Movers move and bodies fall; stopped, all is as it was edited",
+                    control(app::key_space),
+                    [](Session& session) {
+                        session.view.playing = !session.view.playing;
+                        session.view.paused = false;
+                    },
+                    {},
+                    [](Session& session) { return session.view.playing; }});
+    list.push_back({"View",
+                    "Pause",
+                    "What plays stands still; again: it goes on",
+                    {app::key_f1 + 5},
+                    [](Session& session) { session.view.paused = !session.view.paused; },
+                    [](Session& session) { return session.view.playing; },
+                    [](Session& session) { return session.view.paused; }});
+    list.push_back(
+        {"View", "Step", "Plays a sixtieth of a second, then pauses", {app::key_f1 + 6}, [](Session& session) {
+             session.view.playing = session.view.paused = true;
+             session.scene.step(1);
+         }});
+}
+
 void add_view_commands(std::vector<Command>& list) {
     list.push_back(
         {"View", "Look at selection", "Or at the whole scene, if nothing is selected", {'F'}, look_at_selection});
@@ -257,6 +282,9 @@ void add_view_commands(std::vector<Command>& list) {
                     [](Session& session) { session.view.show_icons = !session.view.show_icons; },
                     {},
                     [](Session& session) { return session.view.show_icons; }});
+    list.push_back({"View", "Usual panel sizes", "As large as they are at first", {}, [](Session& session) {
+                        session.usual_layout = true;
+                    }});
     list.push_back({"View",
                     "Flip",
                     "The scene, or what it is compared with",
@@ -267,28 +295,7 @@ void add_view_commands(std::vector<Command>& list) {
                     },
                     [](Session& session) { return session.comparison->on(); },
                     [](Session& session) { return session.comparison->flipped; }});
-    list.push_back({"View",
-                    "Play",
-                    "Movers move and bodies fall; stopped, all is as it was edited",
-                    control(app::key_space),
-                    [](Session& session) {
-                        session.view.playing = !session.view.playing;
-                        session.view.paused = false;
-                    },
-                    {},
-                    [](Session& session) { return session.view.playing; }});
-    list.push_back({"View",
-                    "Pause",
-                    "What plays stands still; again: it goes on",
-                    {app::key_f1 + 5},
-                    [](Session& session) { session.view.paused = !session.view.paused; },
-                    [](Session& session) { return session.view.playing; },
-                    [](Session& session) { return session.view.paused; }});
-    list.push_back(
-        {"View", "Step", "Plays a sixtieth of a second, then pauses", {app::key_f1 + 6}, [](Session& session) {
-             session.view.playing = session.view.paused = true;
-             session.scene.step(1);
-         }});
+    add_play_commands(list);
     list.push_back({"View",
                     "Rebuild the lighting",
                     "From nothing, as when the saved scene is opened",

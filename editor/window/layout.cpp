@@ -3,6 +3,7 @@
 #include "editor/window/commands.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace sunfleck::editor {
 namespace {
@@ -131,6 +132,10 @@ void Layout::docks(Session& session, const ScenePicture* picture, ImVec2 room) {
 void Layout::draw(Session& session, const ScenePicture* picture) {
     if (std::exchange(document_, session.document->number()) != session.document->number())
         ui::leave_boxes(); // what is being typed or dragged is of another document
+    if (std::exchange(session.usual_layout, false)) {
+        const State usual;
+        std::tie(state_.left, state_.right, state_.bottom) = std::tie(usual.left, usual.right, usual.bottom);
+    }
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(all);

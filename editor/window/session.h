@@ -166,6 +166,7 @@ public:
     ViewRequest shown;                      // what the scene thread was told last
     ImVec4 viewport_area{0, 0, 0, 0};       // x, y, width, height: pixels of the window
 
+    bool usual_layout = false;       // is asked for: panels as large as at first
     bool keys_are_asked_for = false; // the next ones are no commands; a panel that waits for keys says so each frame
     std::string listing;             // that a panel wants to show in this frame; empty: none does
     std::string front;               // a panel that is to be brought to the front

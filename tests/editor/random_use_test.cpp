@@ -177,8 +177,9 @@ protected:
             ASSERT_TRUE(editor->appears("viewport/Play"));
         }
     }
-    // As at the start: the scene alone, in the view that it has by itself, whose memory can be compared.
+    // As at the start: the scene alone, as large and in the view that it has by itself, whose memory can be compared.
     void show_the_scene_alone() const {
+        menu("View", "Usual panel sizes");
         const auto press = [&](const std::string& name) {
             if (editor->find(name))
                 static_cast<void>(editor->click(name));
@@ -281,6 +282,7 @@ TEST_F(EditorWindowUse, RandomUseDoesNoHarmAndIsUndone) {
         ASSERT_NO_FATAL_FAILURE(come_to_rest());
     };
     ASSERT_NO_FATAL_FAILURE(use());
+    ASSERT_NO_FATAL_FAILURE(show_the_scene_alone());
     ASSERT_NO_FATAL_FAILURE(open_fresh_scene("fresh"));
     const std::string fresh = saved("fresh");
     ASSERT_NO_FATAL_FAILURE(show_the_scene_alone());

@@ -341,6 +341,30 @@ TEST(EditorSources, PanelsNameNoComponentTechniqueOrSetting) {
     EXPECT_FALSE(names_whole("scene::NameOfOne scene::Name_", "scene::Name"));
 }
 
+TEST_F(EditorWindow, PanelsGetTheirUsualSizesBack) {
+    editor->start({small_scene});
+    ASSERT_TRUE(editor->settles()) << editor->log();
+    const auto size = [&] {
+        const auto picture = editor->find("viewport/picture");
+        return picture ? std::pair(picture->width, picture->height) : std::pair(0.0, 0.0);
+    };
+    const auto usual = size();
+    // A slow window may see the pointer only where it has left the border.
+    const auto drags = [&](const char* border, int x, int y) {
+        return editor->wait_until([&] {
+            const auto before = size();
+            return editor->drag(border, x, y) && editor->catch_up() && size() != before;
+        });
+    };
+    ASSERT_TRUE(drags("border left", 60, 0));
+    ASSERT_TRUE(drags("border right", -60, 0));
+    ASSERT_TRUE(drags("border bottom", 0, -60));
+    EXPECT_LT(size().first, usual.first);
+    EXPECT_LT(size().second, usual.second);
+    menu("View", "Usual panel sizes");
+    EXPECT_TRUE(editor->wait_until([&] { return size() == usual; }));
+}
+
 // At twice the size they take two lines.
 TEST_F(EditorWindow, SwitchesOverThePictureLieWithinIt) {
     editor->start({small_scene, "--scale", "2"});
