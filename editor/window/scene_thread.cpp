@@ -18,9 +18,6 @@ constexpr double most_steps = 12.0;     // of simulation in a frame
 constexpr double progress_interval = 0.1;
 constexpr std::chrono::milliseconds light_interval{10}; // between looks at light that is being prepared
 constexpr std::chrono::seconds rest{1};                 // without anything to draw
-// A driver compiles for each view and setting that a pipeline is used with, and keeps that as long as the pipeline. New
-// pipelines take a second: the next scene begins with them only after so long.
-constexpr std::chrono::minutes pipelines_last{5};
 
 } // namespace
 
@@ -290,10 +287,6 @@ Status SceneThread::apply_change() {
         light_.reset();
         play_.reset();
         copy_.reset();
-        if (const auto now = Clock::now(); now - pipelines_made_ > pipelines_last) {
-            pipelines_made_ = now;
-            device_->pipelines().drop_unused();
-        }
         exposure_is_old_ = is_other_scene_ = true;
         SUNFLECK_ASSIGN(copy_, SceneCopy::create(*device_));
         light_ = std::make_unique<viewer::LightingChanges>(*device_);

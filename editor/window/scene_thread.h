@@ -218,7 +218,7 @@ private:
     // What the newest answer is of: request, document, step, lightings made so far.
     std::array<std::uint64_t, 5> inspected_state_{};
     std::vector<std::shared_ptr<ScenePicture>> pictures_;
-    Clock::time_point build_began_, last_frame_, played_until_, pipelines_made_ = Clock::now();
+    Clock::time_point build_began_, last_frame_, played_until_;
     std::uint64_t revision_ = 0, hiding_ = 0, number_ = 0;
     std::uint32_t asked_steps_ = 0; // by step()
     double owed_steps_ = 0.0;
