@@ -179,7 +179,7 @@ protected:
     }
     // As at the start: the scene alone, as large and in the view that it has by itself, whose memory can be compared.
     void show_the_scene_alone() const {
-        menu("View", "Usual panel sizes");
+        ASSERT_NO_FATAL_FAILURE(menu("View", "Usual panel sizes"));
         const auto press = [&](const std::string& name) {
             if (editor->find(name))
                 static_cast<void>(editor->click(name));
