@@ -21,12 +21,18 @@ FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, doubl
     const FrameQuality quality =
         control_.next(std::max(work_ms_, gpu_ms), now, control_.on() && (turns || level.moves()));
     level.set_map_budget(quality.maps);
-    if (control_.out_of_reach() && std::exchange(told_of_, target) != target) {
-        message_ = "Frames of " + std::to_string(std::lround(target)) +
-                   " ms are out of reach here: they take longer with the least settings";
-        log_information(message_);
-    }
+    if (std::exchange(reaches_, !control_.out_of_reach()) == control_.out_of_reach())
+        tell(target);
     return quality;
+}
+
+void FramePace::tell(double target) {
+    const std::string frames = "Frames of " + std::to_string(std::lround(target)) + " ms are ";
+    const std::string line = reaches_ ? frames + "within reach again"
+                                      : frames + "out of reach here: they take longer with the least settings";
+    log_information(line);
+    if (!reaches_ && std::exchange(told_of_, target) != target)
+        message_ = line;
 }
 
 } // namespace sunfleck::demo

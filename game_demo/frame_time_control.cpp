@@ -19,6 +19,7 @@ constexpr double maps_lost = 0.02;                             // of those drawn
 constexpr std::uint32_t settling = 2;                          // frames after a change that do not count
 constexpr std::size_t fewest = 6, most = 60, remembered = 100; // frames that a choice looks at
 constexpr std::size_t sure = 30;                               // frames after which what is out of reach is said
+constexpr double back_time = 1.1;                              // of the target: what was out of reach is back below it
 
 } // namespace
 
@@ -72,7 +73,7 @@ FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
         choose_maps(work_ms);
     }
     if (times_.size() >= sure)
-        out_of_reach_ = has_least() && high() > most_time * target_;
+        out_of_reach_ = has_least() && high() > (out_of_reach_ ? back_time : most_time) * target_;
     if (times_.size() >= fewest && now - changed_ >= scale_interval && moves)
         choose_scale(now);
     return quality_;

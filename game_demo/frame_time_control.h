@@ -40,7 +40,8 @@ public:
     FrameQuality next(double work_ms, double now, bool moves);
     // The shortest time from the start of one frame to the start of the next, ms; 0: none.
     double shortest_frame() const { return on() ? wait_share * target_ : 0.0; }
-    // With the least of everything, more than one frame in twenty still takes longer than `most_time` of the target.
+    // With the least of everything, more than one frame in twenty still takes longer than `most_time` of the target;
+    // until they fit again.
     bool out_of_reach() const { return out_of_reach_; }
 
 private:

@@ -79,6 +79,7 @@ Status StateFile::write_now(const GameState& state, double frame_ms) {
                                    {"subtitles", state.subtitles},
                                    {"message", state.message},
                                    {"bounced_light", state.bounced_light},
+                                   {"reaches_frame_time", state.reaches_frame_time},
                                    {"saved", state.saved ? state.saved() : std::string()}};
     // Names of files in messages need not be UTF-8.
     const auto text_of = [&] { return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"; };

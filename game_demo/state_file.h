@@ -21,6 +21,7 @@ struct GameState {
     std::string message;
     std::function<std::string()> saved; // makes the game as a checkpoint would keep it; null: there is none
     bool bounced_light = true;          // is shown
+    bool reaches_frame_time = true;     // see FramePace::reaches_target
 };
 
 class StateFile {

@@ -286,7 +286,8 @@ private:
 
     GameState state() const {
         return {screen_name(menu_.screen()), menu_.selected(),     session_.progress(), sounds_.device(),
-                sounds_.subtitles(),         menu_.message_text(), session_.kept(),     indirect_};
+                sounds_.subtitles(),         menu_.message_text(), session_.kept(),     indirect_,
+                pace_.reaches_target()};
     }
 
     OverlayData shown_data(const viewer::FrameRequest& request, double seconds) {

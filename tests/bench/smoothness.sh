@@ -15,7 +15,8 @@ usage() {
 pacing     time between presents while the solution is played by keys, room by room ($seconds s each), of this tree and of
            commit $before_commit by turns: before, after, after, before
 latency    from an X event to the first changed pixel, looking and walking, in the one room where nothing moves by itself
-target     time between presents with frame_milliseconds = 100, 66 and 50
+target     time between presents with frame_milliseconds = 100, 66 and 50, after five seconds in the room; while the game
+           says that a time is out of reach with its least settings, frames stand beside the others
 passes     what each pass and stage of a frame takes, without a window, over the solution at 8 steps a frame, of this tree
            and of commit $before_commit by turns as above
 pictures   FLIP against the path tracer, of both, in a view of each room: once the picture is settled, and while the person

@@ -60,10 +60,21 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
     return lines;
 }
 
-// What the game said last.
+// What the game said.
 struct Told {
-    std::uint64_t steps = 0;
-    double state_ms = 0.0; // that saying so takes of a frame; 0: not known
+    Clock::time_point first; // what came before it does not count
+    std::uint64_t steps = 0; // last
+    double state_ms = 0.0;   // that saying so takes of a frame; 0: not known
+    std::vector<double> reach =
+        {}; // s since `first` at which frame_milliseconds went out of reach, in again, and so on
+
+    void hear(const nlohmann::json& state) {
+        steps = state.value("steps", std::uint64_t(0));
+        state_ms = state.value("state_ms", 0.0);
+        const bool reaches = state.value("reaches_frame_time", true);
+        if (reaches == (reach.size() % 2 == 1))
+            reach.push_back(std::chrono::duration<double>(Clock::now() - first).count());
+    }
 };
 
 // Plays until the time is over, the game says that it ends, or the solution fails; says which.
@@ -81,7 +92,7 @@ std::string play(DrivenGame& game, Clock::time_point until, Told& told) {
             return "the game is over";
         if (const auto motion = solver.next(*state))
             hands.move(*motion);
-        told = {state->value("steps", std::uint64_t(0)), state->value("state_ms", 0.0)};
+        told.hear(*state);
         if (!solver.problem().empty())
             return solver.problem();
     }
@@ -95,7 +106,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
     const std::size_t logged = game->log().size();
     const Clock::time_point began = Clock::now();
     const double idle = own_seconds();
-    Told told;
+    Told told{began + settling};
     const auto whole = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     const std::string ended = play(*game, began + settling + whole, told);
     const std::vector<double> frames = game->frame_times(began + settling, Clock::now());
@@ -109,7 +120,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
         {"state_ms", told.state_ms},
         {"own_share", (own_seconds() - idle) / seconds_since(began)},
         {"frames_ms", frames},
-        {"out_of_reach", !lines_with(game->log(), " ms are out of reach here").empty()},
+        {"reach", told.reach},
         {"long_frames", lines_with(game->log().substr(logged), " times the median")}};
     return write_file(output, result.dump(1) + "\n");
 }

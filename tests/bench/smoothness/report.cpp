@@ -3,8 +3,10 @@
 #include "engine/core/file.h"
 #include "engine/simulation/path_movers.h"
 #include "engine/statistics/summary.h"
+#include "tests/bench/smoothness/judge.h"
 #include "tests/bench/smoothness/pass_times.h"
 #include "tests/bench/smoothness/picture_errors.h"
+#include "tests/bench/smoothness/target_times.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -20,9 +22,10 @@ namespace fs = std::filesystem;
 using statistics::median, statistics::percentile;
 
 struct Side { // of one commit
-    std::vector<double> frames, late, looking, walking, latency_frames;
+    std::vector<double> frames, looking, walking, latency_frames;
     std::map<std::string, std::vector<double>> by_room;
-    std::vector<std::string> ends, long_frames, out_of_reach;
+    std::vector<std::string> ends, long_frames;
+    TargetTimes target; // where frames are held to one
     unsigned lost = 0;
     double state_ms = 0.0; // the most that telling its state took of a run's frames
     PassTimes passes;
@@ -38,19 +41,6 @@ void append(std::vector<double>& to, const nlohmann::json& from, const char* nam
         to.push_back(value.get<double>());
 }
 
-// Of a run with a target: without the seconds in which it is reached.
-constexpr double reaching = 5000.0; // ms
-
-std::vector<double> after_reaching(const nlohmann::json& file) {
-    std::vector<double> frames, late;
-    append(frames, file, "frames_ms");
-    double time = 0.0;
-    for (const double frame : frames)
-        if ((time += frame) > reaching)
-            late.push_back(frame);
-    return late;
-}
-
 void add_frames(Side& side, const nlohmann::json& file) {
     const std::string room = file.value("room", std::string());
     if (file.value("measured", std::string()) == "latency") {
@@ -63,12 +53,7 @@ void add_frames(Side& side, const nlohmann::json& file) {
     append(side.frames, file, "frames_ms");
     append(side.by_room[room], file, "frames_ms");
     side.state_ms = std::max(side.state_ms, file.value("state_ms", 0.0));
-    if (file.value("out_of_reach", false)) {
-        side.out_of_reach.push_back(room);
-    } else {
-        const std::vector<double> late = after_reaching(file);
-        side.late.insert(side.late.end(), late.begin(), late.end());
-    }
+    side.target.add(room, file);
     side.ends.push_back(room + ": " + file.value("ended", std::string()));
     for (const auto& line : file.value("long_frames", nlohmann::json::array()))
         side.long_frames.push_back(room + ": " + line.get<std::string>());
@@ -97,13 +82,6 @@ Result<Results> read_all(const fs::path& folder) {
         add_file(results, name.substr(0, name.find('-')), file);
     }
     return results;
-}
-
-// A line of the report; true if it is within the bound.
-bool judge(const char* what, double value, double bound) {
-    const bool held = value <= bound;
-    std::printf("    %-44s %7.2f  (at most %.2f)%s\n", what, value, bound, held ? "" : "  MISSED");
-    return held;
 }
 
 void print_frames(const std::string& name, const Side& side) {
@@ -136,38 +114,30 @@ bool report_pacing(const Side& side) {
     const double usual = median(side.frames);
     const auto above = double(
         std::count_if(side.frames.begin(), side.frames.end(), [&](double frame) { return frame > 3.0 * usual; }));
-    bool held = judge("95th percentile / median", percentile(side.frames, 0.95) / usual, 1.5);
-    held = judge("99th percentile / median", percentile(side.frames, 0.99) / usual, 2.0) && held;
-    held = judge("frames above 3 x the median, in 1,000", 1e3 * above / double(side.frames.size()), 1.0) && held;
+    bool held = at_most("95th percentile / median", percentile(side.frames, 0.95) / usual, 1.5);
+    held = at_most("99th percentile / median", percentile(side.frames, 0.99) / usual, 2.0) && held;
+    held = at_most("frames above 3 x the median, in 1,000", 1e3 * above / double(side.frames.size()), 1.0) && held;
     for (const std::string& line : side.long_frames)
         std::printf("      %s\n", line.c_str());
     return held;
 }
 
-// `name`: "target50" and the like. Rooms in which the game said that the target is below what its least settings take
-// are named, and do not count.
-bool report_target(const std::string& name, const Side& side) {
-    for (const std::string& room : side.out_of_reach)
-        std::printf("    %s: out of reach, as the game said\n", room.c_str());
-    if (side.late.empty())
-        return !side.out_of_reach.empty();
-    const double target = std::atof(name.c_str() + std::string("target").size());
-    const bool held = judge("95th percentile / target", percentile(side.late, 0.95) / target, 1.15);
-    const double usual = median(side.late) / target;
-    std::printf("    %-44s %7.2f  (at least 0.80)%s\n", "median / target", usual, usual >= 0.8 ? "" : "  MISSED");
-    return held && usual >= 0.8;
+// Of a side's name, such as "target50", ms; 0: it has none.
+double target_of(const std::string& name) {
+    const std::string prefix = "target";
+    return name.rfind(prefix, 0) == 0 ? std::atof(name.c_str() + prefix.size()) : 0.0;
 }
 
 bool report_latency(const Side& side) {
     const double frame = median(side.latency_frames), step = 1e3 * simulation::step_seconds / frame;
     std::printf("    latency: %zu looks, %zu walks, %u lost; in frames of %.1f ms\n", side.looking.size(),
                 side.walking.size(), side.lost, frame);
-    bool held = judge("looking, median", median(side.looking) / frame, 1.7);
-    held = judge("looking, 95th percentile", percentile(side.looking, 0.95) / frame, 2.5) && held;
-    held = judge("walking, median", median(side.walking) / frame, 1.7 + step) && held;
+    bool held = at_most("looking, median", median(side.looking) / frame, 1.7);
+    held = at_most("looking, 95th percentile", percentile(side.looking, 0.95) / frame, 2.5) && held;
+    held = at_most("walking, median", median(side.walking) / frame, 1.7 + step) && held;
     const double events = double(side.looking.size() + side.walking.size()) + side.lost;
-    held = judge("events that never showed, share", side.lost / events, 0.05) && held;
-    return judge("walking, 95th percentile", percentile(side.walking, 0.95) / frame, 2.5 + step) && held;
+    held = at_most("events that never showed, share", side.lost / events, 0.05) && held;
+    return at_most("walking, 95th percentile", percentile(side.walking, 0.95) / frame, 2.5 + step) && held;
 }
 
 // What was not measured has met no bound.
@@ -201,16 +171,16 @@ bool report_sensors(const PassTimes& passes) {
         std::printf("rays of light sensors: not measured  MISSED\n");
         return false;
     }
-    return judge("rays of light sensors, share of a frame", median(rays->second) / median(frame->second), 0.05);
+    return at_most("rays of light sensors, share of a frame", median(rays->second) / median(frame->second), 0.05);
 }
 
 bool compare_sides(const Side& before, const Side& after) {
     if (before.frames.empty() || after.frames.empty())
         return false;
     std::printf("after / before\n");
-    const bool held = judge("median", median(after.frames) / median(before.frames), 0.41);
+    const bool held = at_most("median", median(after.frames) / median(before.frames), 0.41);
     const double long_frames = percentile(after.frames, 0.95) / percentile(before.frames, 0.95);
-    return judge("95th percentile", long_frames, 0.35) && held;
+    return at_most("95th percentile", long_frames, 0.35) && held;
 }
 
 } // namespace
@@ -223,8 +193,8 @@ Result<bool> report(const fs::path& folder) {
         if (!side.frames.empty())
             print_frames(name, side);
         const bool ended = all_ran_to_their_end(side);
-        const bool has_target = name.rfind("target", 0) == 0;
-        const bool paced = side.frames.empty() || (has_target ? report_target(name, side) : report_pacing(side));
+        const double target = target_of(name);
+        const bool paced = side.frames.empty() || (target > 0.0 ? side.target.report(target) : report_pacing(side));
         const bool quick = side.looking.empty() || report_latency(side);
         held = held && (name == "before" || (ended && paced && quick)); // targets are for what is measured now
     }

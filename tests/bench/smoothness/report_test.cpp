@@ -92,13 +92,23 @@ TEST_F(SmoothnessReport, BoundsAreHeld) {
     write("after-pacing-corner", pacing(50.0));
     write("target50-pacing-porch", pacing(60.0));
     EXPECT_FALSE(held()) << "a target that is missed";
-    Json beyond = pacing(60.0);
-    beyond["out_of_reach"] = true;
+    Json beyond = pacing(60.0); // 300 frames, 18 s
+    beyond["reach"] = {4.0};
     write("target50-pacing-porch", beyond);
     EXPECT_TRUE(held()) << "the game said that it is out of reach there";
+    beyond["reach"] = {4.0, 17.9};
+    write("target50-pacing-porch", beyond);
+    EXPECT_FALSE(held()) << "the last two frames, in reach again";
+    beyond["reach"] = {5.5};
+    write("target50-pacing-porch", beyond);
+    EXPECT_FALSE(held()) << "the frames before it was said";
+    beyond["reach"] = {4.0};
+    write("target50-pacing-porch", beyond);
     write("target50-pacing-corner", pacing(60.0));
     EXPECT_FALSE(held()) << "another room, of which it said nothing";
     std::filesystem::remove(folder.path / "target50-pacing-corner.json");
+    write("target50-pacing-porch", pacing(39.0));
+    EXPECT_FALSE(held()) << "frames much shorter than the target";
     write_all();
     write("after-passes1", passes(50.0, 0.06));
     EXPECT_FALSE(held()) << "rays that take more than a twentieth of a frame";
