@@ -72,7 +72,7 @@ FrameQuality FrameTimeControl::next(double work_ms, double now, bool moves) {
         remember(work_ms);
         choose_maps(work_ms);
     }
-    if (times_.size() >= sure)
+    if (history_.size() >= sure && times_.size() >= fewest)
         out_of_reach_ = has_least() && high() > (out_of_reach_ ? back_time : most_time) * target_;
     if (times_.size() >= fewest && now - changed_ >= scale_interval && moves)
         choose_scale(now);

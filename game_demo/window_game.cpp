@@ -244,8 +244,7 @@ private:
         viewer::SceneRenderer& renderer = level_->renderer();
         controls_.turn(window_->poll_motion(), settings_); // none where the pointer is not captured
         const simulation::DrawnMoment moment{clock_.fraction(), controls_.pending_look()};
-        const FrameQuality quality =
-            pace_.choose(settings_, *level_, seconds_since(began_), moment.look != vec2(0.0f), playing());
+        const FrameQuality quality = pace_.choose(settings_, *level_, seconds_since(began_), moment.turns(), playing());
         menu_.say(pace_.take_message(), 6.0);
         DemoSettings shown = settings_;
         shown.render_scale = quality.render_scale;

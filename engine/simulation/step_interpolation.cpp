@@ -143,7 +143,7 @@ DrawnEye StepInterpolation::eye(const Simulation& simulation, const DrawnMoment&
 }
 
 void StepInterpolation::apply(ecs::Registry& registry, const Simulation& simulation, const DrawnMoment& moment) const {
-    if (moment.fraction >= 1.0f && moment.look == vec2(0.0f))
+    if (moment.fraction >= 1.0f && !moment.turns())
         return;
     const auto place = [&](ecs::Entity entity, const mat4& matrix) {
         if (registry.alive(entity))

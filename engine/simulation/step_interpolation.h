@@ -38,6 +38,7 @@ struct DrawnEye {
 struct DrawnMoment {
     float fraction = 1.0f; // of the way to the last step, 0 to 1
     vec2 look{0.0f};       // rad to the left and up that the person has turned since: shown at once
+    bool turns() const { return look != vec2(0.0f); }
 };
 
 class StepInterpolation {
