@@ -62,19 +62,9 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
 
 // What the game said.
 struct Told {
-    Clock::time_point first; // what came before it does not count
-    std::uint64_t steps = 0; // last
-    double state_ms = 0.0;   // that saying so takes of a frame; 0: not known
-    std::vector<double> reach =
-        {}; // s since `first` at which frame_milliseconds went out of reach, in again, and so on
-
-    void hear(const nlohmann::json& state) {
-        steps = state.value("steps", std::uint64_t(0));
-        state_ms = state.value("state_ms", 0.0);
-        const bool reaches = state.value("reaches_frame_time", true);
-        if (reaches == (reach.size() % 2 == 1))
-            reach.push_back(std::chrono::duration<double>(Clock::now() - first).count());
-    }
+    std::uint64_t steps = 0;        // last
+    double state_ms = 0.0;          // that saying so takes of a frame; 0: not known
+    bool reaches_frame_time = true; // always
 };
 
 // Plays until the time is over, the game says that it ends, or the solution fails; says which.
@@ -92,7 +82,8 @@ std::string play(DrivenGame& game, Clock::time_point until, Told& told) {
             return "the game is over";
         if (const auto motion = solver.next(*state))
             hands.move(*motion);
-        told.hear(*state);
+        told = {state->value("steps", std::uint64_t(0)), state->value("state_ms", 0.0),
+                told.reaches_frame_time && state->value("reaches_frame_time", true)};
         if (!solver.problem().empty())
             return solver.problem();
     }
@@ -106,7 +97,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
     const std::size_t logged = game->log().size();
     const Clock::time_point began = Clock::now();
     const double idle = own_seconds();
-    Told told{began + settling};
+    Told told;
     const auto whole = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     const std::string ended = play(*game, began + settling + whole, told);
     const std::vector<double> frames = game->frame_times(began + settling, Clock::now());
@@ -120,7 +111,7 @@ Status measure_pacing(const GameStart& start, double seconds, const std::filesys
         {"state_ms", told.state_ms},
         {"own_share", (own_seconds() - idle) / seconds_since(began)},
         {"frames_ms", frames},
-        {"reach", told.reach},
+        {"said_out_of_reach", !told.reaches_frame_time},
         {"long_frames", lines_with(game->log().substr(logged), " times the median")}};
     return write_file(output, result.dump(1) + "\n");
 }
