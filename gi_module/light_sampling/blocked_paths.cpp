@@ -50,7 +50,6 @@ bool BlockedPaths::crosses_path(const Box& box, const LightSample& sample, std::
     return false;
 }
 
-// A box does not block the light that leaves itself, but may stand in its way later.
 bool BlockedPaths::blocks(const LightSample& sample) const {
     return std::any_of(boxes_.begin(), boxes_.end(), [&](const auto& entry) {
         return crosses_path(entry.second, sample, sample.dynamic && entry.first == sample.emitter ? 1 : 0);

@@ -24,6 +24,10 @@ public:
     // Looks at some samples again, which have changed since.
     void check(std::span<const LightSample> samples, std::span<const std::uint32_t> changed);
     bool is_blocked(std::uint32_t sample) const { return sample < blocked_.size() && blocked_[sample] != 0; }
+    bool is_box(ecs::Entity mover) const { return boxes_.count(mover) != 0; }
+    // Whether any box stands in the sample's path. A box does not block the light that leaves itself, but may stand in
+    // its way later.
+    bool blocks(const LightSample& sample) const;
     std::size_t count() const { return count_; }
 
 private:
@@ -38,7 +42,6 @@ private:
     static bool is_large_box(const scene::Mesh& mesh, const Bounds& bounds, const mat4& matrix);
     static bool crosses(const Box& box, vec3 from, vec3 to);
     static bool crosses_path(const Box& box, const LightSample& sample, std::uint32_t first_leg);
-    bool blocks(const LightSample& sample) const;
 
     bool follow(const scene::SceneChanges& changes, const scene::MeshStore& meshes);
     bool follow_one(const scene::DrawableChange& change, const scene::MeshStore& meshes);

@@ -16,7 +16,9 @@ constexpr std::uint32_t direction_count = 512;
 constexpr float segment_margin = 2e-3f; // units of the scene, off the source and the first surface
 constexpr float out_of_scene = 1e4f;    // units of the scene
 constexpr float landing_length = 1.0f;  // units of the scene, as far apart as surfaces that face elsewhere by a radian
-constexpr float max_cell = 3.0f;        // times the mean: a path with a small cell moves into a larger one
+constexpr std::uint32_t first_landing_seed = 0x80000000u; // of random numbers; those of samples' paths count from 0
+constexpr float most_scaled = 4.0f;                       // to what walks leave in the mean
+constexpr float max_cell = 3.0f; // times the mean: a path with a small cell moves into a larger one
 
 mat3 rotation_of(const mat4& matrix) {
     mat3 result(matrix);
@@ -105,22 +107,22 @@ std::uint32_t FollowedPaths::unsettled() const {
     return std::uint32_t(std::count_if(paths_.begin(), paths_.end(), [](const Path& path) { return !path.settled; }));
 }
 
-void FollowedPaths::land(const PathSource& source, const raytrace::RayScene& rays) {
+void FollowedPaths::land(const PathSource& source, const PathSpace& space) {
     if (!source.is_extended())
         return;
     landings_.assign(numbers_.size(), {});
     parallel_for_chunks(numbers_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        LightSample sample;
+        sample.emitter = source.entity();
+        sample.dynamic = true;
         for (std::size_t d = begin; d < end; ++d) {
             const EmittedRay emitted = source.ray(numbers_[d].data());
             const raytrace::Ray ray{emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f};
-            const auto hit = rays.closest_hit(ray, raytrace::Scope::static_only);
-            landings_[d].escaped = !hit;
-            if (!hit)
-                continue;
-            const raytrace::SurfacePoint point = rays.surface(ray, *hit);
-            landings_[d].end = point.position;
-            landings_[d].normal = glm::dot(point.geometric_normal, ray.direction) < 0.0f ? point.geometric_normal
-                                                                                         : -point.geometric_normal;
+            const Walk walk = trace(ray, space, first_landing_seed + std::uint32_t(d), sample);
+            const bool blocked = space.blocked && space.blocked(sample);
+            landings_[d] = {{vec3(0.0f), walk.first_hit, walk.first_normal, walk.escaped},
+                            blocked ? vec3(0.0f) : walk.throughput,
+                            walk.reflections};
         }
     });
 }
@@ -146,8 +148,8 @@ void FollowedPaths::sample_path(const PathSource& source, std::uint32_t index, c
     Path& path = paths_[index];
     path.first.direction = directions_[path.number];
     const EmittedRay emitted = source.ray(numbers_[path.number].data());
-    const Walk walk =
-        trace({emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f}, space, seed, sample);
+    const raytrace::Ray ray{emitted.origin + segment_margin * emitted.normal, emitted.direction, 0.0f, 1e30f};
+    const Walk walk = trace(ray, space, seed, sample);
     path.throughput = walk.throughput;
     path.reflections = walk.reflections;
     path.first.end = walk.first_hit;
@@ -177,12 +179,13 @@ struct FollowedPaths::Cells {
     std::vector<float> nearest; // greatest likeness to any path
     std::vector<std::uint32_t> owner;
 
-    bool lands(std::size_t ray) const { return all.landings_.empty() || !all.landings_[ray].escaped; }
+    bool lands(std::size_t ray) const { return all.landings_.empty() || !all.landings_[ray].first.escaped; }
     // The cosine between directions, or the less the further apart light lands, on surfaces that face elsewhere.
     float likeness(const Segment& segment, std::size_t ray) const {
         if (all.landings_.empty())
             return glm::dot(segment.direction, all.directions_[ray]);
-        const vec3 apart = segment.end - all.landings_[ray].end, turned = segment.normal - all.landings_[ray].normal;
+        const Segment& landing = all.landings_[ray].first;
+        const vec3 apart = segment.end - landing.end, turned = segment.normal - landing.normal;
         return -glm::dot(apart, apart) / (landing_length * landing_length) - glm::dot(turned, turned);
     }
     void add(std::uint32_t path, const Segment& segment) {
@@ -263,7 +266,7 @@ void FollowedPaths::settle(const PathSource& source, std::uint32_t most, const P
     for (std::uint32_t p = 0; p < paths_.size() && most > 0; ++p) {
         Path& path = paths_[p];
         const std::uint32_t number = cells.largest_gap();
-        cells.add(p, landings_[number]);
+        cells.add(p, landings_[number].first);
         if (path.settled)
             continue;
         path.number = number;
@@ -273,7 +276,16 @@ void FollowedPaths::settle(const PathSource& source, std::uint32_t most, const P
     }
 }
 
-void FollowedPaths::share_flux(const PathSource& source, std::span<LightSample> samples) {
+// W, of all samples together: what the walks of all landings leave in the mean. `total`: of the weights.
+vec3 FollowedPaths::arriving(const PathSource& source, vec3 total) const {
+    vec3 sum(0.0f);
+    for (std::size_t d = 0; d < landings_.size(); ++d)
+        sum += weights_[d] * landings_[d].throughput * source.flux(landings_[d].reflections);
+    return sum / glm::max(total, vec3(1e-30f));
+}
+
+void FollowedPaths::share_flux(const PathSource& source, std::span<LightSample> samples,
+                               const std::function<bool(const LightSample&)>& blocked) {
     if (source.weights_vary())
         for (std::size_t d = 0; d < numbers_.size(); ++d)
             weights_[d] = source.weight(numbers_[d].data());
@@ -286,12 +298,28 @@ void FollowedPaths::share_flux(const PathSource& source, std::span<LightSample> 
         if (cells.nearest[d] > Cells::nowhere)
             shares[cells.owner[d]] += weights_[d];
     }
+    vec3 found(0.0f);
     for (std::size_t p = 0; p < paths_.size(); ++p) {
         if (samples[p].path_vertex_count == paths_[p].reflections && samples[p].path_vertex_count > 0) // all of it
             samples[p].path[0] = source.ray(numbers_[paths_[p].number].data()).origin;
         const vec3 flux = source.flux(paths_[p].reflections) * paths_[p].throughput;
         for (int c = 0; c < 3; ++c)
-            samples[p].flux[c] = total[c] > 0.0f ? flux[c] * (shares[p][c] / total[c]) : 0.0f;
+            paths_[p].share[c] = total[c] > 0.0f ? shares[p][c] / total[c] : 0.0f;
+        samples[p].flux = flux * paths_[p].share;
+        if (!blocked || !blocked(samples[p]))
+            found += samples[p].flux;
+    }
+    if (landings_.empty())
+        return;
+    // A few walks end after more or fewer reflections than the mean, which shows in the picture as a whole.
+    const vec3 wanted = arriving(source, total);
+    vec3 scale(1.0f);
+    for (int c = 0; c < 3; ++c)
+        if (found[c] > 0.0f)
+            scale[c] = std::clamp(wanted[c] / found[c], 1.0f / most_scaled, most_scaled);
+    for (std::size_t p = 0; p < paths_.size(); ++p) {
+        paths_[p].share *= scale;
+        samples[p].flux *= scale;
     }
 }
 

@@ -17,6 +17,7 @@
 #include "gi_module/light_sampling/sampling_settings.h"
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,8 @@ struct PathSpace {
     std::uint32_t first_bounce = 1; // where it first meets a surface
     std::uint32_t& paths_made;      // so far; the random sequence of a path follows it
     std::span<std::uint8_t> moved;  // by sample: set when it is placed; may be empty
+    // Of an extended source: whether something stands in a sample's path, so that it carries nothing; null: never.
+    std::function<bool(const LightSample&)> blocked = {};
 };
 
 class FollowedPaths {
@@ -62,8 +65,9 @@ public:
     std::uint32_t unsettled() const;
     std::uint32_t size() const { return std::uint32_t(paths_.size()); }
 
-    // Of an extended source, before all else, whenever it has moved: where its light lands.
-    void land(const PathSource& source, const raytrace::RayScene& rays);
+    // Of an extended source, before all else, whenever it has moved: where its light lands, and what is left of it at
+    // the end of a walk from there, in the mean over many.
+    void land(const PathSource& source, const PathSpace& space);
     // After the source moved: which first segments are still unoccluded, and their directions from the source.
     void validate(const PathSource& source, const raytrace::RayScene& rays);
     // Samples invalid paths again, at most `most` of them, in the middle of the largest gaps between the others. When
@@ -75,7 +79,12 @@ public:
     // the first fill_gaps would have here.
     void settle(const PathSource& source, std::uint32_t most, const PathSpace& space, std::span<LightSample> samples);
     // Of the source as it is now: how much flux each sample carries, and where its path begins.
-    void share_flux(const PathSource& source, std::span<LightSample> samples);
+    // `blocked`: see PathSpace; the others carry as much as the mean over many walks.
+    void share_flux(const PathSource& source, std::span<LightSample> samples,
+                    const std::function<bool(const LightSample&)>& blocked = {});
+    // Of one path then: the sample's flux for a source of 1 W in each channel, and how often it was reflected.
+    vec3 carried(std::uint32_t path) const { return paths_[path].share * paths_[path].throughput; }
+    std::uint32_t reflections(std::uint32_t path) const { return paths_[path].reflections; }
 
 private:
     // How light goes its first segment.
@@ -91,10 +100,12 @@ private:
         bool settled = false;         // as if sampled then, from where the source is now
         Segment first;
         vec3 throughput{0.0f}; // of the whole path; the source's flux is not in it
+        vec3 share{0.0f};      // of the source's flux that goes this way
         std::uint32_t reflections = 0;
         bool valid = false;
     };
     struct Cells;
+    vec3 arriving(const PathSource& source, vec3 total) const;
     void sample_path(const PathSource& source, std::uint32_t path, const PathSpace& space, std::uint32_t seed,
                      LightSample& sample);
 
@@ -102,7 +113,12 @@ private:
     std::vector<vec3> directions_; // of the source's light, in its frame
     std::vector<vec3> weights_;
     std::vector<std::array<float, 4>> numbers_;
-    std::vector<Segment> landings_; // of an extended source, for the same numbers
+    struct Landing {
+        Segment first;
+        vec3 throughput{0.0f}; // of a whole walk; 0: blocked
+        std::uint32_t reflections = 0;
+    };
+    std::vector<Landing> landings_; // of an extended source, for the same numbers
     bool filled_ = false;           // once
 };
 

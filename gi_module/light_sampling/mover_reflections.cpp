@@ -18,8 +18,6 @@ constexpr std::uint32_t follow_frames = 5;           // within which all samples
 constexpr std::uint32_t max_resampled_per_mover = 4; // per mover and frame
 constexpr std::uint32_t least_samples = 6;           // of a mover that has any
 constexpr float path_share = 0.4f;                   // of a mover's samples
-constexpr std::uint32_t places_per_sample = 2;       // where arriving light is computed
-
 } // namespace
 
 // Light leaves a mover from its samples, by Lambert's law.
@@ -59,35 +57,30 @@ private:
     std::uint32_t bounces_;
 };
 
-// Of all light that reaches the point.
-MoverReflections::LightByBounce MoverReflections::irradiance(vec3 point, vec3 normal,
-                                                             std::span<const IncomingLight> light, float far,
-                                                             const raytrace::RayScene& rays) {
-    LightByBounce sum{};
+void MoverReflections::gather(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
+                              const raytrace::RayScene& rays, const Visit& visit) {
     raytrace::ShadowPacket packet;
-    std::array<std::pair<vec3, std::size_t>, raytrace::packet_size> arriving;
+    std::array<std::pair<std::size_t, vec3>, raytrace::packet_size> arriving;
     std::uint32_t filled = 0;
     const auto trace = [&] {
         packet.active = (1u << filled) - 1u;
         const std::uint32_t blocked = filled > 0 ? rays.occluded(packet) : 0;
         for (std::uint32_t i = 0; i < filled; ++i)
             if (!((blocked >> i) & 1u))
-                sum[arriving[i].second] += arriving[i].first;
+                visit(arriving[i].first, arriving[i].second);
         filled = 0;
     };
-    for (const IncomingLight& one : light) {
-        const Arrival arrived = arrival(one.row, one.light_class, point, far);
+    for (std::size_t k = 0; k < light.size(); ++k) {
+        const Arrival arrived = arrival(light[k].row, light[k].light_class, point, far);
         const float cosine = glm::dot(normal, arrived.to_light);
         if (cosine <= 0.0f || arrived.irradiance == vec3(0.0f))
             continue;
-        arriving[filled] = {arrived.irradiance * (cosine / glm::length(arrived.to_light)),
-                            std::min<std::size_t>(one.bounce, bounce_count - 1)};
+        arriving[filled] = {k, arrived.irradiance * (cosine / glm::length(arrived.to_light))};
         packet.rays[filled] = {point, arrived.to_light, 0.0f, 0.9999f};
         if (++filled == raytrace::packet_size)
             trace();
     }
     trace();
-    return sum;
 }
 
 std::vector<const scene::Drawable*> MoverReflections::reflecting(const scene::SceneChanges& changes) {
@@ -168,8 +161,8 @@ void MoverReflections::add_mover(const scene::Drawable& drawable, const std::vec
     movers_.push_back(std::move(mover));
 }
 
-void MoverReflections::update(std::span<const IncomingLight> light, float far, const scene::SceneChanges& changes,
-                              const raytrace::RayScene& rays) {
+void MoverReflections::update(std::span<const IncomingLight> light, const MoverLight& own, float far,
+                              const scene::SceneChanges& changes, const raytrace::RayScene& rays) {
     moved_.assign(samples_.size(), 0);
     const std::uint64_t hash = hash_bytes(hash_start, light.data(), light.size_bytes());
     const bool same_light = hash == light_hash_ && cursor_.follows(changes) && changes.drawables.empty();
@@ -191,7 +184,8 @@ void MoverReflections::update(std::span<const IncomingLight> light, float far, c
         return;
     move_samples();
     for (Mover& mover : movers_)
-        follow_paths(mover, rays);
+        follow_paths(mover, own, !same_light, rays);
+    exchange(own, far, rays);
 }
 
 std::uint32_t MoverReflections::behind() const {
@@ -267,16 +261,22 @@ void MoverReflections::light_places(Mover& mover, std::span<const IncomingLight>
     parallel_for_chunks(mover.places.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Place& place = mover.places[i];
-            place.flux = {};
+            place.from_others = {};
             const auto point = rays.surface_on(mover.entity, place.where.triangle, place.where.u, place.where.v);
             if (!point)
                 continue;
             const vec3 normal = place.where.side * point->geometric_normal;
-            place.flux = irradiance(point->on_triangle + point->offset * normal, normal, light, far, rays);
-            for (vec3& flux : place.flux)
+            gather(point->on_triangle + point->offset * normal, normal, light, far, rays, [&](std::size_t k, vec3 e) {
+                place.from_others[std::min<std::size_t>(light[k].bounce, bounce_count - 1)] += e;
+            });
+            for (vec3& flux : place.from_others)
                 flux *= place.area * mean_reflectance(point->material);
         }
     });
+}
+
+// From places to the samples and the mover.
+void MoverReflections::sum_flux(Mover& mover) {
     mover.flux = {};
     for (std::uint32_t i = 0; i < mover.direct; ++i) {
         LightSample& sample = samples_[mover.first + i];
@@ -290,27 +290,39 @@ void MoverReflections::light_places(Mover& mover, std::span<const IncomingLight>
     }
 }
 
-void MoverReflections::follow_paths(Mover& mover, const raytrace::RayScene& rays) {
+void MoverReflections::follow_paths(Mover& mover, const MoverLight& own, bool lit, const raytrace::RayScene& rays) {
+    for (Place& place : mover.places)
+        place.flux = place.from_others;
+    sum_flux(mover);
     if (mover.reflected == 0 || mover.direct == 0)
         return;
     const std::size_t first = mover.first + mover.direct;
     const std::span<LightSample> reflected = std::span(samples_).subspan(first, mover.reflected);
     const Source source(mover, std::span(samples_).subspan(mover.first, mover.direct), settings_.bounces);
-    const PathSpace space{settings_, rays,        settings_.bounces - 1,
-                          2,         paths_made_, std::span(moved_).subspan(first, mover.reflected)};
-    if (!mover.started) {
+    const PathSpace space{settings_,  rays,        settings_.bounces - 1,
+                          2,          paths_made_, std::span(moved_).subspan(first, mover.reflected),
+                          own.blocked};
+    if (!mover.started)
         mover.paths.reset(source, mover.reflected, hash_combine(settings_.seed, 0x3a70u + mover.first));
-        mover.paths.land(source, rays);
+    if (lit || mover.behind > 0 || mover.stepped)
+        mover.paths.land(source, space);
+    if (!mover.started) {
         mover.paths.fill_gaps(source, mover.reflected, space, reflected);
     } else if (mover.went || mover.behind > 0 || mover.stepped) {
-        mover.paths.land(source, rays);
         mover.paths.validate(source, rays);
         mover.paths.fill_gaps(source, max_resampled_per_mover, space, reflected);
     } else {
         mover.paths.settle(source, max_resampled_per_mover, space, reflected);
     }
     mover.started = true;
-    mover.paths.share_flux(source, reflected);
+    mover.paths.share_flux(source, reflected, own.blocked);
+}
+
+void MoverReflections::share_flux(Mover& mover, const MoverLight& own) {
+    sum_flux(mover);
+    if (mover.reflected > 0 && mover.direct > 0)
+        mover.paths.share_flux(Source(mover, std::span(samples_).subspan(mover.first, mover.direct), settings_.bounces),
+                               std::span(samples_).subspan(mover.first + mover.direct, mover.reflected), own.blocked);
 }
 
 } // namespace sunfleck::gi

@@ -5,13 +5,18 @@
 // is elsewhere needs a new shadow map. Their flux is what arrives there now from all other samples, by rays past
 // everything that stands in the way, times what the surface reflects there. Where that light goes on to, walks from
 // these samples follow: reflected samples that keep their places (followed_paths.h).
-// Light that one mover reflects to another, and from there on, is left out.
+//
+// Movers that block the paths of light (blocked_paths.h) also reflect what they get of this light, from other movers or
+// back from the walls (mover_exchange.cpp). Paths go through all others as if they were not there, so that this light
+// is not lost.
 #pragma once
 
 #include "engine/scene/scene_changes.h"
 #include "gi_module/light_sampling/followed_paths.h"
 #include "gi_module/light_sampling/mover_places.h"
 #include "gi_module/transport/light_row_shared.h"
+
+#include <functional>
 
 namespace sunfleck::gi {
 
@@ -20,6 +25,16 @@ struct IncomingLight {
     shared::LightRow row;
     std::uint32_t light_class = 0;
     std::uint32_t bounce = 0; // reflections so far
+};
+
+// How light of the samples on movers, and of their paths, arrives.
+struct MoverLight {
+    // Whether paths of light end at this mover.
+    std::function<bool(ecs::Entity)> ends_paths;
+    // Whether one stands in a sample's path.
+    std::function<bool(const LightSample&)> blocked;
+    // Of a sample that carries 1 W in each channel, by its index in samples().
+    std::function<IncomingLight(const LightSample&, std::uint32_t)> arriving;
 };
 
 class MoverReflections {
@@ -32,8 +47,8 @@ public:
                std::uint32_t count, const SampleRequest& settings);
     // Follows the movers and the light. A pure function of all updates since reset; once nothing is behind(), of the
     // scene as it is alone. `far`: beyond all geometry, m.
-    void update(std::span<const IncomingLight> light, float far, const scene::SceneChanges& changes,
-                const raytrace::RayScene& rays);
+    void update(std::span<const IncomingLight> light, const MoverLight& own, float far,
+                const scene::SceneChanges& changes, const raytrace::RayScene& rays);
 
     // All `dynamic` and reflected once or more; their number and kinds do not change until the next reset.
     const std::vector<LightSample>& samples() const { return samples_; }
@@ -45,12 +60,14 @@ public:
 private:
     // Light by how often it was reflected before, all above in the last.
     static constexpr std::size_t bounce_count = 8;
+    static constexpr std::uint32_t places_per_sample = 2; // where arriving light is computed
     using LightByBounce = std::array<vec3, bounce_count>;
 
     struct Place {
         SurfacePlace where;
-        float area = 0.0f;    // that it represents, m2
-        LightByBounce flux{}; // W, reflected there
+        float area = 0.0f;           // that it represents, m2
+        LightByBounce from_others{}; // W, reflected there, of what does not come from movers
+        LightByBounce flux{};        // and of all light
     };
     struct Mover {
         ecs::Entity entity;
@@ -71,9 +88,18 @@ private:
     std::uint32_t samples_on_movers_behind() const;
     void move_samples();
     void light_places(Mover& mover, std::span<const IncomingLight> light, float far, const raytrace::RayScene& rays);
-    static LightByBounce irradiance(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
-                                    const raytrace::RayScene& rays);
-    void follow_paths(Mover& mover, const raytrace::RayScene& rays);
+    // Of light that reaches the point: its place in `light`, and W/m2.
+    using Visit = std::function<void(std::size_t, vec3)>;
+    static void gather(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
+                       const raytrace::RayScene& rays, const Visit& visit);
+    void sum_flux(Mover& mover);
+    void share_flux(Mover& mover, const MoverLight& own); // from places to all of its samples
+    struct Exchange;
+    std::vector<Exchange> exchanged_by(const MoverLight& own) const;
+    vec3 exchanged_flux(const Exchange& one, std::size_t bounces) const;
+    void exchange(const MoverLight& own, float far, const raytrace::RayScene& rays);
+    // `lit`: what arrives, or stands in the way, may be other than before.
+    void follow_paths(Mover& mover, const MoverLight& own, bool lit, const raytrace::RayScene& rays);
 
     SampleRequest settings_;
     std::vector<Mover> movers_;

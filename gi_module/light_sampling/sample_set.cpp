@@ -240,15 +240,25 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
             {make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind), sample.bounce});
         incoming.back().row.intensity_slot /= vec4(vec3(share), 1.0f);
     }
-    followed_.movers.update(incoming, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
+    const auto let_through = [&](const LightSample& sample, std::uint32_t k) {
+        float& share = followed_.let_through[first + k];
+        if (followed_.movers.moved()[k] != 0 || share == 0.0f)
+            share = let_through_of(sample, bound_of(sample, settings), scene.rays);
+        return share;
+    };
+    MoverLight own;
+    own.ends_paths = [&](ecs::Entity mover) { return blocked_paths_.is_box(mover); };
+    own.blocked = [&](const LightSample& sample) { return blocked_paths_.blocks(sample); };
+    own.arriving = [&](const LightSample& sample, std::uint32_t k) {
+        LightSample one = sample;
+        one.flux = vec3(1.0f / let_through(sample, k));
+        return IncomingLight{make_light_row(one, 0, bound_of(one, settings), bounds), light_class(one.kind)};
+    };
+    followed_.movers.update(incoming, own, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
     for (std::uint32_t k = 0; k < followed_.movers.samples().size(); ++k) {
         LightSample now = followed_.movers.samples()[k];
-        const bool moved = followed_.movers.moved()[k] != 0;
-        float& let_through = followed_.let_through[first + k];
-        if (moved || let_through == 0.0f)
-            let_through = let_through_of(now, bound_of(now, settings), scene.rays);
-        now.flux /= let_through;
-        take_over(std::uint32_t(first) + k, now, moved);
+        now.flux /= let_through(now, k);
+        take_over(std::uint32_t(first) + k, now, followed_.movers.moved()[k] != 0);
     }
 }
 

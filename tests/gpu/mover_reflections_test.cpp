@@ -123,7 +123,7 @@ void add_reflection_errors(ReflectionErrors& errors, const TwoPictures& truth, c
         }
 }
 
-// With one set of samples, the mean at one place is off by 9 % (standard deviation over seeds): the short size takes
+// With one set of samples, the mean at two places is off by 6 % (standard deviation over seeds): the short size takes
 // the mean over four sets at two places, the long one that of one set over 20 places. The worst block is the first
 // set's.
 TEST_P(MoverReflects, AsMuchAsThePathTracerFinds) {
