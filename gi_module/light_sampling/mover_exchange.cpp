@@ -55,6 +55,7 @@ void MoverReflections::exchange(const MoverLight& own, float far, const raytrace
         return;
     const std::vector<Exchange> exchanged = exchanged_by(own);
     std::vector<IncomingLight> light;
+    light.reserve(exchanged.size());
     for (const Exchange& one : exchanged)
         light.push_back(one.light);
     parallel_for_chunks(receivers.size(), 2, [&](std::size_t begin, std::size_t end) {
