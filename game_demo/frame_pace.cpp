@@ -27,6 +27,8 @@ FrameQuality FramePace::choose(const DemoSettings& settings, Level& level, doubl
 }
 
 void FramePace::tell(double target) {
+    if (reaches_ && told_of_ != target)
+        return; // the player chose another time
     const std::string frames = "Frames of " + std::to_string(std::lround(target)) + " ms are ";
     const std::string line = reaches_ ? frames + "within reach again"
                                       : frames + "out of reach here: they take longer with the least settings";
