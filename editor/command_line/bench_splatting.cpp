@@ -29,8 +29,13 @@ Result<std::unique_ptr<Bench>> open_splat_scene(const BenchOptions& options, con
     ecs::Registry& registry = bench->renderer->registry();
     if (scene == "arena")
         for (const char* lamp : {"ceiling lamp 0", "ceiling lamp 1"})
-            if (const ecs::Entity entity = scene::find_by_name(registry, lamp); registry.has<scene::AreaLight>(entity))
+            if (const ecs::Entity entity = scene::find_by_name(registry, lamp);
+                registry.has<scene::AreaLight>(entity)) {
                 registry.patch<scene::AreaLight>(entity, [](scene::AreaLight& light) { light.radiance = vec3(0.0f); });
+                // What the path tracer's scattered rays find of a lamp is its surface.
+                registry.patch<scene::Material>(entity,
+                                                [](scene::Material& surface) { surface.emission = vec3(0.0f); });
+            }
     bench->request.view = shared::view_irradiance;
     bench->request.tone_map = false;
     return bench;
