@@ -32,8 +32,12 @@ gi::Settings bounded_settings(bool glossy) {
     return settings.with("splat_pattern", "fixed").with("splat_importance", "none"); // each texel a light
 }
 
-// The same lights, made from the emitters' maps, with their bounds.
-std::vector<shared::PixelLightRow> bounded_rows(Bench& bench, bool glossy) {
+// The same lights, made from the emitters' maps, with their bounds at a threshold of `least`, W/m2.
+struct BoundedRows {
+    std::vector<shared::PixelLightRow> rows;
+    float least = 0.0f;
+};
+BoundedRows bounded_rows(Bench& bench, bool glossy) {
     viewer::SceneRenderer& renderer = *bench.renderer;
     const Bounds bounds = viewer::scene_bounds(renderer.registry(), renderer.meshes());
     const auto emitters = gi::collect_emitters(renderer.registry(), renderer.meshes(), bounds, {}, renderer.space());
@@ -48,12 +52,11 @@ std::vector<shared::PixelLightRow> bounded_rows(Bench& bench, bool glossy) {
             flux += light.flux;
             lights.push_back(light);
         }
-    std::vector<shared::PixelLightRow> rows;
-    rows.reserve(lights.size());
-    const float least = bounded_cutoff * luminance(flux) / renderer.rays().static_area();
+    BoundedRows result{{}, bounded_cutoff * luminance(flux) / renderer.rays().static_area()};
     for (const gi::PixelLight& light : lights)
-        rows.push_back(gi::make_pixel_light_row(light, 0, gi::splat_clamp_scale * gi::Settings().clamp_scale, least));
-    return rows;
+        result.rows.push_back(
+            gi::make_pixel_light_row(light, 0, gi::splat_clamp_scale * gi::Settings().clamp_scale, result.least));
+    return result;
 }
 
 struct Rectangle {
@@ -144,26 +147,55 @@ private:
     std::vector<std::int64_t> sums_;
 };
 
-// Positions that pixels show, relative to the camera.
-std::vector<vec3> seen_positions(Bench& bench, const shared::CameraRow& camera) {
-    std::vector<vec3> positions;
+// What pixels show; positions are relative to the camera.
+struct Seen {
+    vec3 position, normal, geometric_normal;
+};
+std::vector<Seen> seen_surfaces(Bench& bench, const shared::CameraRow& camera) {
+    std::vector<Seen> seen;
     for (std::uint32_t y = 0; y < bench.request.height; ++y)
         for (std::uint32_t x = 0; x < bench.request.width; ++x) {
             const vec3 direction = shared::camera_ray(camera, vec2(float(x), float(y)) + 0.5f);
             const raytrace::Ray ray{vec3(camera.position), direction, 0.0f, 1e30f};
-            if (const auto hit = bench.renderer->rays().closest_hit(ray))
-                positions.push_back(direction * hit->distance);
+            const auto hit = bench.renderer->rays().closest_hit(ray);
+            if (!hit)
+                continue;
+            const raytrace::SurfacePoint point = bench.renderer->rays().surface(ray, *hit);
+            const float side = glm::dot(point.geometric_normal, direction) < 0.0f ? 1.0f : -1.0f;
+            seen.push_back({direction * hit->distance, side * point.shading_normal, side * point.geometric_normal});
         }
-    return positions;
+    return seen;
+}
+
+// How many of them get `least` of a light's irradiance or more: what no lists of the same threshold go below.
+double above_threshold(std::span<const Seen> seen, const shared::CameraRow& camera, const shared::PixelLightRow& row,
+                       float least) {
+    const vec3 place = vec3(row.row.position_bound) - vec3(camera.position), normal(row.row.normal_offset);
+    const float peak = std::max({row.row.intensity_slot.x, row.row.intensity_slot.y, row.row.intensity_slot.z});
+    const float flux = peak * row.beam1.w;
+    double count = 0.0;
+    for (const Seen& surface : seen) {
+        const vec3 way = surface.position - place;
+        const float along = glm::dot(normal, way), facing = -glm::dot(surface.normal, way);
+        if (along <= 0.0f || facing <= 0.0f || glm::dot(surface.geometric_normal, way) >= 0.0f)
+            continue;
+        const float squared = glm::dot(way, way), distance = std::sqrt(squared);
+        const float given = row.lobe.w <= 1.0f
+                                ? peak * shared::softened_term(along, facing, squared, row.extent.x)
+                                : flux * facing / (distance * squared) *
+                                      shared::pixel_light_intensity(vec3(row.lobe), normal, row.lobe.w, row.extent.x,
+                                                                    way / distance, distance);
+        count += given >= least;
+    }
+    return count;
 }
 
 // Which of them an ellipsoid holds: what a bound could save at most, pixel by pixel.
-double inside_ellipsoid(std::span<const vec3> positions, const shared::CameraRow& camera,
-                        const shared::PixelLightRow& row) {
+double inside_ellipsoid(std::span<const Seen> seen, const shared::CameraRow& camera, const shared::PixelLightRow& row) {
     const vec3 axis(row.lobe), centre = vec3(row.row.position_bound) + row.extent.y * axis - vec3(camera.position);
     double count = 0.0;
-    for (const vec3& position : positions) {
-        const vec3 way = position - centre;
+    for (const Seen& surface : seen) {
+        const vec3 way = surface.position - centre;
         const float along = glm::dot(way, axis), across = std::max(glm::dot(way, way) - along * along, 0.0f);
         count += along * along / (row.extent.z * row.extent.z) + across / (row.extent.w * row.extent.w) <= 1.0f;
     }
@@ -177,28 +209,31 @@ Status bounds_row(SplatExperiment& experiment, Bench& bench, float exponent) {
     bench.request.lighting_view = "overdraw";
     SUNFLECK_ASSIGN(const io::Picture overdraw, splat_picture(bench, 0));
     bench.request.lighting_view.clear();
-    const std::vector<shared::PixelLightRow> rows = bounded_rows(bench, glossy);
+    const auto [rows, least] = bounded_rows(bench, glossy);
     if (double(rows.size()) != bench.renderer->lighting().counters()["splats"])
         return Error{"the lights of the picture are not those that are bounded here"};
     const shared::CameraRow camera = scene::make_camera_row(bench.renderer->space().view(bench.request.camera),
                                                             bench.request.width, bench.request.height);
-    double ours = 0.0, rectangles = 0.0, squares = 0.0, inside = 0.0;
+    double ours = 0.0, rectangles = 0.0, squares = 0.0, inside = 0.0, above = 0.0;
     for (const vec4& pixel : overdraw.pixels)
         ours += double(pixel.x) * 256.0; // white: 256
     SurfacePixels pixels(overdraw);
-    const std::vector<vec3> positions = seen_positions(bench, camera);
+    const std::vector<Seen> seen = seen_surfaces(bench, camera);
     for (const shared::PixelLightRow& row : rows) {
         rectangles += pixels.in(around_ellipsoid(camera, row));
         squares += pixels.in(square_around(camera, row, row.extent.y + row.extent.z));
-        inside += inside_ellipsoid(positions, camera, row);
+        inside += inside_ellipsoid(seen, camera, row);
+        above += above_threshold(seen, camera, row, least);
     }
     char what[64];
     std::snprintf(what, sizeof what, "exponent %g, %zu lights", double(exponent), rows.size());
-    const double all = double(positions.size());
+    const double all = double(seen.size());
     experiment.row("arena", what, "evaluations a pixel, tile lists", ours / all);
     experiment.row("arena", what, "the same, inside of the ellipsoid", inside / all);
     experiment.row("arena", what, "the same, the ellipsoid's rectangle", rectangles / all);
     experiment.row("arena", what, "the same, the paper's square", squares / all);
+    experiment.row("arena", what, "the same, light above the threshold", above / all);
+    experiment.row("arena", what, "light above the threshold over rectangle", above / rectangles, "no lists need less");
     experiment.row("arena", what, "tile lists over rectangle", ours / rectangles,
                    exponent >= 50.0f  ? "target: at most 1/20"
                    : exponent <= 1.0f ? "target: at most 1/4"

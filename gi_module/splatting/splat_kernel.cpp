@@ -12,6 +12,10 @@ bool is_glossy(const shared::PixelLightRow& light) {
     return light.lobe.w > 1.0f;
 }
 
+bool is_beam(const shared::PixelLightRow& light) {
+    return light.beam0.w > 0.0f;
+}
+
 bool has_diffuse(std::span<const shared::PixelLightRow> lights) {
     return !std::ranges::all_of(lights, is_glossy);
 }
@@ -48,14 +52,9 @@ SplatKernel::~SplatKernel() {
 
 Status SplatKernel::make_masks(const PixelStage& stage, gpu::FrameResources& resources) {
     const std::uint64_t groups = std::max(stage.constants.group_capacity, stage.constants.group_count);
-    if (masks_ && masks_.size() >= groups * bytes_per_group)
-        return {};
-    if (masks_)
-        resources.retire(std::move(masks_));
-    SUNFLECK_ASSIGN(masks_, gpu::Buffer::create(device_, {"pixel lights of groups", groups * bytes_per_group,
-                                                          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryUse::device,
-                                                          VK_FORMAT_UNDEFINED}));
-    return {};
+    SUNFLECK_TRY(make_room(device_, masks_, "pixel lights of groups", groups * mask_bytes, resources));
+    return blocks_on_ ? make_room(device_, blocks_, "pixel lights of blocks", groups * block_bytes, resources)
+                      : Status();
 }
 
 Status SplatKernel::set_maps(gpu::FrameGraph& graph, std::span<const std::uint16_t> texels, std::uint32_t side,
@@ -106,7 +105,11 @@ Status SplatKernel::add_passes(const PixelStage& stage, std::span<const shared::
         first += batch.size();
         constants.light_count = std::uint32_t(batch.size());
         const bool glossy = is_glossy(batch.front()), nodes = by_levels && !glossy;
-        const BatchKind kind{glossy, nodes, nodes && !has_diffuse(lights.subspan(first)),
+        const BatchKind kind{glossy,
+                             std::ranges::any_of(batch, is_beam),
+                             nodes,
+                             glossy && lists_ && blocks_on_,
+                             nodes && !has_diffuse(lights.subspan(first)),
                              writes_picture && first == lights.size()};
         SUNFLECK_TRY(add_batch(stage, batch, constants, kind, resources));
         constants.first = constants.first != 0 && !nodes;
@@ -124,15 +127,17 @@ Status SplatKernel::add_batch(const PixelStage& stage, std::span<const shared::P
         SUNFLECK_TRY(
             levels_->add_batch(stage, constants, {rows, masks_, maps_.buffer(), map_side_ > 0, filtered_, show_}));
     else if (lists_)
-        SUNFLECK_TRY(add_lists(stage, rows, constants));
+        SUNFLECK_TRY(add_lists(stage, rows, constants, false));
+    if (kind.by_blocks)
+        SUNFLECK_TRY(add_lists(stage, rows, constants, true));
     return add_light(stage, rows, constants, kind);
 }
 
 Status SplatKernel::add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
-                              const shared::SplattingConstants& constants) {
+                              const shared::SplattingConstants& constants, bool of_blocks) {
     gpu::ComputeDescription description;
     description.shader = "gi_module/splatting/splat_lists.comp";
-    description.specialization = {stage.repair, show_};
+    description.specialization = {stage.repair, show_, of_blocks};
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
     gpu::ComputePass pass(stage.graph, stage.repair ? "repair splat lists" : "splat lists", *kernel);
     pass.uniform(stage.camera)
@@ -140,10 +145,13 @@ Status SplatKernel::add_lists(const PixelStage& stage, const gpu::UploadSlice& r
         .sampled(stage.g_buffer.normals, sampler_)
         .uniform(rows)
         .storage_read(stage.pixels)
-        .storage_read(stage.commands)
-        .storage_write(masks_)
-        .push(constants);
-    stage.dispatch(pass, shared::command_packed);
+        .storage_read(stage.commands);
+    if (of_blocks)
+        pass.storage_read_write(masks_).storage_write(blocks_);
+    else
+        pass.storage_read_write(masks_).unused(masks_);
+    pass.push(constants);
+    stage.dispatch(pass, of_blocks ? shared::command_groups : shared::command_packed);
     return {};
 }
 
@@ -157,10 +165,13 @@ Status SplatKernel::add_light(const PixelStage& stage, const gpu::UploadSlice& r
                                   kind.to_image,
                                   map_side_ > 0 ? shared::maps_texel_buffer : shared::maps_none,
                                   filtered_,
-                                  kind.glossy,
+                                  kind.beams    ? 2u
+                                  : kind.glossy ? 1u
+                                                : 0u,
                                   show_,
                                   lists_,
-                                  kind.takes_nodes};
+                                  kind.takes_nodes,
+                                  kind.by_blocks};
     SUNFLECK_ASSIGN(const gpu::Pipeline* kernel, pipelines_.compute(description));
     gpu::ComputePass pass(stage.graph, stage.repair ? "repair splat light" : "splat light", *kernel);
     pass.uniform(stage.camera)
@@ -176,6 +187,10 @@ Status SplatKernel::add_light(const PixelStage& stage, const gpu::UploadSlice& r
         pass.storage_read(levels_->points()).storage_read(levels_->patches()).storage_read(levels_->places());
     else
         pass.unused(masks_).unused(masks_).unused(masks_);
+    if (kind.by_blocks)
+        pass.storage_read(blocks_);
+    else
+        pass.unused(masks_);
     pass.push(constants);
     stage.dispatch(pass, shared::command_groups);
     return {};

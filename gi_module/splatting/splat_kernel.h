@@ -28,22 +28,30 @@ public:
     void set_levels(bool levels) { levels_on_ = levels; }
     // Irradiance, W/m2, below which light may be cut, from the next add_passes on.
     void set_least(float least) { least_ = least; }
+    // Whether lobes have lists of blocks of pixels, too, from the next add_passes on.
+    void set_blocks(bool blocks) { blocks_on_ = blocks; }
     // show_... of splatting_shared.h, from the next add_passes on.
     void set_show(std::uint32_t show) { show_ = show; }
     // For each stage of a frame. The rows last as long as the call.
     Status add_passes(const PixelStage& stage, std::span<const shared::PixelLightRow> lights,
                       gpu::FrameResources& resources);
     // Its memory for a group of pixels.
-    static constexpr std::uint64_t bytes_per_group = shared::splat_mask_words * 4;
-    std::uint64_t memory_bytes() const { return masks_.size() + maps_.buffer().size() + levels_->memory_bytes(); }
+    std::uint64_t bytes_per_group() const { return mask_bytes + (blocks_on_ ? block_bytes : 0); }
+    std::uint64_t memory_bytes() const {
+        return masks_.size() + blocks_.size() + maps_.buffer().size() + levels_->memory_bytes();
+    }
 
 private:
+    static constexpr std::uint64_t mask_bytes = shared::splat_mask_words * 4; // of a group
+    static constexpr std::uint64_t block_bytes = shared::splat_blocks * shared::splat_block_words * 4;
+
     SplatKernel(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
     Status make_masks(const PixelStage& stage, gpu::FrameResources& resources);
-    Status add_lists(const PixelStage& stage, const gpu::UploadSlice& rows,
-                     const shared::SplattingConstants& constants);
+    Status add_lists(const PixelStage& stage, const gpu::UploadSlice& rows, const shared::SplattingConstants& constants,
+                     bool of_blocks);
     struct BatchKind {
-        bool glossy = false, by_levels = false;
+        bool glossy = false, beams = false; // lobes, beams among them
+        bool by_levels = false, by_blocks = false;
         bool takes_nodes = false; // the last by levels, which adds what all gave the nodes
         bool to_image = false;    // the last of all, which writes the picture
     };
@@ -57,11 +65,11 @@ private:
     gpu::Device& device_;
     gpu::PipelineStore& pipelines_;
     VkSampler sampler_ = VK_NULL_HANDLE;
-    gpu::Buffer masks_;
+    gpu::Buffer masks_, blocks_;
     gpu::UploadedBuffer maps_;
     std::unique_ptr<SplatLevels> levels_;
     std::uint32_t map_side_ = 0; // 0: there are none
-    bool filtered_ = false, lists_ = true, levels_on_ = false;
+    bool filtered_ = false, lists_ = true, levels_on_ = false, blocks_on_ = false;
     float least_ = 0.0f;
     std::uint32_t show_ = shared::show_no_splats;
 };

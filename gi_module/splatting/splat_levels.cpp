@@ -18,27 +18,31 @@ shared::SplattingConstants at_level(shared::SplattingConstants constants, std::u
 
 } // namespace
 
-Status SplatLevels::make(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, gpu::FrameResources& resources) {
+Status make_room(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::uint64_t bytes,
+                 gpu::FrameResources& resources) {
     if (buffer && buffer.size() >= bytes)
         return {};
     if (buffer)
         resources.retire(std::move(buffer));
-    SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device_, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                                                          gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
+    SUNFLECK_ASSIGN(buffer, gpu::Buffer::create(device, {name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                                         gpu::MemoryUse::device, VK_FORMAT_UNDEFINED}));
     return {};
 }
 
 Status SplatLevels::make_buffers(const shared::SplattingConstants& constants, gpu::FrameResources& resources) {
     const std::uint64_t tiles = shared::first_tile(constants.columns, constants.rows, shared::tile_levels);
     const std::uint64_t mask_bytes = tiles * shared::splat_mask_words * sizeof(std::uint32_t);
-    SUNFLECK_TRY(make(tiles_, "tiles of splatted light", tiles * sizeof(shared::SplatTile), resources));
-    SUNFLECK_TRY(make(done_, "pixel lights that tiles are done with", mask_bytes, resources));
-    SUNFLECK_TRY(make(smooth_, "pixel lights that are smooth over tiles", mask_bytes, resources));
-    SUNFLECK_TRY(make(nodes_, "light at nodes of tiles", tiles * shared::tile_nodes * sizeof(vec4), resources));
+    SUNFLECK_TRY(make_room(device_, tiles_, "tiles of splatted light", tiles * sizeof(shared::SplatTile), resources));
+    SUNFLECK_TRY(make_room(device_, done_, "pixel lights that tiles are done with", mask_bytes, resources));
+    SUNFLECK_TRY(make_room(device_, smooth_, "pixel lights that are smooth over tiles", mask_bytes, resources));
+    SUNFLECK_TRY(
+        make_room(device_, nodes_, "light at nodes of tiles", tiles * shared::tile_nodes * sizeof(vec4), resources));
     const std::uint64_t groups = tiles_of(constants, 0), entries = groups * shared::pixel_group_size;
-    SUNFLECK_TRY(make(patches_, "pieces of surface of groups", groups * sizeof(shared::GroupPatches), resources));
-    SUNFLECK_TRY(make(places_, "pieces of surface of pixels", entries * sizeof(std::uint32_t), resources));
-    return make(points_, "light at nodes of groups", entries * sizeof(vec4), resources);
+    SUNFLECK_TRY(
+        make_room(device_, patches_, "pieces of surface of groups", groups * sizeof(shared::GroupPatches), resources));
+    SUNFLECK_TRY(
+        make_room(device_, places_, "pieces of surface of pixels", entries * sizeof(std::uint32_t), resources));
+    return make_room(device_, points_, "light at nodes of groups", entries * sizeof(vec4), resources);
 }
 
 Status SplatLevels::add_tiles(const PixelStage& stage, const shared::SplattingConstants& constants,

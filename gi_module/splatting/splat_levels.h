@@ -9,6 +9,10 @@
 
 namespace sunfleck::gi {
 
+// Makes a storage buffer of at least so many bytes, unless it is one.
+Status make_room(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::uint64_t bytes,
+                 gpu::FrameResources& resources);
+
 class SplatLevels {
 public:
     SplatLevels(gpu::Device& device, gpu::PipelineStore& pipelines, VkSampler sampler)
@@ -34,7 +38,6 @@ public:
     std::uint64_t memory_bytes() const;
 
 private:
-    Status make(gpu::Buffer& buffer, const char* name, std::uint64_t bytes, gpu::FrameResources& resources);
     Status make_buffers(const shared::SplattingConstants& constants, gpu::FrameResources& resources);
     Status add_masks(const PixelStage& stage, const shared::SplattingConstants& constants, const Batch& batch);
     Status add_nodes(const PixelStage& stage, const shared::SplattingConstants& constants, const Batch& batch);

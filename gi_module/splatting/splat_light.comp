@@ -13,10 +13,11 @@ layout(local_size_x_id = 1) in;
 layout(constant_id = 2) const uint to_image = 0; // 1: the sums go to the full picture
 layout(constant_id = 3) const uint maps = 0;     // maps_none or maps_texel_buffer
 layout(constant_id = 4) const uint filtered = 0;
-layout(constant_id = 5) const uint glossy = 0; // the batch's lights have lobes
+layout(constant_id = 5) const uint glossy = 0; // the batch's lights have lobes; 2: or are beams
 layout(constant_id = 6) const uint show = show_no_splats;
 layout(constant_id = 7) const uint lists = 1; // 0: all lights of the batch reach all pixels
 layout(constant_id = 8) const uint nodes = 0; // 1: groups have nodes and points, with the rest of all batches' light
+layout(constant_id = 9) const uint blocks = 0; // 1: each block of a group has a list
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
 layout(set = 0, binding = 1) uniform sampler2D depth_image;
@@ -30,6 +31,7 @@ layout(set = 0, binding = 8) uniform samplerBuffer map_texels;
 layout(set = 0, binding = 9) readonly buffer Points { vec4 point_light[]; };
 layout(set = 0, binding = 10) readonly buffer Patches { GroupPatches groups[]; };
 layout(set = 0, binding = 11) readonly buffer Places { uint places[]; };
+layout(set = 0, binding = 12) readonly buffer Blocks { uint block_masks[]; };
 layout(push_constant) uniform Constants { SplattingConstants constants; };
 
 const uint light_class = light_class_surface, map_bits = 16, stale_maps = 0, simplified_movers = 0;
@@ -49,13 +51,13 @@ float lobe_factor(PixelLightRow light, Pixel pixel) {
     const vec3 direction = v / distance;
     const bool faces = dot(pixel.geometric_normal, v) < 0.0 && dot(normal, v) > 0.0;
     const float cosine = faces ? max(-dot(pixel.normal, direction), 0.0) : 0.0;
-    if (light.beam0.w > 0.0)
+    if (glossy == 2 && light.beam0.w > 0.0)
         return beam_density(light.lobe.xyz, light.beam0, light.beam1, light.beam2, v) * cosine * light.beam0.w;
     const float exponent = light.lobe.w, widened = widened_exponent(exponent, distance, light.extent.x);
     float factor = power_of_cosine(light.lobe.xyz, direction, widened) * cosine / squared;
     if (widened != exponent) {
         const float tilt = dot(light.lobe.xyz, normal);
-        factor *= lobe_norm(widened, tilt) / lobe_norm(exponent, tilt);
+        factor *= lobe_norm(widened, tilt) * light.beam1.w;
     }
     return min(factor, light.row.position_bound.w);
 }
@@ -89,6 +91,35 @@ vec3 interpolated(uint group, uint entry, uint patches, bool curved) {
     return max(sum, vec3(0.0));
 }
 
+// Of an invocation's pixel: which of its group's, row after row or block after block.
+uint entry_of(uint k) {
+    const uint i = k * lanes + gl_LocalInvocationID.x;
+    return blocks != 0 ? splat_block_entry(i / splat_block_pixels, i % splat_block_pixels) : i;
+}
+
+vec3 light_of(PixelLightRow light, Pixel pixel) {
+    LightFactor factor = light_factor(light.row, pixel, true);
+    factor.unshadowed = glossy != 0 ? lobe_factor(light, pixel) : softened_factor(light, pixel);
+    return contribution(light.row, factor, pixel);
+}
+
+// By the list of its block. (A CPU's lanes go through a loop once more than it says, unless it ends at its foot.)
+vec3 light_of_block(uint block, Pixel pixel) {
+    vec3 sum = vec3(0.0);
+    uint words = block_masks[block * splat_block_words];
+    if (words != 0u)
+        do {
+            const uint word = uint(findLSB(words));
+            words &= words - 1u;
+            uint mask = block_masks[block * splat_block_words + 1u + word];
+            do {
+                sum += light_of(lights[word * 32u + uint(findLSB(mask))], pixel);
+                mask &= mask - 1u;
+            } while (mask != 0u);
+        } while (words != 0u);
+    return sum;
+}
+
 void main() {
     const uint group = gl_WorkGroupID.x;
     uint any = 0u;
@@ -99,8 +130,7 @@ void main() {
     Pixel surface[pixels_per_invocation];
     vec3 sum[pixels_per_invocation];
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        const uint entry = group * pixel_group_size + k * lanes + gl_LocalInvocationID.x;
-        const uint packed = pixels[entry];
+        const uint packed = pixels[group * pixel_group_size + entry_of(k)];
         const ivec2 inside = packed == no_pixel ? ivec2(0) : ivec2(packed & 0xffffu, (packed & ~unlit_pixel) >> 16);
         const float depth = texelFetch(depth_image, inside, 0).r;
         const uvec2 normals = texelFetch(normals_image, inside, 0).rg;
@@ -110,20 +140,21 @@ void main() {
         surface[k].on_mover = 0.0;
         sum[k] = vec3(0.0);
     }
-    for (uint word = 0; word < splat_mask_words; ++word) {
+    if (blocks != 0) {
+        [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k)
+            sum[k] = light_of_block(group * splat_blocks + (k * lanes + gl_LocalInvocationID.x) / splat_block_pixels, surface[k]);
+    }
+    for (uint word = 0; blocks == 0 && word < splat_mask_words; ++word) {
         uint mask = lights_of(group, word);
         while (mask != 0u) {
             const PixelLightRow light = lights[word * 32u + uint(findLSB(mask))];
             mask &= mask - 1u;
-            [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-                LightFactor factor = light_factor(light.row, surface[k], true);
-                factor.unshadowed = glossy != 0 ? lobe_factor(light, surface[k]) : softened_factor(light, surface[k]);
-                sum[k] += contribution(light.row, factor, surface[k]);
-            }
+            [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k)
+                sum[k] += light_of(light, surface[k]);
         }
     }
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
-        const uint entry = group * pixel_group_size + k * lanes + gl_LocalInvocationID.x;
+        const uint entry = group * pixel_group_size + entry_of(k);
         const uint packed = pixels[entry];
         const bool lit = (packed & unlit_pixel) == 0u;
         if (nodes != 0 && groups[group].patches + groups[group].points > 0u)

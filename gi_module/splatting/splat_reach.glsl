@@ -8,7 +8,7 @@ struct GroupBounds {
     vec3 normal_low, normal_high;
 };
 
-const float angle_margin = 1e-3; // rad, more than what is lost in acos near 1
+const float cosine_margin = 1e-6; // more than what rounding loses
 
 // The most that a light can give a receiver in a box, W/m2. `along`: greatest part of the way to it along the light's
 // normal; `facing`: the same along the receivers' normals.
@@ -18,17 +18,24 @@ float most_irradiance(PixelLightRow light, vec3 centre, vec3 half_size, float al
     const float squared = dot(gap, gap);
     if (light.lobe.w <= 1.0)
         return peak * softened_term(along, facing, squared, light.extent.x);
-    const float distance = sqrt(squared), to_centre = length(centre), radius = length(half_size);
-    if (distance <= 0.0 || to_centre <= radius)
+    // Along the line to the box's centre, all of the box is farther than `near`.
+    const float distance = sqrt(squared), to_centre = length(centre);
+    const vec3 towards = centre / max(to_centre, 1e-30);
+    const float near = to_centre - dot(abs(towards), half_size);
+    if (near <= 0.0)
         return 1e30; // beside the light
-    // Where lobes widen: the widest of the box for the angle, the narrowest for the peak.
+    // Where lobes widen: the widest of the box for the angle, the narrowest for the peak. Of the norms' ratio (lobe_norm):
+    // of a lobe's flux, all at most and (1 + tilt) / 2 at least is before the light's surface.
     const float exponent = light.lobe.w, tilt = dot(light.lobe.xyz, light.row.normal_offset.xyz);
     const float widest = widened_exponent(exponent, distance, light.extent.x);
-    const float narrowest = widened_exponent(exponent, to_centre + radius, light.extent.x);
-    const float peak_scale = narrowest < exponent ? lobe_norm(narrowest, tilt) / lobe_norm(exponent, tilt) : 1.0;
-    const float angle = acos(clamp(dot(light.lobe.xyz, centre) / to_centre, -1.0, 1.0)) - asin(radius / to_centre) - angle_margin;
-    const float cosine = max(cos(max(angle, 0.0)), 0.0);
-    return peak * peak_scale * pow(cosine, widest) * min(facing / distance, 1.0) / squared;
+    const float narrowest = widened_exponent(exponent, to_centre + length(half_size), light.extent.x);
+    const float peak_scale = narrowest < exponent ? (narrowest + 1.0) / (exponent + 1.0) * 2.0 / (1.0 + max(tilt, 0.0)) : 1.0;
+    // In the plane of the axis and that line: the line's angle to the axis, less the angle that the box reaches towards it.
+    const float sine = length(cross(light.lobe.xyz, towards)), cosine = dot(light.lobe.xyz, towards);
+    const vec3 across = (towards * cosine - light.lobe.xyz) / max(sine, 1e-6);
+    const float reach = dot(abs(across), half_size);
+    const float nearest = sine * near > cosine * reach ? (cosine * near + sine * reach) * inversesqrt(near * near + reach * reach) : 1.0;
+    return peak * peak_scale * pow(clamp(nearest + cosine_margin, 0.0, 1.0), widest) * min(facing / distance, 1.0) / squared;
 }
 
 bool may_reach(PixelLightRow light, GroupBounds bounds) {

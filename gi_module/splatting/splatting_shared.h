@@ -10,6 +10,16 @@ SHARED_BEGIN
 SHARED_CONSTANT uint splats_per_batch = 256u;
 SHARED_CONSTANT uint splat_mask_words = 8u;
 
+// Lobes are narrow: of a group's lights, each block of 4x2 of its pixels has a mask of those that reach it, after a
+// word that says which words of the mask are not empty.
+SHARED_CONSTANT uint splat_blocks = 8u;       // of a group
+SHARED_CONSTANT uint splat_block_pixels = 8u; // as many as a CPU's lanes
+SHARED_CONSTANT uint splat_block_words = splat_mask_words + 1u;
+// A pixel of a block, as an entry of its group.
+SHARED_FUNCTION uint splat_block_entry(uint block, uint pixel) {
+    return (block / 2u * 2u + pixel / 4u) * pixel_group_side + block % 2u * 4u + pixel % 4u;
+}
+
 // Debug views in place of light.
 SHARED_CONSTANT uint show_no_splats = 0u;
 SHARED_CONSTANT uint show_overdraw = 1u;        // lights that are evaluated for a pixel
@@ -108,5 +118,7 @@ static_assert(sizeof(sunfleck::shared::SplattingConstants) == 48);
 static_assert(sizeof(sunfleck::shared::SplatTile) == 112);
 static_assert(sizeof(sunfleck::shared::GroupPatches) == 16 + 48 * sunfleck::shared::group_patches);
 static_assert(sunfleck::shared::splats_per_batch == 32 * sunfleck::shared::splat_mask_words);
+static_assert(sunfleck::shared::splat_blocks * sunfleck::shared::splat_block_pixels ==
+              sunfleck::shared::pixel_group_size);
 #endif
 #endif

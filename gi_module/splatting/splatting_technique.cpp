@@ -1,5 +1,7 @@
 #include "gi_module/splatting/splatting_technique.h"
 
+#include <algorithm>
+
 namespace sunfleck::gpu {
 std::span<const EmbeddedShader> sunfleck_gi_splatting_shaders();
 }
@@ -118,7 +120,10 @@ void SplattingTechnique::find_occlusion(const SceneView& scene, const SplattingS
 }
 
 Status SplattingTechnique::add_passes(gpu::FrameGraph& graph, Services& services, LightTarget& target) {
-    target.bytes_per_group = std::max(target.bytes_per_group, SplatKernel::bytes_per_group);
+    // Lobes that end: beams have no bound.
+    kernel_->set_blocks(std::ranges::any_of(
+        rows_, [](const shared::PixelLightRow& row) { return row.lobe.w > 1.0f && row.extent.y >= 0.0f; }));
+    target.bytes_per_group = std::max(target.bytes_per_group, kernel_->bytes_per_group());
     kernel_->set_show(target.view != nullptr ? target.view->code : shared::show_no_splats);
     kernel_->set_lists(services.settings.of<SplattingSettings>().splat_lists);
     kernel_->set_levels(services.settings.of<SplattingSettings>().splat_levels);

@@ -158,6 +158,7 @@ shared::PixelLightRow make_pixel_light_row(const PixelLight& light, std::uint32_
         set_beam(row, light, norm);
     else if (least > 0.0f)
         set_bound(row, norm, least);
+    row.beam1.w = 1.0f / norm;
     return row;
 }
 

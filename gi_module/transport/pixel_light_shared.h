@@ -147,7 +147,7 @@ struct PixelLightRow {
     vec4 extent; // 96: x: of a lobe its widening reach, of a diffuse light its softness, m; y, z, w: of the
                  //     bound, m: centre on the axis, half axes along and across; centre < 0: unbounded
     vec4 beam0;  // 112: xyz: beam_density's constant; w: 1 / lobe_norm, 0: no beam
-    vec4 beam1;  // 128: linear
+    vec4 beam1;  // 128: xyz: linear; w: 1 / lobe_norm
     vec4 beam2;  // 144: square
 };
 
