@@ -29,9 +29,13 @@ bool is_smooth(PixelLightRow light, vec4 plane, vec4 sphere) {
     return squared + light.extent.x * light.extent.x > far * far && along > sphere.w;
 }
 
-// Over all pieces of a group. Its points get the light of those that are, too.
-bool is_smooth_group(PixelLightRow light, uint group) {
-    bool is = groups[group].patches + groups[group].points > 0u;
+// Over all pieces of a group, and over the pixels of each of its points, which get all the same: for those, a light is
+// far enough away where it is so many times farther than they are apart.
+const float point_reaches = 10.0;
+bool is_smooth_group(PixelLightRow light, uint group, GroupBounds bounds) {
+    const vec3 position = light.row.position_bound.xyz, gap = max(max(bounds.low - position, position - bounds.high), vec3(0.0));
+    const float far = max(constants.near, point_reaches) * groups[group].apart.x;
+    bool is = groups[group].patches + groups[group].points > 0u && dot(gap, gap) + light.extent.x * light.extent.x >= far * far;
     for (uint i = 0; i < groups[group].patches; ++i) {
         // What bends has no one plane to be behind.
         const vec4 plane = groups[group].curved != 0u ? vec4(0.0, 0.0, 0.0, -1e30) : groups[group].plane[i];
@@ -57,7 +61,7 @@ void main() {
             const uint light = uint(findLSB(left)), bit = 1u << light;
             left &= left - 1u;
             const bool reaches = may_reach(lights[first + light], bounds);
-            const bool here = reaches && (level == 0u ? is_smooth_group(lights[first + light], index)
+            const bool here = reaches && (level == 0u ? is_smooth_group(lights[first + light], index, bounds)
                                                       : is_smooth(lights[first + light], tile.plane, tile.sphere));
             finished |= !reaches || here ? bit : 0u;
             at_nodes |= here ? bit : 0u;

@@ -79,15 +79,18 @@ uint lights_of(uint group, uint word) {
 }
 
 // What the nodes of its patch, or its point, give a pixel.
-vec3 interpolated(uint group, uint entry, uint patches, bool curved) {
-    const uint place = places[entry] & ((1u << place_bits) - 1u), first = group * pixel_group_size;
+vec3 interpolated(uint group, uint entry) {
+    const uint place = places[entry] & ((1u << place_bits) - 1u), first = group * pixel_group_size, nodes_each = groups[group].nodes;
     if (place >= group_patches)
-        return point_light[first + patches * tile_nodes + place - group_patches].rgb;
+        return point_light[first + groups[group].patches * nodes_each + place - group_patches].rgb;
     const uvec2 own = uvec2(entry % pixel_group_side, entry % pixel_group_size / pixel_group_side);
-    const vec2 at = curved ? vec2(own) / 3.5 - 1.0 : (vec2(own) + 0.5) * (2.0 / float(pixel_group_side)) - 1.0;
+    const vec2 at = groups[group].curved != 0u ? vec2(own) / 3.5 - 1.0 : (vec2(own) + 0.5) * (2.0 / float(pixel_group_side)) - 1.0;
     vec3 sum = vec3(0.0);
-    [[unroll]] for (uint node = 0; node < tile_nodes; ++node)
-        sum += node_weight(node, at) * point_light[first + place * tile_nodes + node].rgb;
+    [[unroll]] for (uint node = 0; node < tile_nodes; ++node) {
+        const float weight = nodes_each == tile_nodes ? node_weight(node, at) : node < corner_nodes ? corner_weight(node, at) : 0.0;
+        if (node < nodes_each)
+            sum += weight * point_light[first + place * nodes_each + node].rgb;
+    }
     return max(sum, vec3(0.0));
 }
 
@@ -158,7 +161,7 @@ void main() {
         const uint packed = pixels[entry];
         const bool lit = (packed & unlit_pixel) == 0u;
         if (nodes != 0 && groups[group].patches + groups[group].points > 0u)
-            sum[k] += interpolated(group, entry, groups[group].patches, groups[group].curved != 0u);
+            sum[k] += interpolated(group, entry);
         const vec4 total = sums[entry] + vec4(lit ? sum[k] : vec3(0.0), 0.0);
         if (to_image == 0) {
             sums[entry] = total;

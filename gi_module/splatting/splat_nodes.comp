@@ -71,13 +71,15 @@ Pixel on_bend(uint group, uint node) {
                  normalize(a.geometric_normal + b.geometric_normal), 0.0);
 }
 
-Pixel of_wave(uint group, uint wave, uint lane, uvec2 place) {
-    const uint patches = groups[group].patches;
-    if (wave < patches)
-        return groups[group].curved != 0u ? on_bend(group, lane)
-                                          : on_plane(groups[group].plane[wave], groups[group].geometric[wave], place, lane);
-    const uint point = min((wave - patches) * tile_nodes + lane, groups[group].points - 1u);
-    return pixel_at(pixels[group * pixel_group_size + (places[group * pixel_group_size + point] >> place_bits)]);
+// A node of a patch, or a point.
+Pixel of_slot(uint group, uint slot, uvec2 place) {
+    const uint nodes = groups[group].nodes, all = groups[group].patches * nodes;
+    slot = min(slot, all + groups[group].points - 1u);
+    if (slot < all)
+        return groups[group].curved != 0u
+                   ? on_bend(group, slot)
+                   : on_plane(groups[group].plane[slot / nodes], groups[group].geometric[slot / nodes], place, slot % nodes);
+    return pixel_at(pixels[group * pixel_group_size + (places[group * pixel_group_size + slot - all] >> place_bits)]);
 }
 
 vec3 light_at(Pixel surface, uint tile) {
@@ -105,11 +107,11 @@ void main() {
     const uvec2 place = tile_place(constants.level, index);
     const uint own = tile_at(constants.level, place);
     if (of_groups != 0) {
-        const uint waves = groups[own].patches + (groups[own].points + tile_nodes - 1u) / tile_nodes;
+        const uint waves = waves_of(groups[own].patches, groups[own].nodes, groups[own].points);
         const bool in_tile = tiles[own].sphere.w >= 0.0; // and in the larger one
         for (uint wave = 0; wave < waves; ++wave) {
             const uint point = own * pixel_group_size + wave * tile_nodes + node;
-            vec3 sum = light_at(of_wave(own, wave, node, place), own) * share(float(waves * tile_nodes));
+            vec3 sum = light_at(of_slot(own, wave * tile_nodes + node, place), own) * share(float(waves * tile_nodes));
             sum += in_tile ? from_above(place, node) : vec3(0.0);
             point_light[point] = vec4(sum + (constants.first != 0u ? vec3(0.0) : point_light[point].rgb), 0.0);
         }

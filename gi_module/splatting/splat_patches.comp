@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // What each pixel group shows, as a tile of level 0 (splat_tiles.comp makes the others): boxes around its pixels, the flat
-// pieces of surface among them, and the pixels that belong to none.
+// pieces of surface among them, and points for the pixels that belong to none, which share one where they are alike.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "gi_module/splatting/splatting_shared.h"
@@ -17,8 +17,9 @@ layout(set = 0, binding = 6) buffer Places { uint places[]; };
 layout(push_constant) uniform Constants { SplattingConstants constants; };
 #include "gi_module/splatting/splat_tile.glsl"
 
-// A piece is worth its nodes from so many pixels on. Seeds that are tried; what is left then is points.
-const uint least_pixels = tile_nodes + 1u, most_seeds = 12u;
+// A piece is worth its nodes from so many pixels on: fewer are a few points. Seeds that are tried; what is left then is
+// points.
+const uint least_pixels = 24u, most_seeds = 12u;
 // Of a surface that bends: differences from what its nodes interpolate to, as flat_normals and flat_positions.
 const float bent_normals = 2.5e-3, bent_positions = 0.03;
 
@@ -79,6 +80,53 @@ bool is_bent(uint first_entry, float size) {
     return fits;
 }
 
+// Pixels that share a point: how far their normals differ (squared length), and how far apart they are, in widths of a
+// pixel there.
+const float alike_normals = 1e-2, alike_widths = 5.0;
+
+float pixel_width(uint packed, vec3 position) {
+    const vec2 pixel = vec2(packed & 0xffffu, packed >> 16) + 0.5;
+    const vec3 ray = camera_ray(camera, pixel), next = camera_ray(camera, pixel + vec2(float(constants.scale), 0.0));
+    return distance(ray, next) * distance(position, camera.position.xyz) / length(ray);
+}
+
+// Of a set, the pixels that share a point with the first.
+uvec2 like_first(uint first_entry, uvec2 set, inout float apart) {
+    const uint first = first_of(set);
+    const Shown seed = shown_at(pixels[first_entry + first]);
+    const float most = alike_widths * pixel_width(pixels[first_entry + first], seed.position);
+    uvec2 found = bit_of(first);
+    for (uint k = first + 1u; k < pixel_group_size; ++k) {
+        if (!has(set, k))
+            continue;
+        const Shown other = shown_at(pixels[first_entry + k]);
+        const vec3 turn = other.normal - seed.normal, away = other.position - seed.position;
+        if (dot(turn, turn) > alike_normals || dot(away, away) > most * most)
+            continue;
+        found |= bit_of(k);
+        apart = max(apart, length(away));
+    }
+    return found;
+}
+
+// The pixel of a set that is nearest to its middle.
+uint middle_of(uvec2 set) {
+    vec2 sum = vec2(0.0);
+    for (uint i = 0; i < pixel_group_size; ++i)
+        sum += has(set, i) ? vec2(i % 8u, i / 8u) : vec2(0.0);
+    sum /= float(count_of(set));
+    uint middle = 0u;
+    float least = 1e30;
+    for (uint i = 0; i < pixel_group_size; ++i) {
+        const vec2 away = vec2(i % 8u, i / 8u) - sum;
+        if (has(set, i) && dot(away, away) < least) {
+            least = dot(away, away);
+            middle = i;
+        }
+    }
+    return middle;
+}
+
 void add_patch(inout GroupPatches group, Shown seed, vec4 sphere) {
     group.plane[group.patches] = vec4(seed.normal, dot(seed.normal, seed.position));
     group.geometric[group.patches] = vec4(seed.geometric, 0.0);
@@ -115,10 +163,12 @@ void divide(inout GroupPatches group, uint first_entry, uvec2 lit, SplatTile til
         left = uvec2(0u);
     }
     for (; (left.x | left.y) != 0u; ++group.points) {
-        const uint i = first_of(left);
-        left &= ~bit_of(i);
-        places[first_entry + i] |= group_patches + group.points;
-        places[first_entry + group.points] |= i << place_bits;
+        const uvec2 found = like_first(first_entry, left, group.apart.x);
+        for (uint k = 0; k < pixel_group_size; ++k)
+            if (has(found, k))
+                places[first_entry + k] |= group_patches + group.points;
+        places[first_entry + group.points] |= middle_of(found) << place_bits;
+        left &= ~found;
     }
 }
 
@@ -142,9 +192,11 @@ void main() {
         tile.normal_high = max(tile.normal_high, vec4(shown.normal, 0.0));
     }
     GroupPatches group;
-    group.patches = group.points = group.curved = group.spare = 0u;
+    group.patches = group.points = group.curved = 0u;
+    group.apart = vec4(0.0);
     divide(group, first_entry, lit, tile, tile_place(0u, index));
-    if (group.patches + (group.points + 7u) / 8u > group_waves)
+    group.nodes = group.patches == 1u && group.points == 0u ? tile_nodes : corner_nodes;
+    if (waves_of(group.patches, group.nodes, group.points) > group_waves)
         group.patches = group.points = 0u;
     if (group.patches == 1u && group.points == 0u && group.curved == 0u) {
         tile.plane = group.plane[0];

@@ -53,23 +53,26 @@ struct SplattingConstants {
 // The low-resolution picture is divided into tiles of 8 pixels a side (level 0: its pixel groups), of 16, 32 and 64. A
 // light that is smooth over a flat tile is evaluated at eight nodes of the tile, its corners and the middles of its
 // sides, and interpolated in between; each light at the largest tile for which that holds. A group with several flat
-// pieces has nodes for each, and points for the pixels that belong to none: GroupPatches.
+// pieces has corners for each, and points for the pixels that belong to none, which pixels that are alike share:
+// GroupPatches.
 SHARED_CONSTANT uint tile_levels = 4u;
 SHARED_CONSTANT uint tile_nodes = 8u;
+SHARED_CONSTANT uint corner_nodes = 4u; // the first of those
 SHARED_CONSTANT uint group_patches = 4u;
 SHARED_CONSTANT uint group_waves = 7u; // of eight nodes or points; what takes more is cheaper pixel by pixel
 
 struct GroupPatches {
-    uint patches; // with nodes each
-    uint points;  // single pixels, after them
-    uint curved;  // 1: the only patch bends, and has its nodes at pixels
-    uint spare;
+    uint patches;                  // with nodes each
+    uint points;                   // pixels, after them
+    uint curved;                   // 1: the only patch bends, and has its nodes at pixels
+    uint nodes;                    // of each patch: tile_nodes, or corner_nodes where the group is in pieces
+    vec4 apart;                    // x: of the pixels of a point, how far from the first, m
     vec4 plane[group_patches];     // xyz: normal, w: its product with points on the plane
     vec4 geometric[group_patches]; // xyz: normal of the mesh
     vec4 sphere[group_patches];    // about the group's part of the plane
 };
-// Of an entry of a group: the patch that its pixel belongs to, or group_patches + number of its point. And the pixel of
-// the entry's point: points are entries 0, 1, ... of a group.
+// Of an entry of a group: the patch that its pixel belongs to, or group_patches + number of its point. And the pixel
+// that the entry's point lies at: points are entries 0, 1, ... of a group.
 SHARED_CONSTANT uint place_bits = 8u;
 
 struct SplatTile { // positions and normals of its lit pixels
@@ -111,12 +114,21 @@ SHARED_FUNCTION float node_weight(uint node, vec2 place) {
     return node < 6u ? 0.5f * (1.0f + along.x) * (1.0f - place.y * place.y)
                      : 0.5f * (1.0f + along.y) * (1.0f - place.x * place.x);
 }
+// The same with the corners alone, bilinearly.
+SHARED_FUNCTION float corner_weight(uint node, vec2 place) {
+    vec2 along = place * node_place(node);
+    return 0.25f * (1.0f + along.x) * (1.0f + along.y);
+}
+// Of a group, how often eight invocations evaluate a light at its nodes and points.
+SHARED_FUNCTION uint waves_of(uint patches, uint nodes, uint points) {
+    return (patches * nodes + points + tile_nodes - 1u) / tile_nodes;
+}
 
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::SplattingConstants) == 48);
 static_assert(sizeof(sunfleck::shared::SplatTile) == 112);
-static_assert(sizeof(sunfleck::shared::GroupPatches) == 16 + 48 * sunfleck::shared::group_patches);
+static_assert(sizeof(sunfleck::shared::GroupPatches) == 32 + 48 * sunfleck::shared::group_patches);
 static_assert(sunfleck::shared::splats_per_batch == 32 * sunfleck::shared::splat_mask_words);
 static_assert(sunfleck::shared::splat_blocks * sunfleck::shared::splat_block_pixels ==
               sunfleck::shared::pixel_group_size);
