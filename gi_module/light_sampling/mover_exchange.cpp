@@ -39,21 +39,26 @@ std::vector<MoverReflections::Exchange> MoverReflections::exchanged_by(const Mov
     return result;
 }
 
-void MoverReflections::exchange(const MoverLight& own, float far, const raytrace::RayScene& rays) {
-    struct Receiver {
-        Mover* mover;
-        Place* place;
-        vec3 reflected{0.0f};     // W for 1 W/m2
-        std::vector<float> light; // by exchanged sample: W/m2 for 1 W
-    };
-    std::vector<Receiver> receivers;
+// A place on a mover that blocks paths.
+struct MoverReflections::Receiver {
+    Mover* mover = nullptr;
+    Place* place = nullptr;
+    vec3 reflected{0.0f};     // W for 1 W/m2
+    std::vector<float> light; // by exchanged sample: W/m2 for 1 W
+};
+
+std::vector<MoverReflections::Receiver> MoverReflections::receivers(const MoverLight& own) {
+    std::vector<Receiver> result;
     for (Mover& mover : movers_)
         if (own.ends_paths(mover.entity))
             for (Place& place : mover.places)
-                receivers.push_back({&mover, &place, vec3(0.0f), {}});
-    if (receivers.empty() || settings_.bounces < 2)
-        return;
-    const std::vector<Exchange> exchanged = exchanged_by(own);
+                result.push_back({&mover, &place, vec3(0.0f), {}});
+    return result;
+}
+
+// How much of each sample's light arrives at each place.
+void MoverReflections::receive(std::vector<Receiver>& receivers, const std::vector<Exchange>& exchanged, float far,
+                               const raytrace::RayScene& rays) {
     std::vector<IncomingLight> light;
     light.reserve(exchanged.size());
     for (const Exchange& one : exchanged)
@@ -72,11 +77,19 @@ void MoverReflections::exchange(const MoverLight& own, float far, const raytrace
                    [&](std::size_t k, vec3 e) { to.light[k] = e.x; });
         }
     });
+}
+
+void MoverReflections::exchange(const MoverLight& own, float far, const raytrace::RayScene& rays) {
+    std::vector<Receiver> all = receivers(own);
+    if (all.empty() || settings_.bounces < 2)
+        return;
+    const std::vector<Exchange> exchanged = exchanged_by(own);
+    receive(all, exchanged, far, rays);
     std::vector<vec3> arriving(exchanged.size());
     for (std::size_t b = 1; b < std::min<std::size_t>(settings_.bounces, bounce_count); ++b) {
         for (std::size_t k = 0; k < exchanged.size(); ++k)
             arriving[k] = exchanged_flux(exchanged[k], b);
-        for (Receiver& to : receivers)
+        for (Receiver& to : all)
             for (std::size_t k = 0; k < exchanged.size(); ++k) {
                 const vec3 flux = to.reflected * (to.light[k] * arriving[k]);
                 to.place->flux[b] += flux;

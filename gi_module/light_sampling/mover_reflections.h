@@ -95,7 +95,11 @@ private:
     void sum_flux(Mover& mover);
     void share_flux(Mover& mover, const MoverLight& own); // from places to all of its samples
     struct Exchange;
+    struct Receiver;
     std::vector<Exchange> exchanged_by(const MoverLight& own) const;
+    std::vector<Receiver> receivers(const MoverLight& own);
+    static void receive(std::vector<Receiver>& receivers, const std::vector<Exchange>& exchanged, float far,
+                        const raytrace::RayScene& rays);
     vec3 exchanged_flux(const Exchange& one, std::size_t bounces) const;
     void exchange(const MoverLight& own, float far, const raytrace::RayScene& rays);
     // `lit`: what arrives, or stands in the way, may be other than before.

@@ -7,6 +7,7 @@
 #include "gi_module/transport/light_plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sunfleck::gi {
 namespace {
@@ -255,10 +256,32 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
         return IncomingLight{make_light_row(one, 0, bound_of(one, settings), bounds), light_class(one.kind)};
     };
     followed_.movers.update(incoming, own, 4.0f * glm::length(bounds.extent()), scene.changes, scene.rays);
-    for (std::uint32_t k = 0; k < followed_.movers.samples().size(); ++k) {
-        LightSample now = followed_.movers.samples()[k];
-        now.flux /= let_through(now, k);
-        take_over(std::uint32_t(first) + k, now, followed_.movers.moved()[k] != 0);
+    take_over_movers(scene.rays, settings);
+}
+
+// A path's sample stands for a disc of surface (clamping.h) that is the larger the more light it carries: few paths
+// differ much, and no wall is brighter near one of them than near the others.
+void SampleSet::take_over_movers(const raytrace::RayScene& rays, const LightSettings& settings) {
+    const std::uint32_t first = std::uint32_t(followed_.lights.samples().size());
+    const std::vector<LightSample>& samples = followed_.movers.samples();
+    float sum = 0.0f, paths = 0.0f;
+    for (const LightSample& sample : samples)
+        if (!sample.on_mover) {
+            sum += luminance(sample.flux);
+            paths += 1.0f;
+        }
+    followed_.discs.resize(samples.size());
+    for (std::uint32_t k = 0; k < samples.size(); ++k) {
+        LightSample now = samples[k];
+        const bool moved = followed_.movers.moved()[k] != 0;
+        if (!now.on_mover && sum > 0.0f)
+            now.radius = std::sqrt(settings.clamp_scale * luminance(now.flux) * paths / (sum * dynamic_bound_));
+        const float bound = bound_of(now, settings);
+        Followed::Disc& disc = followed_.discs[k];
+        if (moved || disc.let_through == 0.0f || disc.bound != bound)
+            disc = {bound, let_through_of(now, bound, rays)};
+        now.flux /= disc.let_through;
+        take_over(first + k, now, moved);
     }
 }
 

@@ -109,6 +109,7 @@ private:
     void take_over(std::uint32_t follower, const LightSample& now, bool moved);
     void follow_dynamic_lights(const raytrace::RayScene& rays);
     void follow_movers(const SceneView& scene, const LightSettings& settings);
+    void take_over_movers(const raytrace::RayScene& rays, const LightSettings& settings);
     void find_let_through(const raytrace::RayScene& rays, const LightSettings& settings);
     void limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
@@ -129,6 +130,10 @@ private:
         // By sample of `lights`, then of `movers`: what its bound lets through; 0: not known. The rest is given back.
         std::vector<float> let_through;
         float let_through_bound = 0.0f;
+        struct Disc {
+            float bound = 0.0f, let_through = 0.0f;
+        };
+        std::vector<Disc> discs; // by sample of `movers`: the bound of its disc, and what that lets through
     };
     Followed followed_, followed_before_; // before: the last update
     BlockedPaths blocked_paths_;

@@ -131,7 +131,7 @@ TEST_P(MoverReflects, AsMuchAsThePathTracerFinds) {
     const std::uint32_t seeds = by_size(4u, 1u);
     const std::unique_ptr<GpuWorld> world = make_world(width);
     gi::Settings settings;
-    settings.mover_share = 0.1f;
+    settings.mover_share = 0.2f; // half of it, and the worst block is off by up to 0.13
     settings.map_budget = 65536; // the mover is somewhere else at each step
     std::vector<ReflectionErrors> errors(seeds);
     for (std::uint32_t step = 0; step < steps; ++step) {
