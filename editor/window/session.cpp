@@ -69,6 +69,8 @@ void Session::take(std::shared_ptr<Document> opened) {
     solo.reset();
     locked.clear();
     reloading_.reset();
+    if (profiling) // else they are kept to be looked at
+        frames.clear();
     if (cost != nullptr)
         cost->stop();
     own_ = FollowedFile(document->path(), FileContent::of(*document));

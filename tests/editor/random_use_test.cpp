@@ -177,6 +177,21 @@ protected:
             ASSERT_TRUE(editor->appears("viewport/Play"));
         }
     }
+    // A panel's first widgets, wherever it was scrolled to.
+    void show_from_the_top(const std::string& panel) const {
+        if (editor->find("tab " + panel))
+            static_cast<void>(editor->click("tab " + panel));
+        ASSERT_TRUE(editor->catch_up());
+        std::string prefix = panel + "/";
+        prefix[0] = char(std::tolower(prefix[0]));
+        for (const Widget& one : editor->widgets())
+            if (one.name.starts_with(prefix)) {
+                editor->point_at(one);
+                editor->run("xdotool click --repeat 30 --delay 5 4"); // the wheel, upwards
+                break;
+            }
+        ASSERT_TRUE(editor->catch_up());
+    }
     // As at the start: the scene alone, as large and in the view that it has by itself, whose memory can be compared.
     void show_the_scene_alone() const {
         ASSERT_NO_FATAL_FAILURE(menu("View", "Usual panel sizes"));
@@ -185,11 +200,19 @@ protected:
                 static_cast<void>(editor->click(name));
             return editor->catch_up();
         };
-        for (const char* name : {"tab Compare", "compare/Scene", "compare/Nothing", "tab Views", "views/Final"})
-            ASSERT_TRUE(press(name));
+        ASSERT_NO_FATAL_FAILURE(show_from_the_top("Compare"));
+        ASSERT_TRUE(press("compare/Scene"));
+        ASSERT_TRUE(press("compare/Nothing"));
+        ASSERT_NO_FATAL_FAILURE(show_from_the_top("Profile"));
+        ASSERT_TRUE(press("profile/Go on"));
+        ASSERT_NO_FATAL_FAILURE(show_from_the_top("Views"));
+        // Memory is compared in the long size alone.
+        ASSERT_TRUE(editor->find("views/Final").has_value() || tests::by_size(true, false));
+        ASSERT_TRUE(press("views/Final"));
         for (const Widget& one : editor->widgets()) {
             const bool overlay = one.name.starts_with("views/") && one.name.find('/', 6) == one.name.npos;
-            if (overlay && one.value == "on") {
+            const bool unusual = one.name.starts_with("views/") && one.name.ends_with("/reset");
+            if (unusual || (overlay && one.value == "on")) {
                 ASSERT_TRUE(press(one.name));
             }
         }
