@@ -3,7 +3,7 @@
 
 Usage: memory.py BUILD_FOLDER [FRAMES]     default: 20,000 frames of 64x36 pixels, of the demo and of the tool, and of
 32x32 of a host
-       memory.py BUILD_FOLDER share        600 frames of demo and tool in a small scene: part of every test run
+       memory.py BUILD_FOLDER share        1,500 frames of demo and tool in a small scene: part of every test run
 Resident memory may grow by less than 1 MiB in the last half: the least of the run's last tenth is compared with the
 least of the first tenth of that half, since what frames in flight hold comes and goes.
 Allocated bytes, as counted by count_allocations.c, may grow by none. The demo's balls never lie as before, so that the
@@ -114,7 +114,7 @@ def check_the_measure():
         assert results.count(wanted) >= 35, (bytes_a_frame, spread, results)
 
 
-SHARE_FRAMES = 600
+SHARE_FRAMES = 1500
 RESIDENT = 8 << 20, 1 << 20  # bytes: of short and of long runs
 
 
