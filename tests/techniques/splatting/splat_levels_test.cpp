@@ -4,6 +4,7 @@
 #include "gi_module/splatting/splatting_shared.h"
 #include "tests/support/gpu_world.h"
 #include "tests/support/techniques.h"
+#include "tests/techniques/splatting/evaluations.h"
 
 #include <cstdio>
 #include <utility>
@@ -55,14 +56,6 @@ protected:
     static void size(GpuWorld& world, std::uint32_t width, std::uint32_t height) {
         world.request.width = width;
         world.request.height = height;
-    }
-    static double evaluations(GpuWorld& world) {
-        world.request.lighting_view = "overdraw";
-        double sum = 0.0;
-        for (const vec4& pixel : world.picture().pixels)
-            sum += double(pixel.x) * double(shared::most_overdraw);
-        world.request.lighting_view.clear();
-        return sum;
     }
     static double error(GpuWorld& world, const gi::Settings& by_levels, const gi::Settings& every_pixel) {
         world.set(every_pixel);

@@ -5,6 +5,7 @@
 #include "tests/support/summed_pixel_lights.h"
 #include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
+#include "tests/techniques/splatting/evaluations.h"
 
 #include <cmath>
 #include <limits>
@@ -169,14 +170,6 @@ protected:
         gi::Settings settings = alone(0).with("glossy_splats", "256").with("splat_footprints", "off");
         return settings.with("splat_cutoff", cutoff).with("splat_pattern", "fixed");
     }
-    double evaluations() {
-        world.request.lighting_view = "overdraw";
-        double sum = 0.0;
-        for (const vec4& pixel : world.picture().pixels)
-            sum += double(pixel.x) * double(shared::most_overdraw);
-        world.request.lighting_view.clear();
-        return sum;
-    }
 
     GpuWorld world{assets::make_arena, "bench_1"};
 };
@@ -191,7 +184,7 @@ TEST_F(SplatLobes, AreLeftOutOfBlocksOfPixelsWhereTheyAreFaint) {
         const std::span<const gi::PixelLight> shown = lights(world).lights();
         const float least = 0.05f * lights(world).mean_irradiance();
         EXPECT_GE(share_that_keeps(picture, summed_light(world, shown, gi::splat_clamp_scale, least)), 0.98);
-        const double above = pairs_above(world, shown, gi::splat_clamp_scale, least), done = evaluations();
+        const double above = pairs_above(world, shown, gi::splat_clamp_scale, least), done = evaluations(world);
         std::printf("exponent %g: %.2f evaluations for each above the threshold\n", double(exponent), done / above);
         EXPECT_LT(done, most * above);
         EXPECT_GE(done, 0.99 * above);
