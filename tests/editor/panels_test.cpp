@@ -149,6 +149,15 @@ TEST_F(EditorPanels, TheProfileIsSavedBesideWhatWasSavedBefore) {
     std::filesystem::current_path(before);
 }
 
+TEST_F(EditorPanels, TheProfileBeginsAnewWithAnotherSceneUnlessItIsPaused) {
+    for (const bool paused : {true, false}) {
+        session_.profiling = !paused;
+        session_.frames.push_back({1, {}});
+        session_.take(std::make_shared<Document>());
+        EXPECT_EQ(session_.frames.empty(), !paused);
+    }
+}
+
 TEST_F(EditorPanels, TheProfileHasItsMedianAndABudgetInRange) {
     for (std::uint64_t number = 1; number <= 20; ++number) {
         session_.frames.push_back({number, {}});
