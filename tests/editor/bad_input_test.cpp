@@ -253,7 +253,7 @@ TEST_F(EditorWindowBadInput, AWindowOfNoSizeAndADeletionInTheMiddleOfADrag) {
     EXPECT_TRUE(editor->wait_for("menu/title", "cornell.scene.json")) << "all is undone";
     editor->resize(1, 1);
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
-    editor->run("xdotool windowminimize " + editor->window());
+    ASSERT_TRUE(editor->minimise());
     std::this_thread::sleep_for(std::chrono::milliseconds(400));
     editor->run("xdotool windowmap " + editor->window());
     editor->resize(900, 600);

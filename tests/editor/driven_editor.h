@@ -204,6 +204,7 @@ public:
     // As xdotool names it.
     const std::string& window() const { return window_; }
     bool focus() const { return display_.focus(window_); }
+    bool minimise() const { return display_.minimise(window_); }
     // It has not ended by itself.
     bool runs() const {
         siginfo_t info{};

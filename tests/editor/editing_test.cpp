@@ -228,7 +228,7 @@ TEST_F(EditorWindowEditing, AGestureThatIsGivenUpLeavesNothing) {
             if (by_escape)
                 editor->key("Escape");
             else
-                editor->run("xdotool windowminimize " + editor->window() + " sleep 0.5");
+                ASSERT_TRUE(editor->minimise());
             editor->run("xdotool mouseup 1");
             ASSERT_TRUE(editor->focus());
             ASSERT_TRUE(editor->catch_up());

@@ -122,6 +122,7 @@ public:
     tests::Outcome run(const std::string& command) const { return display_.run(command); }
     const std::string& window() const { return window_; }
     bool focus() const { return display_.focus(window_); }
+    bool minimise() const { return display_.minimise(window_); }
     std::string log() const {
         const auto text = read_file(folder_ / "log");
         return text ? *text : std::string();
@@ -187,7 +188,7 @@ void walk_to_the_corner(const DrivenGame& game) {
 void pause_and_lose_focus(const DrivenGame& game) {
     ASSERT_TRUE(game.press_until("Escape", [&] { return game.value("screen") == "paused"; }));
     ASSERT_TRUE(game.press_until("Return", [&] { return game.value("screen") == "playing"; }));
-    game.run("xdotool windowminimize " + game.window());
+    ASSERT_TRUE(game.minimise());
     EXPECT_TRUE(game.shows("paused"));
     ASSERT_TRUE(game.focus()) << game.state();
     const auto steps = game.state().value("steps", std::uint64_t(0));
