@@ -2,7 +2,6 @@
 // its way comes from light that was reflected less, so that one pass in the order of b finds all of it.
 #include "engine/core/jobs.h"
 #include "gi_module/light_sampling/mover_reflections.h"
-#include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
 
@@ -43,16 +42,19 @@ std::vector<MoverReflections::Exchange> MoverReflections::exchanged_by(const Mov
 struct MoverReflections::Receiver {
     Mover* mover = nullptr;
     Place* place = nullptr;
+    PlaceNow now;
     vec3 reflected{0.0f};     // W for 1 W/m2
     std::vector<float> light; // by exchanged sample: W/m2 for 1 W
 };
 
-std::vector<MoverReflections::Receiver> MoverReflections::receivers(const MoverLight& own) {
+std::vector<MoverReflections::Receiver> MoverReflections::receivers(const MoverLight& own,
+                                                                    const raytrace::RayScene& rays) {
     std::vector<Receiver> result;
     for (Mover& mover : movers_)
         if (own.ends_paths(mover.entity))
             for (Place& place : mover.places)
-                result.push_back({&mover, &place, vec3(0.0f), {}});
+                if (const auto now = place_now(mover.entity, place.where, rays))
+                    result.push_back({&mover, &place, *now, place.area * now->reflectance, {}});
     return result;
 }
 
@@ -63,24 +65,21 @@ void MoverReflections::receive(std::vector<Receiver>& receivers, const std::vect
     light.reserve(exchanged.size());
     for (const Exchange& one : exchanged)
         light.push_back(one.light);
+    Bounds bounds;
+    for (const Receiver& to : receivers)
+        bounds.add(to.now.point);
+    const LightAtPoints arriving(light, bounds, far, rays);
     parallel_for_chunks(receivers.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Receiver& to = receivers[i];
-            const SurfacePlace& where = to.place->where;
             to.light.assign(exchanged.size(), 0.0f);
-            const auto point = rays.surface_on(to.mover->entity, where.triangle, where.u, where.v);
-            if (!point)
-                continue;
-            const vec3 normal = where.side * point->geometric_normal;
-            to.reflected = to.place->area * mean_reflectance(point->material);
-            gather(point->on_triangle + point->offset * normal, normal, light, far, rays,
-                   [&](std::size_t k, vec3 e) { to.light[k] = e.x; });
+            arriving.gather(to.now.point, to.now.normal, [&](std::size_t k, vec3 e) { to.light[k] += e.x; });
         }
     });
 }
 
 void MoverReflections::exchange(const MoverLight& own, float far, const raytrace::RayScene& rays) {
-    std::vector<Receiver> all = receivers(own);
+    std::vector<Receiver> all = receivers(own, rays);
     if (all.empty() || settings_.bounces < 2)
         return;
     const std::vector<Exchange> exchanged = exchanged_by(own);

@@ -4,6 +4,7 @@
 #include "engine/scene/mesh_detail.h"
 #include "gi_module/light_sampling/emitters.h"
 #include "gi_module/light_sampling/sample_clusters.h"
+#include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,23 +52,6 @@ struct Candidates {
     std::vector<LightSample> samples; // of the same places, each with its share of the area as flux; index: its own
 };
 
-// Whether the mover itself hides a place from all else, as where one of its parts stands in another. By eight rays.
-bool is_hidden(const scene::Drawable& drawable, const SurfacePlace& place, const raytrace::RayScene& rays) {
-    const auto point = rays.surface_on(drawable.entity, place.triangle, place.u, place.v);
-    if (!point)
-        return false;
-    const vec3 normal = place.side * point->geometric_normal;
-    constexpr float numbers[] = {0.0f, 0.5f, 0.25f, 0.75f, 0.125f, 0.625f, 0.375f, 0.875f};
-    for (std::size_t i = 0; i < std::size(numbers); ++i) {
-        const vec3 direction = sample_cosine_direction(normal, (float(i) + 0.5f) / 8.0f, numbers[i]);
-        const raytrace::Ray ray{point->on_triangle + point->offset * normal, direction};
-        const auto hit = rays.closest_hit(ray);
-        if (!hit || rays.surface(ray, *hit).entity != drawable.entity)
-            return false;
-    }
-    return true;
-}
-
 SurfacePlace place_at(const std::vector<double>& cumulative, const RandomSequence& random, bool both_sides) {
     // The first number picks a triangle by area; the remainder is uniform again and picks the point.
     const double target = double(random.at(0)) * cumulative.back();
@@ -95,7 +79,8 @@ Candidates draw(const scene::Drawable& drawable, const scene::Mesh& mesh, const 
     const bool closed = scene::is_closed(mesh);
     for (std::uint32_t i = 0; i < count; ++i) {
         const SurfacePlace place = place_at(cumulative, {SequenceKind::sobol, seed, i}, !closed);
-        if (is_hidden(drawable, place, rays))
+        const auto now = place_now(drawable.entity, place, rays);
+        if (now && hidden_share(drawable.entity, *now, rays) == 1.0f) // as where one of its parts stands in another
             continue;
         const Corners corners = corners_of(mesh, shape, place.triangle);
         LightSample sample;
@@ -117,6 +102,26 @@ float distance(const LightSample& a, const LightSample& b) {
 }
 
 } // namespace
+
+std::optional<PlaceNow> place_now(ecs::Entity mover, const SurfacePlace& place, const raytrace::RayScene& rays) {
+    const auto point = rays.surface_on(mover, place.triangle, place.u, place.v);
+    if (!point)
+        return std::nullopt;
+    const vec3 normal = place.side * point->geometric_normal;
+    return PlaceNow{point->on_triangle + point->offset * normal, normal, mean_reflectance(point->material)};
+}
+
+float hidden_share(ecs::Entity mover, const PlaceNow& place, const raytrace::RayScene& rays) {
+    constexpr float numbers[] = {0.0f, 0.5f, 0.25f, 0.75f, 0.125f, 0.625f, 0.375f, 0.875f};
+    float hidden = 0.0f;
+    for (std::size_t i = 0; i < std::size(numbers); ++i) {
+        const vec3 direction = sample_cosine_direction(place.normal, (float(i) + 0.5f) / 8.0f, numbers[i]);
+        const raytrace::Ray ray{place.point, direction};
+        const auto hit = rays.closest_hit(ray);
+        hidden += hit && rays.surface(ray, *hit).entity == mover ? 1.0f / 8.0f : 0.0f;
+    }
+    return hidden;
+}
 
 double surface_area(const scene::Mesh& mesh, const mat4& matrix) {
     const mat3 shape = shape_of(matrix);

@@ -3,6 +3,7 @@
 
 #include "engine/raytrace/ray_scene.h"
 
+#include <optional>
 #include <vector>
 
 namespace sunfleck::gi {
@@ -18,6 +19,17 @@ struct SurfacePart {
     std::vector<SurfacePlace> places;
     float area = 0.0f; // of the part
 };
+
+// A place in the scene as it is now. Where the mover is gone, there is none.
+struct PlaceNow {
+    vec3 point{0.0f}; // off the surface, where rays start
+    vec3 normal{0.0f};
+    vec3 reflectance{0.0f};
+};
+std::optional<PlaceNow> place_now(ecs::Entity mover, const SurfacePlace& place, const raytrace::RayScene& rays);
+
+// Of the light that leaves a place by Lambert's law: the share that meets the mover itself first, by eight rays.
+float hidden_share(ecs::Entity mover, const PlaceNow& place, const raytrace::RayScene& rays);
 
 // Of all triangles, m2, one side.
 double surface_area(const scene::Mesh& mesh, const mat4& matrix);

@@ -5,7 +5,6 @@
 #include "engine/core/jobs.h"
 #include "gi_module/light_sampling/light_sampler.h"
 #include "gi_module/light_sampling/mover_places.h"
-#include "gi_module/transport/arrival.h"
 #include "gi_module/transport/reflectance.h"
 
 #include <algorithm>
@@ -18,6 +17,13 @@ constexpr std::uint32_t follow_frames = 5;           // within which all samples
 constexpr std::uint32_t max_resampled_per_mover = 4; // per mover and frame
 constexpr std::uint32_t least_samples = 6;           // of a mover that has any
 constexpr float path_share = 0.4f;                   // of a mover's samples
+
+// What part of the arriving light leaves a mover in the end: the rest meets another part of it, which is lit alike.
+// Boxes, which get what walls and movers send back besides (mover_exchange.cpp), hide nothing of themselves.
+vec3 leaving_share(vec3 reflectance, float hidden) {
+    return hidden < 1.0f ? reflectance * (1.0f - hidden) / (vec3(1.0f) - hidden * reflectance) : vec3(0.0f);
+}
+
 } // namespace
 
 // Light leaves a mover from its samples, by Lambert's law.
@@ -56,32 +62,6 @@ private:
     std::span<const LightSample> samples_;
     std::uint32_t bounces_;
 };
-
-void MoverReflections::gather(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
-                              const raytrace::RayScene& rays, const Visit& visit) {
-    raytrace::ShadowPacket packet;
-    std::array<std::pair<std::size_t, vec3>, raytrace::packet_size> arriving;
-    std::uint32_t filled = 0;
-    const auto trace = [&] {
-        packet.active = (1u << filled) - 1u;
-        const std::uint32_t blocked = filled > 0 ? rays.occluded(packet) : 0;
-        for (std::uint32_t i = 0; i < filled; ++i)
-            if (!((blocked >> i) & 1u))
-                visit(arriving[i].first, arriving[i].second);
-        filled = 0;
-    };
-    for (std::size_t k = 0; k < light.size(); ++k) {
-        const Arrival arrived = arrival(light[k].row, light[k].light_class, point, far);
-        const float cosine = glm::dot(normal, arrived.to_light);
-        if (cosine <= 0.0f || arrived.irradiance == vec3(0.0f))
-            continue;
-        arriving[filled] = {k, arrived.irradiance * (cosine / glm::length(arrived.to_light))};
-        packet.rays[filled] = {point, arrived.to_light, 0.0f, 0.9999f};
-        if (++filled == raytrace::packet_size)
-            trace();
-    }
-    trace();
-}
 
 std::vector<const scene::Drawable*> MoverReflections::reflecting(const scene::SceneChanges& changes) {
     std::vector<const scene::Drawable*> result;
@@ -258,19 +238,27 @@ void MoverReflections::move_samples() {
 
 void MoverReflections::light_places(Mover& mover, std::span<const IncomingLight> light, float far,
                                     const raytrace::RayScene& rays) {
+    std::vector<std::optional<PlaceNow>> now;
+    Bounds bounds;
+    for (const Place& place : mover.places) {
+        now.push_back(place_now(mover.entity, place.where, rays));
+        if (now.back())
+            bounds.add(now.back()->point);
+    }
+    const LightAtPoints arriving(light, bounds, far, rays);
     parallel_for_chunks(mover.places.size(), 2, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Place& place = mover.places[i];
             place.from_others = {};
-            const auto point = rays.surface_on(mover.entity, place.where.triangle, place.where.u, place.where.v);
-            if (!point)
+            if (!now[i])
                 continue;
-            const vec3 normal = place.where.side * point->geometric_normal;
-            gather(point->on_triangle + point->offset * normal, normal, light, far, rays, [&](std::size_t k, vec3 e) {
+            arriving.gather(now[i]->point, now[i]->normal, [&](std::size_t k, vec3 e) {
                 place.from_others[std::min<std::size_t>(light[k].bounce, bounce_count - 1)] += e;
             });
+            const vec3 leaving =
+                place.area * leaving_share(now[i]->reflectance, hidden_share(mover.entity, *now[i], rays));
             for (vec3& flux : place.from_others)
-                flux *= place.area * mean_reflectance(point->material);
+                flux *= leaving;
         }
     });
 }

@@ -13,19 +13,12 @@
 
 #include "engine/scene/scene_changes.h"
 #include "gi_module/light_sampling/followed_paths.h"
+#include "gi_module/light_sampling/light_at_points.h"
 #include "gi_module/light_sampling/mover_places.h"
-#include "gi_module/transport/light_row_shared.h"
 
 #include <functional>
 
 namespace sunfleck::gi {
-
-// Light that arrives at movers.
-struct IncomingLight {
-    shared::LightRow row;
-    std::uint32_t light_class = 0;
-    std::uint32_t bounce = 0; // reflections so far
-};
 
 // How light of the samples on movers, and of their paths, arrives.
 struct MoverLight {
@@ -88,16 +81,12 @@ private:
     std::uint32_t samples_on_movers_behind() const;
     void move_samples();
     void light_places(Mover& mover, std::span<const IncomingLight> light, float far, const raytrace::RayScene& rays);
-    // Of light that reaches the point: its place in `light`, and W/m2.
-    using Visit = std::function<void(std::size_t, vec3)>;
-    static void gather(vec3 point, vec3 normal, std::span<const IncomingLight> light, float far,
-                       const raytrace::RayScene& rays, const Visit& visit);
     void sum_flux(Mover& mover);
     void share_flux(Mover& mover, const MoverLight& own); // from places to all of its samples
     struct Exchange;
     struct Receiver;
     std::vector<Exchange> exchanged_by(const MoverLight& own) const;
-    std::vector<Receiver> receivers(const MoverLight& own);
+    std::vector<Receiver> receivers(const MoverLight& own, const raytrace::RayScene& rays);
     static void receive(std::vector<Receiver>& receivers, const std::vector<Exchange>& exchanged, float far,
                         const raytrace::RayScene& rays);
     vec3 exchanged_flux(const Exchange& one, std::size_t bounces) const;

@@ -237,8 +237,8 @@ void SampleSet::follow_movers(const SceneView& scene, const LightSettings& setti
         const float share = shares[sample.index];
         if (share == 0.0f || is_blocked(sample.index) || sample.bounce >= cause_.request.bounces)
             continue;
-        incoming.push_back(
-            {make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind), sample.bounce});
+        incoming.push_back({make_light_row(sample, 0, bound_of(sample, settings), bounds), light_class(sample.kind),
+                            sample.bounce, sample.bounce > 0 ? sample.radius : 0.0f});
         incoming.back().row.intensity_slot /= vec4(vec3(share), 1.0f);
     }
     const auto let_through = [&](const LightSample& sample, std::uint32_t k) {
