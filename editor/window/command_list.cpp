@@ -5,6 +5,7 @@
 #include "editor/window/comparison.h"
 #include "editor/window/fields.h"
 #include "editor/window/opening.h"
+#include "editor/window/scene_play.h"
 #include "editor/window/switches.h"
 #include "editor/window/widgets.h"
 #include "engine/scene/entity_templates.h"
@@ -227,15 +228,19 @@ void add_overlay_commands(std::vector<Command>& list) {
     }
 }
 
+void play_or_stop(Session& session) {
+    session.view.playing = !session.view.playing;
+    session.view.paused = false;
+    if (session.view.playing && !ScenePlay::would_move(session.document->registry()))
+        session.messages.say("Nothing moves in this scene: it has no movers on the clock, animations or rigid bodies");
+}
+
 void add_play_commands(std::vector<Command>& list) {
     list.push_back({"View",
                     "Play",
                     "Movers move and bodies fall; stopped, all is as it was edited",
                     control(app::key_space),
-                    [](Session& session) {
-                        session.view.playing = !session.view.playing;
-                        session.view.paused = false;
-                    },
+                    play_or_stop,
                     {},
                     [](Session& session) { return session.view.playing; }});
     list.push_back({"View",

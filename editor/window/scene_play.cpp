@@ -1,5 +1,6 @@
 #include "editor/window/scene_play.h"
 
+#include "engine/scene/animation.h"
 #include "engine/scene/simulation_components.h"
 #include "engine/simulation/path_movers.h"
 
@@ -25,6 +26,16 @@ bool concerns_bodies(const ecs::Registry& registry, const Update& update) {
 }
 
 } // namespace
+
+bool ScenePlay::would_move(ecs::Registry& registry) {
+    bool moves = false;
+    registry.view<scene::Mover>().each([&](Entity, const scene::Mover& mover) {
+        moves = moves || (mover.path != scene::MoverPath::none && mover.activation == scene::MoverActivation::clock);
+    });
+    registry.view<scene::Animation>().each([&](Entity, const scene::Animation&) { moves = true; });
+    registry.view<scene::RigidBody>().each([&](Entity, const scene::RigidBody&) { moves = true; });
+    return moves;
+}
 
 ScenePlay::ScenePlay(ecs::Registry& registry, const scene::MeshStore& meshes) : edited_(places(registry)) {
     simulation::set_movers_to_step(registry, 0);

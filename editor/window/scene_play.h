@@ -11,6 +11,8 @@ namespace sunfleck::editor {
 
 class ScenePlay {
 public:
+    // Whether anything in it would move by itself: movers on the clock, animations, bodies.
+    static bool would_move(ecs::Registry& registry);
     // Everything stands as edited. Neither is kept, and both must be handed to all calls below.
     ScenePlay(ecs::Registry& registry, const scene::MeshStore& meshes);
 

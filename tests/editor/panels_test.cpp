@@ -270,5 +270,24 @@ TEST_F(EditorPanels, RecoverySaysWhatItWouldRestore) {
     EXPECT_TRUE(std::filesystem::exists(lost.folder)) << "they are offered again";
 }
 
+TEST_F(EditorPanels, PlayingWhatDoesNotMoveIsSaid) {
+    const std::uint64_t before = session_.messages.count();
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+Space"));
+    EXPECT_TRUE(session_.view.playing);
+    ASSERT_EQ(session_.messages.count(), before + 1);
+    EXPECT_NE(session_.messages.all().back().text.find("Nothing moves"), std::string::npos);
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+Space"));
+    EXPECT_FALSE(session_.view.playing);
+    document().begin("Add");
+    const Entity wheel = document().create();
+    scene::Mover turning;
+    turning.path = scene::MoverPath::spin;
+    document().set(wheel, pool_of<scene::Name>(document()), std::make_shared<scene::Name>(scene::Name{"wheel"}));
+    document().set(wheel, pool_of<scene::Mover>(document()), std::make_shared<scene::Mover>(turning));
+    document().commit();
+    ASSERT_NO_FATAL_FAILURE(key("Ctrl+Space"));
+    EXPECT_EQ(session_.messages.count(), before + 1) << "it turns";
+}
+
 } // namespace
 } // namespace sunfleck::editor
