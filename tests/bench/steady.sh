@@ -96,10 +96,12 @@ measure_walk() {
 
 # Doors, the lantern, bounced light, turning and walking: each key again and again, with pauses of a hand.
 measure_window() {
+    rm -f "$folder/window.log"
     seconds=${SUNFLECK_BENCH_SECONDS:-60} with_display '
 start_demo "$folder/window.log" || exit 1
 xdotool windowfocus $W; sleep 1; xdotool key Return; sleep 1
 end=$((SECONDS + ${seconds:-60}))
+RANDOM=1 # the same turns each time
 while ((SECONDS < end)); do
     for keys in "w e" "d l" "w q" "a l" "w e" "s t" "d q" "w t"; do
         set -- $keys
