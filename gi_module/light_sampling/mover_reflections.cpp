@@ -144,6 +144,7 @@ void MoverReflections::add_mover(const scene::Drawable& drawable, const std::vec
 void MoverReflections::update(std::span<const IncomingLight> light, const MoverLight& own, float far,
                               const scene::SceneChanges& changes, const raytrace::RayScene& rays) {
     moved_.assign(samples_.size(), 0);
+    static_assert(sizeof(IncomingLight) == sizeof(shared::LightRow) + 12, "it is hashed, so it has no padding");
     const std::uint64_t hash = hash_bytes(hash_start, light.data(), light.size_bytes());
     const bool same_light = hash == light_hash_ && cursor_.follows(changes) && changes.drawables.empty();
     light_hash_ = hash;
