@@ -27,7 +27,7 @@ class Level {
 public:
     // Samples that may change their strength in a frame: a door or the switch of bounced light changes a hundred and
     // more.
-    static constexpr std::uint32_t strength_changes = 16;
+    static constexpr std::uint32_t strength_changes = 8;
 
     // `progress`: io::ImportOptions::progress.
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const LevelSource& source,

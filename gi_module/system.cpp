@@ -4,6 +4,7 @@
 #include "gi_module/inspection/visibility_listing.h"
 #include "gi_module/light_part_views.h"
 
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,15 @@ namespace sunfleck::gi {
 namespace {
 
 constexpr float until_samples = 0.1f; // of FrameInput::progress; visibility takes most of the rest
+
+// Where a camera stands: of all points, the one that has no x, y and w in clip space. None without perspective.
+std::optional<vec3> eye_of(const std::optional<mat4>& view_projection) {
+    if (!view_projection)
+        return std::nullopt;
+    const vec4 eye = glm::inverse(*view_projection) * vec4(0.0f, 0.0f, 1.0f, 0.0f);
+    const vec3 position = vec3(eye) / eye.w;
+    return std::isfinite(glm::dot(position, position)) ? std::optional(position) : std::nullopt;
+}
 
 } // namespace
 
@@ -229,7 +239,8 @@ Status System::make_rows(const SceneView& scene, bool static_changed) {
     const StageTimer timer(cpu_times_, "light samples");
     const MapPolicy policy{wants_visibility(), any_in_use(&TechniqueEntry::needs_full_maps)};
     SUNFLECK_TRY(shadows_->configure(settings_, policy, samples_.size(), resources_));
-    samples_.update_rows(scene, settings_, shadows_->slots(), {input_.indirect_scale, input_.strength_budget});
+    samples_.update_rows(scene, settings_, shadows_->slots(),
+                         {input_.indirect_scale, input_.strength_budget, eye_of(input_.view_projection)});
     shadows_->follow(samples_, static_changed);
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include "gi_module/inspection/visibility_listing.h"
 #include "gi_module/light_part_views.h"
+#include "gi_module/shadows/shadow_service.h"
 #include "gi_module/technique_list.h"
 #include "gi_module/visibility/scene_visibility.h"
 
@@ -14,6 +15,10 @@ std::vector<TechniqueEntry>& all_techniques() {
 }
 
 } // namespace
+
+bool Services::maps_are_stale() const {
+    return settings.shadows && (input.as_if_stale || shadows.stale() > 0);
+}
 
 Status Technique::light_pixels(const PixelStage&, Services&) {
     return Error{"this technique lights no pixels"};

@@ -39,8 +39,9 @@ struct FrameInput {
     // which go first. With a budget, light is baked, and light maps are summed, in short portions, too.
     std::uint32_t map_budget = 0xffffffffu;
     // Samples whose strength changes in this frame at most while they stay where they are (a lamp that is switched,
-    // light that a door lets in, `indirect_scale`): the others follow in later frames, in turn. It bounds what such a
-    // change costs a frame, by a count, so that the same frames give the same pictures.
+    // light that a door lets in, `indirect_scale`): the others follow in later frames, those near the camera of
+    // `view_projection` first. It bounds what such a change costs a frame, by a count, so that the same frames give the
+    // same pictures.
     std::uint32_t strength_budget = 0xffffffffu;
     // Where settings, static geometry or static emitters have changed, or a lamp its strength for the first time,
     // samples, visibility and static shadows stay as they are, and System::outdated() is true: for hosts that prepare
@@ -58,6 +59,9 @@ struct FrameInput {
     // False: the picture of this frame is not used. Shadow maps, light maps and baked light are brought up to date, and
     // no pixel is lit by the techniques that do so one by one: for hosts that prepare lighting beside their frames.
     bool light_pixels = true;
+    // Pixels are lit by the kernels for shadow maps that are out of date, even where none is. For preparations: some
+    // drivers compile a kernel only when it first runs, and the first mover that moves would wait for that.
+    bool as_if_stale = false;
     // Name of a debug view (debug_views()) in place of the irradiance; empty: none.
     std::string_view view{};
     // Called with the share that is done, 0 to 1, while an update takes long because everything has to be computed (the
@@ -83,6 +87,9 @@ struct Services {
     // Where precomputed data is kept from run to run; empty: nowhere.
     const std::filesystem::path& cache_folder;
     StageTimes& cpu_times;
+
+    // Shadows are looked up by the kernels for maps that show movers where they were.
+    bool maps_are_stale() const;
 };
 
 // Where light goes: W/m2 without albedo; alpha 1 where there is a surface, else 0.

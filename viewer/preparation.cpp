@@ -18,7 +18,7 @@ double gpu_milliseconds(const FrameStatistics& statistics) {
 } // namespace
 
 Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options) {
-    // Pixels are lit once, at the end. Until then that would be done by kernels that no later frame may need, and some
+    // Pixels are lit at the end alone. Until then that would be done by kernels that no later frame may need, and some
     // drivers compile a kernel only when it runs, while all wait who share the queue; and maps that are still to be
     // drawn, often hundreds of MiB, would be cleared first.
     request.light_pixels = false;
@@ -44,6 +44,8 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
             request.map_budget = std::max(request.map_budget / 2, 1u);
     }
     request.light_pixels = true;
+    SUNFLECK_TRY(renderer.render_and_wait(request));
+    request.as_if_stale = true; // as soon as something moves
     return renderer.render_and_wait(request);
 }
 

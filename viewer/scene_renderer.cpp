@@ -173,6 +173,7 @@ Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::
     input.completed_serial = completed;
     input.map_budget = request.map_budget;
     input.light_pixels = request.light_pixels;
+    input.as_if_stale = request.as_if_stale;
     input.view = request.lighting_view;
     gi::set_measured_times(input, timers_->latest());
     input.progress = request.progress;

@@ -42,6 +42,7 @@ struct FrameRequest {
     std::uint32_t strength_budget = 0xffffffffu; // gi::FrameInput::strength_budget
     std::optional<double> milliseconds;          // gi::FrameInput::milliseconds
     bool light_pixels = true;                    // gi::FrameInput::light_pixels
+    bool as_if_stale = false;                    // gi::FrameInput::as_if_stale
     bool keep_samples = false;                   // gi::FrameInput::keep_samples
     // Rays and shadows of static geometry stay as they are while that changes, which costs such frames next to nothing:
     // light falls as if it stood where it was. The first frame without this follows. Needs keep_samples.

@@ -108,7 +108,7 @@ Result<const gpu::Pipeline*> GlossTechnique::kernel(const LightBatch& batch, con
                                   shadows ? shared::maps_texel_buffer : shared::maps_none,
                                   filters_maps(services.settings.shadow_filter, batch.light_class),
                                   services.shadows.maps().bits(),
-                                  shadows && services.shadows.stale() > 0,
+                                  services.maps_are_stale(),
                                   services.shadows.simplifies_movers(),
                                   g_buffer.base_colour.valid(),
                                   g_buffer.metallic_roughness.valid()};

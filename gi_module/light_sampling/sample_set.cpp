@@ -364,7 +364,9 @@ void SampleSet::update_rows(const SceneView& scene, const LightSettings& setting
         rows_[dynamic_samples_[k]].intensity_slot /= vec4(vec3(followed_.let_through[k]), 1.0f);
     late_changes_ = 0;
     if (rows_generation_ == generation_)
-        limit_changes(before, strengths.change_budget);
+        limit_changes(before, strengths);
+    else
+        waited_.clear();
     rows_generation_ = generation_;
 }
 

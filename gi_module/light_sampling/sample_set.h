@@ -53,12 +53,14 @@ public:
     struct Strengths {
         float indirect_scale = 1.0f;               // of reflected light
         std::uint32_t change_budget = 0xffffffffu; // FrameInput::strength_budget
+        std::optional<vec3> eye{};                 // changes near it come first; none: in the order of samples
     };
     void update_rows(const SceneView& scene, const LightSettings& settings, std::uint32_t slots,
                      const Strengths& strengths);
 
     std::span<const LightSample> samples() const { return samples_; }
     std::span<const shared::LightRow> rows() const { return rows_; }
+    std::uint32_t late_changes() const { return late_changes_; } // of strength, that wait for a later frame
     std::uint32_t size() const { return std::uint32_t(samples_.size()); }
     std::uint32_t light_class_of(std::uint32_t sample) const { return light_class(samples_[sample].kind); }
     std::uint32_t slot(std::uint32_t sample) const { return sample % slots_; }
@@ -111,7 +113,7 @@ private:
     void follow_movers(const SceneView& scene, const LightSettings& settings);
     void take_over_movers(const raytrace::RayScene& rays, const LightSettings& settings);
     void find_let_through(const raytrace::RayScene& rays, const LightSettings& settings);
-    void limit_changes(const std::vector<shared::LightRow>& before, std::uint32_t budget);
+    void limit_changes(const std::vector<shared::LightRow>& before, const Strengths& strengths);
     void update_bounds(const SceneView& scene, const LightSettings& settings);
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
     void find_loss(const SceneView& scene, const LightSettings& settings);
@@ -149,7 +151,7 @@ private:
     bool outdated_ = false;
     std::uint32_t slots_ = 1;
     std::uint64_t rows_generation_ = 0; // of the samples that rows_ is of
-    std::uint32_t next_change_ = 0;     // sample whose change of strength is due first
+    std::vector<std::uint32_t> waited_; // by sample: updates that its change of strength has waited for
     std::uint32_t late_changes_ = 0;    // samples that wait for theirs
     std::uint64_t generation_ = 0;
     Bounds bounds_;                             // of the scene, at the last update_rows

@@ -61,13 +61,23 @@ Pixel pixel_at(LightMapJob job, uint i) {
     return pixel;
 }
 
-// What a change adds to a texel: light in fixed point.
-ivec3 change_of(uint change, LightRow light, Pixel texel) {
+ivec3 steps_of(vec3 intensity, float factor) {
+    precise vec3 steps = intensity * factor * constants.fixed_point; // the same wherever it is subtracted again
+    return ivec3(steps + 0.5);
+}
+
+// What a change adds to a texel: light in fixed point. `before`: the intensity that is replaced, or 0.
+ivec3 change_of(uint change, LightRow light, vec3 before, Pixel texel) {
     const float untested = (change & light_map_test) != 0u ? 0.0 : 1.0;
     const int direction = (change & light_map_subtract) != 0u ? -1 : 1;
     const LightFactor factor = light_factor(light, texel, true);
-    const vec3 arriving = light.intensity_slot.rgb * (factor.unshadowed * max(factor.visibility, untested));
-    return ivec3(arriving * constants.fixed_point + 0.5) * direction;
+    const float share = factor.unshadowed * max(factor.visibility, untested);
+    return steps_of(light.intensity_slot.rgb, share) * direction - steps_of(before, share);
+}
+
+vec3 intensity_before(uint change) {
+    const int row = int(change & light_map_sample_mask) + 1;
+    return (change & light_map_replace) != 0u ? uintBitsToFloat(texelFetch(lights, row * 5 + 2).rgb) : vec3(0.0);
 }
 
 ivec3 sum_before(LightMapJob job, uint i) {
@@ -85,8 +95,9 @@ void sum_many(LightMapJob job, uint begin, uint end) {
     for (uint c = 0; c < job.change_count; ++c) {
         const uint change = changes[job.first_change + c];
         const LightRow light = light_at(change & light_map_sample_mask);
+        const vec3 before = intensity_before(change);
         [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k)
-            sum[k] += change_of(change, light, texel[k]);
+            sum[k] += change_of(change, light, before, texel[k]);
     }
     [[unroll]] for (uint k = 0; k < texels_per_invocation; ++k) {
         const uint i = begin + k * lanes + gl_LocalInvocationID.x;
@@ -102,7 +113,7 @@ void sum_few(LightMapJob job, uint begin, uint end) {
     ivec3 sum = sum_before(job, i);
     for (uint c = 0; c < job.change_count; ++c) {
         const uint change = changes[job.first_change + c];
-        sum += change_of(change, light_at(change & light_map_sample_mask), texel);
+        sum += change_of(change, light_at(change & light_map_sample_mask), intensity_before(change), texel);
     }
     if (begin + gl_LocalInvocationID.x < end)
         sums[job.first_texel + i] = ivec4(sum, 0);

@@ -1,11 +1,13 @@
 #include "gi_module/many_light/baked_light.h"
 
+#include "engine/core/divide_up.h"
 #include "engine/core/jobs.h"
 #include "engine/gpu/compute_pass.h"
 
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace sunfleck::gi {
 namespace {
@@ -20,6 +22,7 @@ constexpr std::uint64_t max_portion_evaluations = 2000000;
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
 constexpr std::uint64_t texel_bytes = 8;
+constexpr std::uint32_t longest_roughness_wait = 32; // frames, where strengths never cease to change
 
 // What static geometry lets pass of a sample's light to some nodes: nothing, or a sample's change (light_maps_shared.h)
 // with the flag for shadow tests if some of it is blocked.
@@ -113,6 +116,7 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
     waiting_.resize(pieces_.size());
     std::iota(waiting_.rbegin(), waiting_.rend(), 0u);
     wipe_ = true;
+    roughness_waits_.assign(pieces_.size(), 0);
     const std::uint64_t texels = std::max<std::uint64_t>(light_maps.counters().texels + curved.points().size(), 1);
     if (sums_.size() >= texels * sizeof(glm::ivec4))
         return {};
@@ -134,38 +138,42 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
 
 // The piece is rough from this frame on, until it is its turn.
 void BakedLight::bake_later(std::uint32_t piece) {
+    roughness_waits_[piece] = 0;
     waiting_.insert(waiting_.begin(), piece);
     wiped_.push_back(piece);
 }
 
+// While more strengths change in the frames that follow, what is rough is what it was before: finding that takes as
+// long as summing, and is done once they have.
 void BakedLight::follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
-                                  std::span<const std::uint32_t> changed) {
+                                  std::span<const std::uint32_t> changed, bool more_follow) {
     job_rows_ = baked_rows_;
-    for (const std::uint32_t sample : changed)
-        job_rows_.push_back(rows[sample]);
+    add_replacements(job_rows_, rows, changed);
     std::vector<std::uint8_t> waits(pieces_.size(), 0);
     for (const std::uint32_t piece : waiting_)
         waits[piece] = 1;
     std::vector<std::uint32_t> changes;
-    for (std::uint32_t i = 0; i < pieces_.size() && !changed.empty(); ++i) {
+    roughness_waited_ = more_follow ? roughness_waited_ + 1 : 0;
+    if (roughness_waited_ > longest_roughness_wait)
+        roughness_waited_ = 0, more_follow = false;
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) {
+        const Piece& piece = pieces_[i];
         if (waits[i])
             continue;
-        const Piece& piece = pieces_[i];
         changes.clear();
         for (std::uint32_t k = 0; k < changed.size(); ++k)
-            if (const auto flag = test_flag(database, piece.nodes, changed[k])) {
-                changes.push_back(changed[k] | *flag | shared::light_map_subtract);
-                changes.push_back((std::uint32_t(baked_rows_.size()) + k) | *flag);
-            }
-        if (changes.empty())
-            continue;
+            if (const auto flag = test_flag(database, piece.nodes, changed[k]))
+                add_replacement(changes, job_rows_, std::uint32_t(baked_rows_.size()) + 2 * k, *flag);
         evaluations_ += changes.size() * piece.texels();
-        if (evaluations_ > max_evaluations) {
+        if (!changes.empty() && evaluations_ > max_evaluations) {
             bake_later(i);
             continue;
         }
-        jobs_.add(piece.job, false);
-        finish_.add(piece.job, false);
+        if (!changes.empty() || (roughness_waits_[i] != 0 && !more_follow))
+            finish_.add(piece.job, !more_follow);
+        roughness_waits_[i] = more_follow && (roughness_waits_[i] != 0 || !changes.empty());
+        if (!changes.empty())
+            jobs_.add(piece.job, false);
         for (const std::uint32_t change : changes)
             jobs_.add_change(change);
     }
@@ -207,7 +215,7 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<cons
     const std::uint32_t count = take_waiting(database, samples, most);
     const auto piece_at = [&](std::uint32_t i) -> const Piece& { return pieces_[waiting_[waiting_.size() - 1 - i]]; };
     for (std::uint32_t i = 0; i < count; ++i)
-        finish_.add(piece_at(i).job, false);
+        finish_.add(piece_at(i).job, true);
     jobs_.add_all(count, [&](LightMapJobs& jobs, std::uint32_t i) {
         const Piece& piece = piece_at(i);
         jobs.add(piece.job, true);
@@ -238,14 +246,13 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     const bool same = !first && !static_maps_changed && fixed_point_ == light_maps.fixed_point() &&
                       find_changed_intensities(scene.samples, baked_rows_, scene.rows, changed);
     if (same)
-        follow_strengths(database, scene.rows, changed);
+        follow_strengths(database, scene.rows, changed, scene.strengths_wait);
     else
         SUNFLECK_TRY(start_anew(database, light_maps, scene.curved, scene.rows, resources));
     const std::uint64_t usual = first ? max_first_evaluations : max_evaluations;
     bake_waiting(database, scene.samples, in_portions ? max_portion_evaluations : usual);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(texels_at_a_time);
-    finish_.split(texels_at_a_time);
     return {};
 }
 
@@ -268,6 +275,8 @@ void BakedLight::add_wipe(gpu::FrameGraph& graph) {
 
 Status BakedLight::upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
     const auto upload = [&](gpu::UploadedBuffer& buffer, const char* name, std::span<const std::byte> bytes) -> Status {
+        if (bytes.empty())
+            return {};
         SUNFLECK_TRY(buffer.reserve(device_, resources, name, bytes.size(), VK_FORMAT_R32G32B32A32_UINT));
         SUNFLECK_TRY(buffer.write(resources, 0, bytes));
         buffer.add_pass(graph);
@@ -284,7 +293,7 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     curved_rows_.add_pass(graph);
     if (wipe_ || !wiped_.empty())
         add_wipe(graph);
-    if (jobs_.empty())
+    if (finish_.empty()) // of each piece that has a job
         return {};
     gpu::ComputeDescription description;
     description.shader = "gi_module/many_light/baked_light.comp";
@@ -295,7 +304,6 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     SUNFLECK_ASSIGN(const gpu::Pipeline* const finish, pipelines_.compute(description));
 
     SUNFLECK_TRY(upload_jobs(graph, resources));
-    SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
     shared::LightMapConstants constants{};
     constants.fixed_point = fixed_point_;
     constants.map_resolution = maps.resolution();
@@ -303,20 +311,22 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     const auto dispatch = [&](gpu::ComputePass& pass, std::size_t count) {
         constants.jobs = std::uint32_t(count);
         constants.row_length = std::min(constants.jobs, 32768u);
-        pass.push(constants).dispatch(constants.row_length,
-                                      (constants.jobs + constants.row_length - 1) / constants.row_length);
+        pass.push(constants).dispatch(constants.row_length, divide_up(constants.jobs, constants.row_length));
     };
-    gpu::ComputePass bake_pass(graph, "baked light", *bake);
-    bake_pass.texels(job_texels_.buffer())
-        .storage_read(changes)
-        .texels(row_texels_.buffer())
-        .texels(maps.static_texels())
-        .storage_read_write(sums_)
-        .storage_read(points_.buffer());
-    dispatch(bake_pass, jobs_.jobs().size());
-    gpu::ComputePass finish_pass(graph, "baked light cells", *finish);
-    finish_pass.texels(finish_texels_.buffer()).texels(sums_).storage_write(texels_).storage_read(points_.buffer());
-    dispatch(finish_pass, finish_.jobs().size());
+    if (!jobs_.empty()) {
+        SUNFLECK_ASSIGN(const gpu::UploadSlice changes, resources.upload(jobs_.changes()));
+        gpu::ComputePass pass(graph, "baked light", *bake);
+        pass.texels(job_texels_.buffer())
+            .storage_read(changes)
+            .texels(row_texels_.buffer())
+            .texels(maps.static_texels())
+            .storage_read_write(sums_)
+            .storage_read(points_.buffer());
+        dispatch(pass, jobs_.jobs().size());
+    }
+    gpu::ComputePass pass(graph, "baked light cells", *finish);
+    pass.texels(finish_texels_.buffer()).texels(sums_).storage_read_write(texels_).storage_read(points_.buffer());
+    dispatch(pass, finish_.jobs().size());
     return {};
 }
 

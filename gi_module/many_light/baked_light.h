@@ -9,8 +9,8 @@
 // as if nothing was baked. Curved surfaces have texels of their own (curved_charts.h), after those of the light maps.
 //
 // Baking is work of many frames, so much a frame; a patch or chart that waits is rough. A sample that changed its
-// strength is subtracted and added, to the last bit, as in light maps; patches for which that is too much for a frame
-// wait, and the others stay as they are.
+// strength is replaced, to the last bit, as in light maps, and what is rough is found anew once no more of them wait;
+// patches for which that is too much for a frame wait, and the others stay as they are.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"
@@ -25,7 +25,7 @@
 namespace sunfleck::gi {
 
 struct BakedLightCounters {
-    std::uint64_t updates = 0; // samples added or subtracted at a patch in the last update
+    std::uint64_t updates = 0; // samples added, replaced or subtracted at a patch in the last update
     std::uint64_t waiting = 0; // patches and charts
 };
 
@@ -73,7 +73,7 @@ private:
                       std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
     Status upload_charts(std::uint64_t first_texel, const CurvedCharts& curved, gpu::FrameResources& resources);
     void follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
-                          std::span<const std::uint32_t> changed);
+                          std::span<const std::uint32_t> changed, bool more_follow);
     void bake_later(std::uint32_t piece);
     void add_wipe(gpu::FrameGraph& graph);
     Status upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources);
@@ -89,12 +89,14 @@ private:
     gpu::UploadedBuffer job_texels_, finish_texels_, row_texels_; // of the frame
     std::vector<Piece> pieces_;
     bool in_use_ = false;
-    bool wipe_ = false;                // all texels become rough in this frame
-    std::vector<std::uint32_t> wiped_; // or those of these pieces
+    bool wipe_ = false;                         // all texels become rough in this frame
+    std::vector<std::uint32_t> wiped_;          // or those of these pieces
+    std::vector<std::uint8_t> roughness_waits_; // by piece: its light has changed, what is rough is to be found anew
+    std::uint32_t roughness_waited_ = 0;        // frames
     std::uint64_t generation_ = 0;
     float fixed_point_ = 0.0f;
     std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be
-    std::vector<shared::LightRow> job_rows_;   // those, then the new ones of samples whose strength changed
+    std::vector<shared::LightRow> job_rows_;   // those, then add_replacements of samples whose strength changed
     std::vector<std::uint32_t> waiting_;       // pieces, the next one last
     std::uint64_t evaluations_ = 0;            // samples times texels, of this frame
     LightMapJobs jobs_, finish_;               // sums; then cells

@@ -6,10 +6,10 @@
 #include "gi_module/charts/curved_charts_shared.h"
 #include "gi_module/many_light/light_maps_shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 8) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer jobs; // LightMapJobs
 layout(set = 0, binding = 1) uniform isamplerBuffer sums;
-layout(set = 0, binding = 2) writeonly buffer Texels { uvec2 texels[]; };
+layout(set = 0, binding = 2) buffer Texels { uvec2 texels[]; };
 layout(set = 0, binding = 3) readonly buffer Points { CurvedPoint points[]; };
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
@@ -40,29 +40,39 @@ bool exists(LightMapJob job, ivec2 texel) {
     return job.first_point == no_points || points[job.first_point + uint(texel.y) * job.columns + uint(texel.x)].exists != 0u;
 }
 
-// From the twelve texels that its corners and their neighbours are: of a square of sixteen, all but its corners.
-bool is_rough(LightMapJob job, ivec2 cell) {
-    vec3 light[16];
-    bool there[16];
-    [[unroll]] for (int i = 0; i < 16; ++i) {
-        const bool is_corner = (i & 3) % 3 == 0 && (i >> 2) % 3 == 0;
-        const ivec2 texel = cell - 1 + ivec2(i & 3, i >> 2);
-        light[i] = is_corner ? vec3(0.0) : light_at(job, texel);
-        there[i] = !is_corner && exists(job, texel);
-    }
-    bool rough = false;
-    [[unroll]] for (int i = 0; i < 4; ++i) {
-        const int here = 5 + (i & 1) + 4 * (i >> 1);
-        [[unroll]] for (int axis = 0; axis < 2; ++axis) {
-            const int step = axis == 0 ? 1 : 4;
-            const bool before = there[here - step], after = there[here + step];
-            // The rim of a curved surface, or the only cell of a patch along this axis.
-            const bool rim = job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u;
-            rough = rough || (before && after ? bends(light[here - step], light[here], light[here + step])
-                                              : rim && differ(before ? light[here - step] : light[here + step], light[here]));
+// A block of texels that an invocation finishes: neighbours share what they read. About it lie one column and row of
+// texels before, and two after, as a cell's corners have neighbours.
+const int block_columns = 2, block_rows = 4;
+const int region_columns = block_columns + 3, region_rows = block_rows + 3;
+struct Region {
+    vec3 light[region_columns * region_rows];
+    bool there[region_columns * region_rows];
+};
+
+Region read_region(LightMapJob job, ivec2 block) {
+    Region region;
+    [[unroll]] for (int y = 0; y < region_rows; ++y)
+        [[unroll]] for (int x = 0; x < region_columns; ++x) {
+            const bool is_corner = (x == 0 || x == region_columns - 1) && (y == 0 || y == region_rows - 1);
+            const ivec2 texel = block + ivec2(x, y) - 1;
+            region.light[y * region_columns + x] = is_corner ? vec3(0.0) : light_at(job, texel);
+            region.there[y * region_columns + x] = !is_corner && exists(job, texel);
         }
+    return region;
+}
+
+// Whether light about a texel, at `here` of its region, cannot be interpolated along a row or column.
+bool is_uneven(LightMapJob job, Region region, int here) {
+    bool uneven = false;
+    [[unroll]] for (int axis = 0; axis < 2; ++axis) {
+        const int step = axis == 0 ? 1 : region_columns;
+        const bool before = region.there[here - step], after = region.there[here + step];
+        const vec3 one = region.light[here - step], own = region.light[here], other = region.light[here + step];
+        // The rim of a curved surface, or the only cell of a patch along this axis.
+        const bool rim = job.first_point != no_points || (axis == 0 ? job.columns : job.rows) == 2u;
+        uneven = uneven || (before && after ? bends(one, own, other) : rim && differ(before ? one : other, own));
     }
-    return rough;
+    return uneven;
 }
 
 float height_at(LightMapJob job, ivec2 texel) {
@@ -85,25 +95,58 @@ float cell_height(LightMapJob job, ivec2 cell) {
     return whole && high - low <= curved_cell_span * job.cell ? 0.25 * sum : curved_rough;
 }
 
+void finish(LightMapJob job, ivec2 texel, vec3 sum, bool uneven) {
+    const bool inside = texel.x + 1 < int(job.columns) && texel.y + 1 < int(job.rows);
+    const vec3 light = sum / constants.fixed_point;
+    const bool representable = all(lessThan(light, vec3(largest_half)));
+    const bool rough = !representable || (inside && uneven);
+    float shown = rough ? 1.0 : 0.0;
+    if (job.first_point != no_points)
+        shown = rough || !inside ? curved_rough : cell_height(job, texel);
+    texels[job.first_texel + uint(texel.y) * job.columns + uint(texel.x)] =
+        uvec2(packHalf2x16(min(light.rg, vec2(largest_half))), packHalf2x16(vec2(min(light.b, largest_half), shown)));
+}
+
+// A cell is rough if the light about any of its four corners is uneven.
+void finish_block(LightMapJob job, ivec2 block) {
+    const Region region = read_region(job, block);
+    bool uneven[block_rows + 1][block_columns + 1];
+    [[unroll]] for (int y = 0; y <= block_rows; ++y)
+        [[unroll]] for (int x = 0; x <= block_columns; ++x)
+            uneven[y][x] = is_uneven(job, region, (y + 1) * region_columns + x + 1);
+    [[unroll]] for (int y = 0; y < block_rows; ++y)
+        [[unroll]] for (int x = 0; x < block_columns; ++x)
+            if (all(lessThan(block + ivec2(x, y), ivec2(job.columns, job.rows))))
+                finish(job, block + ivec2(x, y), region.light[(y + 1) * region_columns + x + 1],
+                       uneven[y][x] || uneven[y][x + 1] || uneven[y + 1][x] || uneven[y + 1][x + 1]);
+}
+
+// Light that changes, where what is rough stays as it was for now.
+void convert(LightMapJob job, uint i) {
+    const vec3 light = vec3(texelFetch(sums, int(job.first_texel + i)).xyz) / constants.fixed_point;
+    const bool representable = all(lessThan(light, vec3(largest_half)));
+    const float shown = unpackHalf2x16(texels[job.first_texel + i].y).y;
+    const float rough = job.first_point != no_points ? curved_rough : 1.0;
+    texels[job.first_texel + i] = uvec2(packHalf2x16(min(light.rg, vec2(largest_half))),
+                                        packHalf2x16(vec2(min(light.b, largest_half), representable ? shown : rough)));
+}
+
+// A job is a whole patch or chart.
 void main() {
     const uint number = gl_WorkGroupID.y * constants.row_length + gl_WorkGroupID.x;
     if (number >= constants.jobs)
         return;
     const LightMapJob job = job_at(number);
-    const uint end = job.first + job.count;
-    uint i = job.first + gl_LocalInvocationID.x;
-    if (i < end) do { // tested at its end: see light.comp
-        const ivec2 texel = ivec2(i % job.columns, i / job.columns);
-        const bool inside = texel.x + 1 < int(job.columns) && texel.y + 1 < int(job.rows);
-        const vec3 light = light_at(job, texel) / constants.fixed_point;
-        const bool representable = all(lessThan(light, vec3(largest_half)));
-        const bool rough = !representable || (inside && is_rough(job, texel));
-        float shown = rough ? 1.0 : 0.0;
-        if (job.first_point != no_points)
-            shown = rough || !inside ? curved_rough : cell_height(job, texel);
-        texels[job.first_texel + i] =
-            uvec2(packHalf2x16(min(light.rg, vec2(largest_half))),
-                  packHalf2x16(vec2(min(light.b, largest_half), shown)));
-        i += 64u;
-    } while (i < end);
+    uint t = job.clear != 0u ? job.columns * job.rows : gl_LocalInvocationID.x;
+    if (t < job.columns * job.rows) do {
+        convert(job, t);
+        t += gl_WorkGroupSize.x;
+    } while (t < job.columns * job.rows);
+    const uint across = (job.columns + uint(block_columns) - 1u) / uint(block_columns);
+    const uint blocks = across * ((job.rows + uint(block_rows) - 1u) / uint(block_rows));
+    uint i = job.clear != 0u ? gl_LocalInvocationID.x : blocks;
+    if (i < blocks) do { // tested at its end: see light.comp
+        finish_block(job, ivec2(i % across, i / across) * ivec2(block_columns, block_rows));
+        i += gl_WorkGroupSize.x;
+    } while (i < blocks);
 }

@@ -104,6 +104,24 @@ std::vector<LightMapJobs::Piece> LightMapJobs::pieces(std::uint64_t most_bytes,
     return pieces;
 }
 
+void add_replacements(std::vector<shared::LightRow>& rows, std::span<const shared::LightRow> now,
+                      std::span<const std::uint32_t> changed) {
+    for (const std::uint32_t sample : changed) {
+        rows.push_back(now[sample]);
+        rows.push_back(shared::LightRow(rows[sample]));
+    }
+}
+
+void add_replacement(std::vector<std::uint32_t>& changes, std::span<const shared::LightRow> rows, std::uint32_t first,
+                     std::uint32_t flag) {
+    if (rows[first].intensity_slot.w == rows[first + 1].intensity_slot.w) {
+        changes.push_back(first | flag | shared::light_map_replace);
+        return;
+    }
+    changes.push_back((first + 1) | flag | shared::light_map_subtract);
+    changes.push_back(first | flag);
+}
+
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,
                               std::span<const shared::LightRow> now, std::vector<std::uint32_t>& changed) {
     if (now.size() != before.size())

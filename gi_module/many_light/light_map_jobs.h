@@ -64,6 +64,15 @@ inline bool reaches(PairState state) {
     return state == PairState::none || state == PairState::partial;
 }
 
+// To `rows`, which maps were summed with, the new rows of samples whose intensity changed, each before the one that it
+// replaces.
+void add_replacements(std::vector<shared::LightRow>& rows, std::span<const shared::LightRow> now,
+                      std::span<const std::uint32_t> changed);
+// The changes that replace one of them, the first, at the row `first`, with the flag given: one, or two where its
+// shadow map lies elsewhere now.
+void add_replacement(std::vector<std::uint32_t>& changes, std::span<const shared::LightRow> rows, std::uint32_t first,
+                     std::uint32_t flag);
+
 // Finds the samples in light maps of which only the intensity changed since `before`. False if anything else changed,
 // or if so many intensities changed that summing from scratch is cheaper.
 bool find_changed_intensities(std::span<const LightSample> samples, std::span<const shared::LightRow> before,

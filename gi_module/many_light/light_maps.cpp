@@ -94,12 +94,15 @@ void LightMaps::follow_changes(const VisibilityDatabase& database, std::span<con
         if (change.node < node_rows_.size() && node_rows_[change.node].first_texel != shared::no_light_map &&
             held_by_light_maps(samples[change.sample]) && reaches(change.before) != reaches(change.after))
             wanted.emplace_back(change.node, change.sample | (reaches(change.after) ? 0u : shared::light_map_subtract));
-    for (std::uint32_t k = 0; k < changed.size(); ++k)
+    std::vector<std::uint32_t> replacement;
+    for (std::uint32_t k = 0; k < changed.size(); ++k) {
+        replacement.clear();
+        add_replacement(replacement, job_rows_, std::uint32_t(summed_rows_.size()) + 2 * k, 0);
         for (std::uint32_t node = 0; node < node_rows_.size(); ++node)
-            if (node_rows_[node].first_texel != shared::no_light_map && reaches(database.state(node, changed[k]))) {
-                wanted.emplace_back(node, changed[k] | shared::light_map_subtract);
-                wanted.emplace_back(node, std::uint32_t(summed_rows_.size()) + k);
-            }
+            if (node_rows_[node].first_texel != shared::no_light_map && reaches(database.state(node, changed[k])))
+                for (const std::uint32_t change : replacement)
+                    wanted.emplace_back(node, change);
+    }
     std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         if (i == 0 || wanted[i].first != wanted[i - 1].first)
@@ -116,8 +119,7 @@ Status LightMaps::update(const VisibilityDatabase& database, std::span<const Lig
     const bool first = generation_ != database.generation();
     if (!first && find_changed_intensities(samples, summed_rows_, rows, changed)) {
         job_rows_ = summed_rows_;
-        for (const std::uint32_t sample : changed)
-            job_rows_.push_back(rows[sample]);
+        add_replacements(job_rows_, rows, changed);
         follow_changes(database, samples, changed);
         changes_.split(invocations);
         summed_rows_.assign(rows.begin(), rows.end());

@@ -19,7 +19,7 @@ namespace sunfleck::gi {
 float light_map_texel(float bound);
 
 struct LightMapCounters {
-    std::uint64_t updates = 0; // single contributions added or subtracted in the last update
+    std::uint64_t updates = 0; // single contributions added, replaced or subtracted in the last update
     std::uint64_t texels = 0;
     std::uint64_t waiting = 0; // jobs that later frames do
 };
@@ -64,7 +64,7 @@ private:
     bool steps_are_coarse_ = false; // then no patch has a map
     std::uint64_t generation_ = 0;
     std::vector<shared::LightRow> summed_rows_; // what the maps were made with
-    std::vector<shared::LightRow> job_rows_;    // those, then the new ones of samples whose strength changed
+    std::vector<shared::LightRow> job_rows_;    // those, then add_replacements of samples whose strength changed
     LightMapJobs sums_;                         // of all, from the start
     std::size_t portion_ = 0, next_ = 0;        // of sums_: this frame's begin and end
     LightMapJobs changes_;                      // after those

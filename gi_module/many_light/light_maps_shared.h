@@ -17,7 +17,7 @@ struct LightMapJob {
     uint first_texel;
     uint columns;
     uint rows;
-    uint clear;
+    uint clear; // of a job that finishes cells: 1 if what is rough is found anew
     uint first_change;
     uint change_count;
     uint first; // first of the texels to update: large maps with many changes are split into several jobs
@@ -29,7 +29,10 @@ SHARED_CONSTANT uint no_points = 0xffffffffu;
 // A change is the index of a sample's row, with these flags:
 SHARED_CONSTANT uint light_map_subtract = 0x80000000u; // subtract it instead of adding it
 SHARED_CONSTANT uint light_map_test = 0x40000000u;     // baked light: shadow-tested against the static shadow map
-SHARED_CONSTANT uint light_map_sample_mask = 0x3fffffffu;
+// The row after the sample's is the same sample with the intensity that it had, which is subtracted: what reaches a
+// texel of the two is computed once.
+SHARED_CONSTANT uint light_map_replace = 0x20000000u;
+SHARED_CONSTANT uint light_map_sample_mask = 0x1fffffffu;
 
 struct LightMapConstants {
     float fixed_point; // steps per W/m2

@@ -17,6 +17,7 @@ struct ManyLightScene {
     const scene::GpuScene& gpu_scene;
     std::span<const LightSample> samples;
     std::span<const shared::LightRow> rows;
+    bool strengths_wait = false; // more of them change in the next frames (SampleSet::late_changes)
 };
 
 } // namespace sunfleck::gi

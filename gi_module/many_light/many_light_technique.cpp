@@ -122,9 +122,9 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
                              light_map_texel(samples.geometry_bound()), max_curved_points);
         curved_generation_ = database.generation();
     }
-    SUNFLECK_TRY(lighting_->update(
-        {database, curved_charts_, scene.gpu_scene, samples.samples(), owned_rows(samples, cells, owned_rows_)},
-        options_, services.resources));
+    SUNFLECK_TRY(lighting_->update({database, curved_charts_, scene.gpu_scene, samples.samples(),
+                                    owned_rows(samples, cells, owned_rows_), samples.late_changes() > 0},
+                                   options_, services.resources));
     if (own.count_passes && services.input.view_projection)
         passes_.count(database, *services.input.view_projection, own);
     else
@@ -139,7 +139,7 @@ Status ManyLightTechnique::add_passes(gpu::FrameGraph& graph, Services& services
     batches_ = batches.size();
     options_.show = target.view != nullptr ? target.view->code : shared::show_nothing;
     options_.simplified_movers = services.shadows.simplifies_movers();
-    options_.stale_maps = services.settings.shadows && services.shadows.stale() > 0;
+    options_.stale_maps = services.maps_are_stale();
     SUNFLECK_TRY(lighting_->add_passes(graph, {services.shadows.maps(), batches, services.shadows.ages()}, options_,
                                        services.resources));
     target.bytes_per_group = lighting_->bytes_per_group();

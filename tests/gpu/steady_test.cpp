@@ -56,6 +56,50 @@ TEST_F(SteadyTest, StrengthsChangeOverFrames) {
     }
 }
 
+// What is near the camera changes first, and whatever waits gets its turn.
+TEST_F(SteadyTest, NearStrengthsChangeFirst) {
+    Room world;
+    world.request.strength_budget = 10;
+    world.request.indirect_scale = 0.0f;
+    const gi::SampleSet& samples = world.renderer->lighting().sample_set();
+    const auto is_lit = [&](std::uint32_t i) { // by other samples, whose light the box does not block
+        return samples.samples()[i].bounce > 0 && samples.samples()[i].flux != vec3(0.0f) && !samples.is_blocked(i);
+    };
+    const vec3 eye = world.renderer->space().point(world.request.camera.position);
+    float farthest = 0.0f, nearest_late = std::numeric_limits<float>::max();
+    world.render();
+    for (std::uint32_t i = 0; i < samples.size(); ++i) {
+        if (!is_lit(i))
+            continue;
+        const float distance = glm::distance(samples.samples()[i].position, eye);
+        if (vec3(samples.rows()[i].intensity_slot) == vec3(0.0f))
+            farthest = std::max(farthest, distance);
+        else
+            nearest_late = std::min(nearest_late, distance);
+    }
+    EXPECT_GT(farthest, 0.0f);
+    EXPECT_LE(farthest, nearest_late * 1.001f); // the camera's place is found from its matrix
+    // Lamps near the camera that change in every frame cannot keep those behind them waiting.
+    for (int frame = 0; frame < 100; ++frame) {
+        world.request.indirect_scale = 0.5f + 0.1f * float(frame % 2);
+        world.render();
+    }
+    for (std::uint32_t i = 0; i < samples.size(); ++i)
+        if (is_lit(i)) {
+            EXPECT_NE(vec3(samples.rows()[i].intensity_slot), vec3(0.0f)) << "sample " << i << " never had its turn";
+        }
+}
+
+// The kernels for maps that are out of date show the same where none is.
+TEST_F(SteadyTest, AsIfStaleShowsTheSame) {
+    Room world;
+    world.settle();
+    const io::Picture fresh = world.picture();
+    world.request.as_if_stale = true;
+    world.render();
+    expect_same_picture(world.picture(), fresh);
+}
+
 // Within two frames, whichever budget there is, once the time is known and has passed.
 TEST_F(SteadyTest, ShadowsThatShowAreNotLate) {
     for (const double frame_ms : {20.0, 50.0, 120.0}) {
