@@ -70,6 +70,10 @@ const TypeDescription& DemoSettings::description() {
                         "soft self-shadowing; slower"),
          SUNFLECK_FIELD(DemoSettings, antialiasing, "", 0, 1,
                         viewer::PictureSettings::description().find("antialiasing")->tooltip),
+         SUNFLECK_FIELD(
+             DemoSettings, temporal, "", 0, 1,
+             "While one stands still, edges are smoothed and the picture is enlarged from frame to frame; off: "
+             "each frame by itself"),
          SUNFLECK_FIELD(DemoSettings, glare, "", 0, 0.5, viewer::PictureSettings::description().find("glare")->tooltip),
          SUNFLECK_FIELD(DemoSettings, exposure, "EV", -4, 4, "Exposure compensation; higher is brighter"),
          SUNFLECK_FIELD(DemoSettings, adaptation, "", 0, 1,

@@ -45,6 +45,7 @@ struct DemoSettings {
     std::uint32_t map_budget = 40;
     bool transfer = false;
     bool antialiasing = true;
+    bool temporal = true;
     float glare = 0.03f;
     float exposure = 0.0f;
     bool adaptation = true;

@@ -190,6 +190,7 @@ viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t 
     request.width = scaled(width);
     request.height = scaled(height);
     request.antialiasing = settings.antialiasing;
+    request.temporal = settings.temporal;
     request.glare = settings.glare;
     request.strength_budget = strength_changes;
     request.ev100 = ev100_ - settings.exposure;

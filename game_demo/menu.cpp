@@ -182,6 +182,8 @@ void Menu::image_tab(DemoSettings& settings, bool& changed) {
         settings.preset = Preset::custom;
     changed |= custom;
     changed |= field(settings, "antialiasing", "Anti-aliasing");
+    if (settings.antialiasing)
+        changed |= field(settings, "temporal", "Temporal anti-aliasing");
     changed |= field(settings, "glare", "Glare");
     changed |= field(settings, "exposure", "Exposure");
     changed |= field(settings, "adaptation", "Adaptation of the eye");

@@ -2,6 +2,11 @@
 #include "viewer/exposure.h"
 #include "viewer/scene_renderer.h"
 
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <tuple>
+
 namespace sunfleck::viewer {
 namespace {
 
@@ -13,6 +18,31 @@ bool FrameRequest::is_enlarged() const {
     return tone_map && screen_width > 0 && screen_height > 0 && (screen_width != width || screen_height != height);
 }
 
+bool FrameRequest::may_be_temporal() const {
+    return temporal && antialiasing && tone_map && view == shared::view_final &&
+           (!is_enlarged() || (screen_width >= width && screen_height >= height));
+}
+
+bool SceneRenderer::is_cut(const FrameRequest& request) const {
+    constexpr float steady = 0.02f; // EV a frame: adaptation that goes on all the time; a hundredth of the brightness
+    const FrameRequest& before = previous_request_;
+    const auto shown = [](const FrameRequest& frame) { // besides light
+        return std::tie(frame.width, frame.height, frame.screen_width, frame.screen_height, frame.view, frame.tone_map,
+                        frame.lighting_view, frame.glare, frame.indirect_scale);
+    };
+    return camera_moves_ || !(std::abs(before.ev100 - request.ev100) < steady) || shown(before) != shown(request) ||
+           previous_settings_ != lighting_->settings() || lighting_->counters()["baked_light_updates"] > 0.0;
+}
+
+bool SceneRenderer::picture_changes() const {
+    const gi::Report& counters = lighting_->counters();
+    const std::initializer_list<const char*> unfinished = {"shadow_maps_stale",  "shadow_map_updates",
+                                                           "light_samples_late", "light_map_updates",
+                                                           "light_maps_waiting", "baked_light_waiting"};
+    return scene_changed_ ||
+           std::any_of(unfinished.begin(), unfinished.end(), [&](const char* name) { return counters[name] > 0.0; });
+}
+
 Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBuffer& g_buffer, const Light& light,
                                   const gpu::UploadSlice& camera, gpu::ResourceId output) {
     render::CompositionInput composition;
@@ -22,7 +52,7 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     composition.tone_map = request.tone_map;
     composition.ev100 = request.ev100;
     const bool final = request.tone_map && request.view == shared::view_final;
-    const bool smoothed = request.antialiasing && final;
+    const bool temporal = temporal_frame_, smoothed = request.antialiasing && final && !temporal;
     composition.alpha_is_brightness = smoothed;
     registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
         composition.sky += environment.radiance;
@@ -45,12 +75,22 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     const auto picture = [&](const char* name, bool last) {
         return last ? output : graph_->create_image(name, shown_format, request.width, request.height);
     };
-    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged);
+    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged && !temporal);
     composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
     if (final && gpu_scene_->has_stippled_surfaces())
         stipple_.add(*graph_, g_buffer, render::stippled_rectangle(*gpu_scene_, camera_row(request)), current,
                      shown_format);
     debug_lines_->add(*graph_, g_buffer, camera, current);
+    const bool changes = picture_changes() || previous_request_.ev100 != request.ev100;
+    previous_request_ = request;
+    previous_settings_ = lighting_->settings();
+    if (compiles_temporal(request) && !temporal) {
+        SUNFLECK_TRY(temporal_->add(*graph_, {current, g_buffer.depth, g_buffer.motion, false}, output, *resources_));
+        temporal_->forget();
+        temporal_compiled_ = true;
+    }
+    if (temporal)
+        return temporal_->add(*graph_, {current, g_buffer.depth, g_buffer.motion, changes}, output, *resources_);
     if (smoothed) {
         const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
         if (drawn_with_edges)

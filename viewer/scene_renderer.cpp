@@ -60,6 +60,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->glare_, render::GlarePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->antialiasing_, render::AntialiasingPass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->temporal_, render::TemporalEnlargement::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));
     renderer->debug_lines_ = std::make_unique<render::DebugLines>(std::move(lines));
     return renderer;
@@ -127,6 +128,7 @@ void SceneRenderer::exchange_lighting(SceneRenderer& other) {
     std::swap(lighting_, other.lighting_);
     std::swap(lighting_shaders_, other.lighting_shaders_);
     std::swap(lighting_pipelines_, other.lighting_pipelines_);
+    previous_request_.ev100 = std::numeric_limits<float>::quiet_NaN(); // like no other
     rays_->continue_with(meshes_, &textures_);
     other.rays_->continue_with(other.meshes_, &other.textures_);
 }
@@ -149,6 +151,8 @@ Status SceneRenderer::update(const FrameRequest& request) {
         changes = &change_tracker_.collect(registry_, meshes_);
         has_previous_camera_ = has_previous_camera_ && changes->space == space_;
         space_ = changes->space;
+        scene_changed_ = changes->everything || changes->order_changed || changes->static_geometry ||
+                         !changes->drawables.empty() || !changes->meshes.empty() || changes->emitters_changed();
     }
     SUNFLECK_TRY(update_rays(request, *changes));
     {
@@ -219,21 +223,33 @@ Status SceneRenderer::make_output(const FrameRequest& request) {
     return {};
 }
 
+// As the G-buffer sees it. Without temporal anti-aliasing, each pixel is sampled in its middle.
+shared::CameraRow SceneRenderer::camera_of_frame(const FrameRequest& request) {
+    shared::CameraRow camera = camera_row(request);
+    if (has_previous_camera_)
+        camera.previous_view_projection = previous_camera_.view_projection;
+    camera_moves_ = !has_previous_camera_ || camera.previous_view_projection != camera.view_projection;
+    previous_camera_ = camera;
+    has_previous_camera_ = true;
+    temporal_frame_ = request.may_be_temporal() && !is_cut(request);
+    if (temporal_frame_)
+        render::TemporalEnlargement::apply_offset(camera, temporal_->offset());
+    else
+        temporal_->forget();
+    return camera;
+}
+
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
     SUNFLECK_TRY(make_output(request));
     SUNFLECK_TRY(draw_lines(request));
-    shared::CameraRow camera = camera_row(request);
-    if (has_previous_camera_)
-        camera.previous_view_projection = previous_camera_.view_projection;
-    previous_camera_ = camera;
-    has_previous_camera_ = true;
-    SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera));
+    SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera_of_frame(request)));
 
     graph_->reset();
     gpu_scene_->add_passes(*graph_);
-    const render::GBuffer g_buffer = g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width,
-                                                        request.height, request.view == shared::view_motion);
+    const render::GBuffer g_buffer =
+        g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width, request.height,
+                           request.view == shared::view_motion || temporal_frame_ || compiles_temporal(request));
     SUNFLECK_ASSIGN(const Light light, add_lighting(request, g_buffer, camera_slice));
     const gpu::ResourceId output = graph_->import_image(output_);
     SUNFLECK_TRY(add_picture(request, g_buffer, light, camera_slice, output));

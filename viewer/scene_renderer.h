@@ -10,6 +10,7 @@
 #include "engine/render/exposure_meter.h"
 #include "engine/render/glare.h"
 #include "engine/render/stipple.h"
+#include "engine/render/temporal_enlargement.h"
 #include "engine/render/upscale.h"
 #include "gi_module/system.h"
 
@@ -29,6 +30,7 @@ struct FrameRequest {
     std::uint32_t view = shared::view_final;
     bool tone_map = true;              // false: scene-linear floats, for EXR
     bool antialiasing = false;         // PictureSettings; of the final picture with tone_map
+    bool temporal = false;             // with it: also from frame to frame, while the camera stands still
     float glare = 0.0f;                // the same
     std::string lighting_view;         // debug view of the lighting by name (gi::debug_views()), in place of irradiance
     bool meter = false;                // measures the picture, for SceneRenderer::metered_exposure
@@ -52,7 +54,8 @@ struct FrameRequest {
     // Called by render_and_wait while it waits, from a second on, with the share of the passes that the GPU has done.
     std::function<void(double)> passes_done;
 
-    bool is_enlarged() const; // the screen's size is not that of the picture
+    bool is_enlarged() const;     // the screen's size is not that of the picture
+    bool may_be_temporal() const; // made from frame to frame, if the camera stands still
 };
 
 struct FrameStatistics {
@@ -183,9 +186,26 @@ private:
     render::StipplePass stipple_;
     render::AntialiasingPass antialiasing_;
     render::UpscalePass upscale_;
+    std::unique_ptr<render::TemporalEnlargement> temporal_;
     std::unique_ptr<render::DebugLines> debug_lines_;
     gpu::Image output_;
+    shared::CameraRow camera_of_frame(const FrameRequest& request);
     shared::CameraRow previous_camera_{};
+    bool camera_moves_ = true; // since the frame before
+    bool temporal_frame_ = false;
+    bool temporal_compiled_ = false; // its kernels have run
+    // The frame before tells little of this one: the camera or the exposure has moved, or light was switched.
+    bool is_cut(const FrameRequest& request) const;
+    // Some drivers compile a kernel only when it first runs: that is done with the first picture, not when the camera
+    // first stands still.
+    bool compiles_temporal(const FrameRequest& request) const {
+        return request.may_be_temporal() && !temporal_compiled_;
+    }
+    // Anything that the picture shows is not what it was; light that is still being made counts.
+    bool picture_changes() const;
+    bool scene_changed_ = true;
+    FrameRequest previous_request_;
+    gi::Settings previous_settings_;
     bool has_previous_camera_ = false;
     FrameStatistics statistics_;
     std::chrono::steady_clock::time_point frame_start_;

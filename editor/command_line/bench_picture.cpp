@@ -25,6 +25,7 @@ constexpr std::uint32_t reference_samples = 1024, reference_map_side = 256;
 constexpr std::uint32_t most_settling = 100; // frames
 constexpr std::uint32_t moving_frames = 4;
 constexpr float degrees_per_frame = 0.25f;
+constexpr std::uint32_t resting_frames = 40; // within which a picture in which nothing changes comes to rest
 
 struct View {
     const char *scene, *camera;
@@ -105,6 +106,16 @@ Result<TurningFrames> turning_frames(Bench& bench, std::uint32_t scale) {
     }
     frames.median_ms = median(times);
     return frames;
+}
+
+// What one sees who stands still: pictures are also made from frame to frame then.
+Result<io::Picture> picture_at_rest(Bench& bench) {
+    bench.request.temporal = true;
+    bench.request.camera = bench.start;
+    for (std::uint32_t i = 0; i < resting_frames; ++i)
+        SUNFLECK_TRY(bench.renderer->render_and_wait(bench.request));
+    bench.request.temporal = false;
+    return bench.renderer->read_back();
 }
 
 Result<io::Picture> reference_picture(Bench& bench) {
@@ -219,9 +230,13 @@ Result<Json> measure(Bench& bench, const View& view, const ShownPreset& shown, c
     set_size(bench.request, render_scale, 1);
     SUNFLECK_TRY(settle(bench, settings_of(shown)));
     SUNFLECK_ASSIGN(const TurningFrames frames, turning_frames(bench, 1));
+    const io::Picture& picture = frames.pictures.front();
+    io::Picture at_rest = picture;
+    if (!shown.before) {
+        SUNFLECK_ASSIGN(at_rest, picture_at_rest(bench));
+    }
     set_size(bench.request, render_scale, supersampling);
     SUNFLECK_ASSIGN(const TurningFrames supersampled, turning_frames(bench, supersampling));
-    const io::Picture& picture = frames.pictures.front();
     return Json{{"scene", view.scene},
                 {"camera", view.camera},
                 {"preset", shown.name()},
@@ -229,6 +244,7 @@ Result<Json> measure(Bench& bench, const View& view, const ShownPreset& shown, c
                 {"P", compare_pictures(picture, references.traced[0], false).flip},
                 {"P_of_seeds", compare_pictures(references.traced[1], references.traced[0], false).flip},
                 {"edges", edge_error(picture, references.smooth)},
+                {"edges_at_rest", edge_error(at_rest, references.smooth)},
                 {"stains", stain_share(picture, references.smooth)},
                 {"crawl", crawl(frames.pictures, supersampled.pictures)}};
 }
@@ -265,7 +281,7 @@ void note_ratios(BenchTable& table) {
         if (shown.before)
             continue;
         Json ratios = Json::object();
-        for (const char* measure : {"P", "edges", "stains", "crawl", "frame_ms"}) {
+        for (const char* measure : {"P", "edges", "edges_at_rest", "stains", "crawl", "frame_ms"}) {
             double now = 0.0, before = 0.0;
             for (const Json& row : table.rows) {
                 now += row["preset"] == shown.name() ? row[measure].get<double>() : 0.0;
@@ -291,6 +307,7 @@ Result<BenchTable> bench_picture(const BenchOptions& options) {
     table.notes = {{"size", {displayed.width, displayed.height}},
                    {"P", "FLIP, against reference --caustics off, " + std::to_string(options.samples) +
                              " spp; P_of_seeds: of two seeds of that"},
+                   {"edges_at_rest", "edges after 40 frames of standing still"},
                    {"edges, stains", "against brute force, " + std::to_string(reference_samples) +
                                          " samples, maps of " + std::to_string(reference_map_side) + " texels, " +
                                          std::to_string(supersampling) +
