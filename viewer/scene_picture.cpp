@@ -64,7 +64,8 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
         composition.glare_share = request.glare;
         composition.glare = glare_.add(*graph_, *gpu_scene_, g_buffer, composition, camera);
     }
-    if (request.meter) {
+    // Other points of a pixel are not as bright: the exposure would follow that, and nothing come to rest.
+    if (request.meter && (!temporal || temporal_->begins_round())) {
         SUNFLECK_ASSIGN(const std::uint64_t completed, submission_->completed());
         SUNFLECK_TRY(
             meter_->add(*graph_, *gpu_scene_, g_buffer, composition, camera, {submission_->serial(), completed}));

@@ -31,6 +31,9 @@ public:
     // is measured from is moved with it, so that what stands still has none.
     static void apply_offset(shared::CameraRow& camera, vec2 offset);
 
+    // The next frame is the first of a round, which is sampled as the first of any.
+    bool begins_round() const { return frame_ % round_length == 0; }
+
     struct Input {
         gpu::ResourceId picture; // storage image of 8 bits a channel, with display values
         gpu::ResourceId depth;   // of the G-buffer, of the same size

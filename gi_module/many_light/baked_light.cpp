@@ -275,8 +275,6 @@ void BakedLight::add_wipe(gpu::FrameGraph& graph) {
 
 Status BakedLight::upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources) {
     const auto upload = [&](gpu::UploadedBuffer& buffer, const char* name, std::span<const std::byte> bytes) -> Status {
-        if (bytes.empty())
-            return {};
         SUNFLECK_TRY(buffer.reserve(device_, resources, name, bytes.size(), VK_FORMAT_R32G32B32A32_UINT));
         SUNFLECK_TRY(buffer.write(resources, 0, bytes));
         buffer.add_pass(graph);

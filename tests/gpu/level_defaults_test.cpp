@@ -60,16 +60,17 @@ public:
             frame(other);
         level_->apply_later(default_settings());
     }
-    // Nothing is left to do, and the exposure has stayed for longer than its meter is late.
+    // Nothing is left to do, and the exposure has stayed for longer than its meter is late, and for the two rounds of
+    // frames within which a still picture comes to rest.
     io::Picture settled() {
         const demo::DemoSettings settings = default_settings();
         int resting = 0;
-        for (int frames = 0; frames < 600 && resting < 10; ++frames) {
+        for (int frames = 0; frames < 600 && resting < 40; ++frames) {
             const float exposure = level_->shown_exposure();
             frame(settings);
             resting = at_rest() && exposure == level_->shown_exposure() ? resting + 1 : 0;
         }
-        EXPECT_EQ(resting, 10);
+        EXPECT_EQ(resting, 40);
         return level_->renderer().read_back().value();
     }
 
