@@ -137,7 +137,29 @@ TEST_F(LightingViews, SharesOfSamplesAreThoseOfTheDatabase) {
     }
 }
 
-// In a scene with a lamp and movers, at a fixed step. Another device rounds differently, and edges move by a pixel.
+struct ViewDifference {
+    double off = 1.0; // share of the pixels that differ by more than a tenth
+    double mean = 1.0;
+    bool is_small() const { return off <= 0.02 && mean <= 0.01; }
+};
+
+ViewDifference difference_from(const std::filesystem::path& file, const io::Picture& drawn) {
+    const auto golden = io::read_picture(file);
+    if (!golden || golden->pixels.size() != drawn.pixels.size())
+        return {};
+    ViewDifference difference{0.0, 0.0};
+    const double share = 1.0 / double(drawn.pixels.size());
+    for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
+        const vec3 away = glm::abs(vec3(golden->pixels[i]) - vec3(drawn.pixels[i]));
+        const float most = std::max({away.x, away.y, away.z});
+        difference.off += most > 0.1f ? share : 0.0;
+        difference.mean += double(most) * share;
+    }
+    return difference;
+}
+
+// In a scene with a lamp and movers, at a fixed step. Another device rounds differently, and edges move by a pixel;
+// without AVX-512, rays are, so that other paths represent their clusters, and some views have a second picture.
 TEST_F(LightingViews, LookAsTheyDid) {
     const std::filesystem::path folder = std::filesystem::path(SUNFLECK_SOURCE_DIR) / "tests/images/views";
     const bool writes = std::getenv("SUNFLECK_WRITE_VIEWS") != nullptr;
@@ -168,24 +190,17 @@ TEST_F(LightingViews, LookAsTheyDid) {
             std::filesystem::create_directories(folder);
             ASSERT_TRUE(io::write_picture(file, picture));
         }
-        const auto golden = io::read_picture(file);
-        ASSERT_TRUE(golden) << "SUNFLECK_WRITE_VIEWS=1 writes it: " << golden.error().message;
-        ASSERT_EQ(golden->pixels.size(), picture.pixels.size());
         // Both by way of a file, whose bytes are display values.
         const std::filesystem::path now = std::filesystem::path(testing::TempDir()) / ("view_" + name + ".png");
         ASSERT_TRUE(io::write_picture(now, picture));
         const auto drawn = io::read_picture(now);
         ASSERT_TRUE(drawn);
-        std::size_t off = 0;
-        double mean = 0.0;
-        for (std::size_t i = 0; i < golden->pixels.size(); ++i) {
-            const vec3 difference = glm::abs(vec3(golden->pixels[i]) - vec3(drawn->pixels[i]));
-            const float most = std::max({difference.x, difference.y, difference.z});
-            off += most > 0.1f ? 1 : 0;
-            mean += double(most) / double(golden->pixels.size());
-        }
-        EXPECT_LE(off, golden->pixels.size() / 50) << "pixels differ by more than a tenth";
-        EXPECT_LE(mean, 0.01);
+        ViewDifference difference = difference_from(file, *drawn);
+        const std::filesystem::path other = folder / (name + "_other_rays.png");
+        if (!difference.is_small() && std::filesystem::exists(other))
+            difference = difference_from(other, *drawn);
+        EXPECT_TRUE(difference.is_small()) << difference.off << " of the pixels differ by more than a tenth, all by "
+                                           << difference.mean << " in the mean; SUNFLECK_WRITE_VIEWS=1 writes them";
         std::filesystem::remove(now);
     }
 }

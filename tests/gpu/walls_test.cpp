@@ -197,11 +197,12 @@ struct SamplerCase {
 // The aim is 3 % of each wall's light in the mean over seeds, and at most 6 % in 95 % of single seeds, which reflected
 // light does not reach everywhere: medoids stand for their clusters with an error that seeds share, and the bound of
 // the geometry term takes more from corners than from the middle of a room. The limits are what was measured in the
-// long size, and a fifth more at most; they guard what is there and do not say that it is enough. Clusters have less
-// than 0.9 of the squared error of plain walks in each room but lantern_house (0.91), and less than half in the
-// geometric mean.
+// long size, and a fifth more at most (of two kinds of CPUs, whose rays are rounded otherwise, so that other paths
+// represent their clusters: cornell has 1.7 % with AVX-512 and 3.0 % without); they guard what is there and do not say
+// that it is enough. Clusters have less than 0.9 of the squared error of plain walks in each room but lantern_house
+// (0.91), and less than half in the geometric mean.
 TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
-    const SamplerCase cases[] = {{"cornell", assets::make_cornell, 0.02},
+    const SamplerCase cases[] = {{"cornell", assets::make_cornell, 0.036},
                                  {"area_room", assets::make_area_room, 0.061},
                                  {"table_room", assets::make_table_room, 0.01},
                                  {"four_pillars", assets::make_four_pillars, 0.029},
@@ -215,7 +216,7 @@ TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
                                  {"gap_room", assets::make_gap_room, 0.075},
                                  {"lantern_house", assets::make_lantern_house, 0.087, 1.0},
                                  {"lantern_game", assets::make_lantern_game, 0.057}};
-    const std::uint32_t seeds = by_size(8u, 32u);
+    const std::uint32_t seeds = 32; // the limits are those of so many
     double logarithms = 0.0;
     const auto tested = std::span(cases).first(by_size<std::size_t>(4, std::size(cases)));
     for (const SamplerCase& one : tested) {
