@@ -27,10 +27,14 @@ void set_ray(RTCRay& target, const Ray& ray) {
     target.flags = 0;
 }
 
+// Processors without packets of that size are given single rays, whatever `valid` says, and end the program where those
+// cannot be traced: they get one that is empty.
 void set_rays(RTCRay16& query, int (&valid)[packet_size], const ShadowPacket& packet) {
+    Ray empty{vec3(0.0f), vec3(0.0f, 0.0f, 1.0f)};
+    empty.minimum = 0.0f, empty.maximum = -1.0f;
     for (std::size_t i = 0; i < packet_size; ++i) {
-        const Ray& ray = packet.rays[i];
-        valid[i] = ((packet.active >> i) & 1u) != 0 && is_traceable(ray) ? -1 : 0;
+        valid[i] = ((packet.active >> i) & 1u) != 0 && is_traceable(packet.rays[i]) ? -1 : 0;
+        const Ray& ray = valid[i] != 0 ? packet.rays[i] : empty;
         query.org_x[i] = ray.origin.x, query.org_y[i] = ray.origin.y, query.org_z[i] = ray.origin.z;
         query.dir_x[i] = ray.direction.x, query.dir_y[i] = ray.direction.y, query.dir_z[i] = ray.direction.z;
         query.tnear[i] = ray.minimum, query.tfar[i] = ray.maximum;
