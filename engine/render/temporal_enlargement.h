@@ -42,7 +42,7 @@ public:
     };
     // Writes `target`, of at least that size, which holds what the frame before showed, and counts a frame.
     Status add(gpu::FrameGraph& graph, const Input& input, gpu::ResourceId target, gpu::FrameResources& resources);
-    // A frame was made otherwise: the next one begins anew.
+    // A frame was drawn without it: the next one starts with no history.
     void forget();
 
 private:

@@ -9,7 +9,7 @@
 // as if nothing was baked. Curved surfaces have texels of their own (curved_charts.h), after those of the light maps.
 //
 // Baking is work of many frames, so much a frame; a patch or chart that waits is rough. A sample that changed its
-// strength is replaced, to the last bit, as in light maps, and what is rough is found anew once no more of them wait;
+// strength is replaced, to the last bit, as in light maps, and rough cells are marked again once no more samples wait;
 // patches for which that is too much for a frame wait, and the others stay as they are.
 #pragma once
 
@@ -89,10 +89,11 @@ private:
     gpu::UploadedBuffer job_texels_, finish_texels_, row_texels_; // of the frame
     std::vector<Piece> pieces_;
     bool in_use_ = false;
-    bool wipe_ = false;                         // all texels become rough in this frame
-    std::vector<std::uint32_t> wiped_;          // or those of these pieces
-    std::vector<std::uint8_t> roughness_waits_; // by piece: its light has changed, what is rough is to be found anew
-    std::uint32_t roughness_waited_ = 0;        // frames
+    bool wipe_ = false;                // all texels become rough in this frame
+    std::vector<std::uint32_t> wiped_; // or those of these pieces
+    std::vector<std::uint8_t>
+        roughness_waits_;                // by piece: its light has changed, its rough cells are to be marked again
+    std::uint32_t roughness_waited_ = 0; // frames
     std::uint64_t generation_ = 0;
     float fixed_point_ = 0.0f;
     std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be

@@ -17,7 +17,7 @@ struct LightMapJob {
     uint first_texel;
     uint columns;
     uint rows;
-    uint clear; // of a job that finishes cells: 1 if what is rough is found anew
+    uint clear; // of a job that finishes cells: 1 if rough cells are marked again
     uint first_change;
     uint change_count;
     uint first; // first of the texels to update: large maps with many changes are split into several jobs
