@@ -193,6 +193,7 @@ viewer::FrameRequest Level::request(const DemoSettings& settings, std::uint32_t 
     request.temporal = settings.temporal;
     request.glare = settings.glare;
     request.strength_budget = strength_changes;
+    request.refinement_budget = refinement;
     request.ev100 = ev100_ - settings.exposure;
     request.meter = settings.adaptation && !fixed_exposure_;
     return request;

@@ -28,6 +28,8 @@ public:
     // Samples that may change their strength in a frame: a door or the switch of bounced light changes a hundred and
     // more.
     static constexpr std::uint32_t strength_changes = 8;
+    // Of refined light, in a frame: some ten milliseconds of two cores, for the first 300 frames or so.
+    static constexpr std::uint32_t refinement = 2000;
 
     // `progress`: io::ImportOptions::progress.
     static Result<std::unique_ptr<Level>> load(gpu::Device& device, const LevelSource& source,

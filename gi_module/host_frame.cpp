@@ -140,6 +140,7 @@ Status Context::Implementation::follow(const Frame& frame, bool lost) {
     input.serial = frame.serial;
     input.completed_serial = frame.completed_serial;
     input.map_budget = frame.map_budget;
+    input.refinement_budget = frame.refinement_budget;
     input.progress = part(1.0f);
     input.view_projection = self.view_projection;
     gi::set_measured_times(input, timers->latest());

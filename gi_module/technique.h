@@ -43,6 +43,9 @@ struct FrameInput {
     // `view_projection` first. It bounds what such a change costs a frame, by a count, so that the same frames give the
     // same pictures.
     std::uint32_t strength_budget = 0xffffffffu;
+    // Thousands of light samples times texels that are evaluated in this frame at most to refine the light of what
+    // stands still (`baked_samples`): 4,000 take 15 to 30 ms of two cores. By a count, too.
+    std::uint32_t refinement_budget = 0xffffffffu;
     // Where settings, static geometry or static emitters have changed, or a lamp its strength for the first time,
     // samples, visibility and static shadows stay as they are, and System::outdated() is true: for hosts that prepare
     // new ones beside their frames (with a second system). Without it, the update makes them, which may take seconds.

@@ -23,6 +23,7 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
     // drawn, often hundreds of MiB, would be cleared first.
     request.light_pixels = false;
     request.map_budget = 0;
+    request.refinement_budget = 0;
     request.progress = [&](float share) { return options.progress(samples_until * share); };
     SUNFLECK_TRY(renderer.render_and_wait(request));
     request.progress = {};
@@ -44,6 +45,7 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
             request.map_budget = std::max(request.map_budget / 2, 1u);
     }
     request.light_pixels = true;
+    request.refinement_budget = 1; // it begins: its kernels are compiled
     SUNFLECK_TRY(renderer.render_and_wait(request));
     request.as_if_stale = true; // as soon as something moves
     return renderer.render_and_wait(request);

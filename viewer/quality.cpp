@@ -55,6 +55,7 @@ gi::Settings quality_settings(Quality quality, const QualityPreset& preset) {
     result.repair_contacts = quality > Quality::low; // with less, shadow maps are too coarse to show contacts
     result.patch_levels = 2;                         // houses have many small surfaces
     result.dynamic_share = 0.2f;
+    result.baked_samples = quality <= Quality::low ? 1600 : 3200; // these are made once
     result.map_priority = gi::MapPriority::contribution;
     if (gi::Settings::find("moving_light_tiles") != nullptr)
         result.with("moving_light_tiles", std::to_string(preset.moving_light_tiles));

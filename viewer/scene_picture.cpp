@@ -36,9 +36,9 @@ bool SceneRenderer::is_cut(const FrameRequest& request) const {
 
 bool SceneRenderer::picture_changes() const {
     const gi::Report& counters = lighting_->counters();
-    const std::initializer_list<const char*> unfinished = {"shadow_maps_stale",  "shadow_map_updates",
-                                                           "light_samples_late", "light_map_updates",
-                                                           "light_maps_waiting", "baked_light_waiting"};
+    const std::initializer_list<const char*> unfinished = {
+        "shadow_maps_stale",  "shadow_map_updates",  "light_samples_late",   "light_map_updates",
+        "light_maps_waiting", "baked_light_waiting", "refined_light_changes"};
     return scene_changed_ ||
            std::any_of(unfinished.begin(), unfinished.end(), [&](const char* name) { return counters[name] > 0.0; });
 }

@@ -183,6 +183,7 @@ Status SceneRenderer::update_lighting(const FrameRequest& request, const scene::
     input.progress = request.progress;
     input.indirect_scale = request.indirect_scale;
     input.strength_budget = request.strength_budget;
+    input.refinement_budget = request.refinement_budget;
     input.milliseconds = request.milliseconds;
     input.keep_samples = request.keep_samples;
     input.view_projection = camera_row(request).view_projection;

@@ -40,12 +40,13 @@ struct FrameRequest {
     float ev100 = 8.0f;
     std::uint64_t step = 0; // simulation step of the movers
     std::uint32_t map_budget = 0xffffffffu;
-    float indirect_scale = 1.0f;                 // scales indirect light
-    std::uint32_t strength_budget = 0xffffffffu; // gi::FrameInput::strength_budget
-    std::optional<double> milliseconds;          // gi::FrameInput::milliseconds
-    bool light_pixels = true;                    // gi::FrameInput::light_pixels
-    bool as_if_stale = false;                    // gi::FrameInput::as_if_stale
-    bool keep_samples = false;                   // gi::FrameInput::keep_samples
+    float indirect_scale = 1.0f;                   // scales indirect light
+    std::uint32_t strength_budget = 0xffffffffu;   // gi::FrameInput::strength_budget
+    std::uint32_t refinement_budget = 0xffffffffu; // gi::FrameInput::refinement_budget
+    std::optional<double> milliseconds;            // gi::FrameInput::milliseconds
+    bool light_pixels = true;                      // gi::FrameInput::light_pixels
+    bool as_if_stale = false;                      // gi::FrameInput::as_if_stale
+    bool keep_samples = false;                     // gi::FrameInput::keep_samples
     // Rays and shadows of static geometry stay as they are while that changes, which costs such frames next to nothing:
     // light falls as if it stood where it was. The first frame without this follows. Needs keep_samples.
     bool keep_geometry = false;

@@ -52,6 +52,7 @@ gi::Settings settings_of(const ShownPreset& shown) {
     gi::Settings settings = viewer::quality_settings(shown.quality, preset);
     if (shown.before) {
         settings.shadow_filter = false;
+        settings.baked_samples = 0;
         settings.low_resolution = 2;
         settings.with("specular", "none");
     }
@@ -81,7 +82,8 @@ Status settle(Bench& bench, const gi::Settings& settings) {
     for (std::uint32_t i = 0; i < most_settling; ++i) {
         SUNFLECK_TRY(bench.renderer->render_and_wait(bench.request));
         const gi::Report& counters = bench.renderer->lighting().counters();
-        if (i > 0 && counters["shadow_maps_stale"] == 0.0 && counters["baked_light_waiting"] == 0.0)
+        if (i > 0 && counters["shadow_maps_stale"] == 0.0 && counters["baked_light_waiting"] == 0.0 &&
+            counters["refined_light_waiting"] == 0.0)
             break;
     }
     return {};
@@ -193,7 +195,7 @@ public:
     const Json* row(const View& view, const ShownPreset& shown) const {
         for (const Json& row : rows_)
             if (row.value("scene", "") == view.scene && row.value("camera", "") == view.camera &&
-                row.value("preset", "") == shown.name())
+                row.value("preset", "") == shown.name() && row.contains("edges_at_rest"))
                 return &row;
         return nullptr;
     }

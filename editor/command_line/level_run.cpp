@@ -122,7 +122,8 @@ Status LevelRun::prepare() {
         SUNFLECK_TRY(render());
         if (interrupted())
             return Error{"interrupted; nothing was written"};
-        if (counters()["shadow_maps_stale"] == 0.0 && counters()["baked_light_waiting"] == 0.0)
+        if (counters()["shadow_maps_stale"] == 0.0 && counters()["baked_light_waiting"] == 0.0 &&
+            counters()["refined_light_waiting"] == 0.0)
             return {};
     }
     return {};

@@ -21,6 +21,8 @@ bool has_light(const io::Picture& radiance) {
     });
 }
 
+constexpr std::uint32_t refinement = 4000; // in a frame: some twenty milliseconds
+
 } // namespace
 
 viewer::FrameRequest SceneThread::frame_request() {
@@ -34,6 +36,7 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.overlay_sample = view_.chosen_sample;
     request.antialiasing = view_.look.antialiasing;
     request.glare = view_.look.glare;
+    request.refinement_budget = refinement;
     request.keep_samples = light_is_slow_;
     request.keep_geometry = hand_moves();
     request.simulate = play_ == nullptr;
@@ -179,6 +182,8 @@ Status SceneThread::draw_picture() {
     picture->played = play_ != nullptr ? std::make_shared<PlayedPlaces>(copy_->renderer().registry()) : nullptr;
     if (was_behind && !copy_->renderer().geometry_outdated()) // shadows begin to follow
         frames_left_ = std::max(frames_left_, frames_after_edit);
+    if (copy_->renderer().lighting().counters()["refined_light_waiting"] > 0.0) // it goes on while nobody does anything
+        frames_left_ = std::max(frames_left_, 2);
     fill_listing();
     note_light();
     picture->settled = frames_left_ <= 1 && !moves() && !light_pending_;

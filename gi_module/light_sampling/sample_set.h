@@ -78,6 +78,9 @@ public:
     // The bound that clamps the geometry term, 1/m2 (transport/clamping.h); single samples may have lower ones.
     float geometry_bound() const { return bound_; }
 
+    // Of the same fixed emitters, as many as SamplingSettings::baked_samples: what light would be with so many. They
+    // have no rows, and no shadow maps here.
+    std::span<const LightSample> refining_samples() const { return refining_; }
     // Of the last update: those that stay as they are, and those that move or vary.
     std::span<const Emitter> fixed_emitters() const { return emitters_; }
     std::span<const Emitter> dynamic_emitters() const { return dynamic_emitters_; }
@@ -118,7 +121,7 @@ private:
     float bound_of(const LightSample& sample, const LightSettings& settings) const;
     void find_loss(const SceneView& scene, const LightSettings& settings);
 
-    std::vector<LightSample> samples_;
+    std::vector<LightSample> samples_, refining_;
     std::vector<shared::LightRow> rows_;
     std::vector<Emitter> emitters_;         // static
     std::vector<Emitter> dynamic_emitters_; // that move or vary

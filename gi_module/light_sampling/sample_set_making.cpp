@@ -1,6 +1,8 @@
 // How a SampleSet generates all of its samples.
 #include "gi_module/light_sampling/sample_set.h"
 
+#include "engine/core/progress_part.h"
+#include "engine/core/random.h"
 #include "gi_module/light_sampling/sample_source.h"
 #include "gi_module/transport/light_plan.h"
 
@@ -37,19 +39,30 @@ Status SampleSet::make_samples(const SampleRequest& request, const SceneView& sc
     followed_.let_through.clear();
     SampleRequest fixed = request; // for static emitters: what the others leave
     fixed.lights -= std::min(request.lights, std::uint32_t(followed_.movers.samples().size()));
-    const std::uint32_t share = dynamic_share(fixed, dynamic_emitters_.size(), !emitters_.empty());
-    followed_.lights.reset(share > 0 ? dynamic_emitters_ : std::vector<Emitter>(), share, request, rays);
+    const std::uint32_t moving = dynamic_share(fixed, dynamic_emitters_.size(), !emitters_.empty());
+    followed_.lights.reset(moving > 0 ? dynamic_emitters_ : std::vector<Emitter>(), moving, request, rays);
     fixed.lights -= std::min(fixed.lights, std::uint32_t(followed_.lights.samples().size()));
     bool stopped = false;
     const auto watched = [&](float done) {
         stopped = stopped || !progress(done);
         return !stopped;
     };
-    std::vector<LightSample> made = sample_sources()[request.source].make(
-        emitters_, fixed, rays, progress ? watched : std::function<bool(float)>());
+    const auto make = [&](const SampleRequest& wanted, float begin, float end) {
+        const std::function<bool(float)> whole = progress ? watched : std::function<bool(float)>();
+        return sample_sources()[request.source].make(emitters_, wanted, rays, progress_part(whole, begin, end));
+    };
+    SampleRequest many = fixed;
+    many.lights = request.baked_samples;
+    many.seed = hash_combine(request.seed, 0xba4ed); // others
+    const float share = float(fixed.lights) / float(std::max(fixed.lights + many.lights, 1u));
+    std::vector<LightSample> made = make(fixed, 0.0f, share);
+    std::vector<LightSample> refining;
+    if (many.lights > 0 && !stopped)
+        refining = make(many, share, 1.0f);
     if (stopped)
         return Error{"preparing the light samples was stopped", ErrorCode::stopped};
     samples_ = std::move(made);
+    refining_ = std::move(refining);
     for (const auto* dynamic : {&followed_.lights.samples(), &followed_.movers.samples()})
         samples_.insert(samples_.end(), dynamic->begin(), dynamic->end());
     sort_samples();

@@ -18,6 +18,9 @@ enum class SampledLight : std::uint32_t { used, all };
 struct SamplingSettings {
     std::uint32_t source = 0;   // index into sample_sources() (sample_source.h)
     std::uint32_t lights = 300; // light samples, exactly
+    // Further samples of static emitters: light that is baked is refined by them, and they cost frames nothing once it
+    // is. 0: it is that of `lights`.
+    std::uint32_t baked_samples = 0;
     float direct_share = 0.25f; // of the samples, for direct light
     // Of the samples, for dynamic emitters, if there are any; they divide it by flux.
     float dynamic_share = 0.15f;

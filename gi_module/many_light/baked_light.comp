@@ -54,7 +54,8 @@ Pixel pixel_at(LightMapJob job, uint i) {
         pixel.normal = unpack_normal(point.normal);
         pixel.geometric_normal = unpack_normal(point.geometric_normal);
     } else {
-        const vec2 place = vec2(i % job.columns, i / job.columns) / vec2(job.columns - 1u, job.rows - 1u);
+        const vec2 last = vec2(job.columns - 1u, job.rows - 1u);
+        const vec2 place = clamp(vec2(i % job.columns, i / job.columns), vec2(constants.inset), last - constants.inset) / last;
         pixel.position = job.corner.xyz + job.u_edge.xyz * place.x + job.v_edge.xyz * place.y;
         pixel.normal = pixel.geometric_normal = job.normal.xyz;
     }

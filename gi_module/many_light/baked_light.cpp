@@ -18,6 +18,7 @@ constexpr std::uint32_t texels_at_a_time = 64; // of a work group: baked_light.c
 constexpr std::uint64_t max_evaluations = 16000000, max_first_evaluations = 400000000;
 // In portions: as long with filtered shadow maps, which take some eight times as long, beside the frames of others.
 constexpr std::uint64_t max_portion_evaluations = 2000000;
+constexpr std::uint64_t max_portion_marks = 50000; // texels whose cells are marked again: some 5 ms
 // Of the light: by so much may second differences of neighbouring texels exceed a straight line. Interpolation is off
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
@@ -116,8 +117,10 @@ Status BakedLight::start_anew(const VisibilityDatabase& database, const LightMap
     waiting_.resize(pieces_.size());
     std::iota(waiting_.rbegin(), waiting_.rend(), 0u);
     wipe_ = true;
+    next_marked_ = pieces_.size(); // baking marks them all
     roughness_waits_.assign(pieces_.size(), 0);
     const std::uint64_t texels = std::max<std::uint64_t>(light_maps.counters().texels + curved.points().size(), 1);
+    texel_count_ = texels;
     if (sums_.size() >= texels * sizeof(glm::ivec4))
         return {};
     resources.retire(std::move(sums_));
@@ -208,6 +211,14 @@ std::uint32_t BakedLight::take_waiting(const VisibilityDatabase& database, std::
     return std::uint32_t(count);
 }
 
+void BakedLight::add_samples(LightMapJobs& jobs, const VisibilityDatabase& database,
+                             std::span<const LightSample> samples, const Piece& piece, std::uint32_t first_row) {
+    for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
+        if (held_by_light_maps(samples[sample]))
+            if (const auto flag = test_flag(database, piece.nodes, sample))
+                jobs.add_change((first_row + sample) | *flag);
+}
+
 void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
                               std::uint64_t most) {
     const std::uint32_t now = std::uint32_t(job_rows_.size()); // the rows as they are at present
@@ -219,10 +230,7 @@ void BakedLight::bake_waiting(const VisibilityDatabase& database, std::span<cons
     jobs_.add_all(count, [&](LightMapJobs& jobs, std::uint32_t i) {
         const Piece& piece = piece_at(i);
         jobs.add(piece.job, true);
-        for (std::uint32_t sample = 0; sample < samples.size(); ++sample)
-            if (held_by_light_maps(samples[sample]))
-                if (const auto flag = test_flag(database, piece.nodes, sample))
-                    jobs.add_change((now + sample) | *flag);
+        add_samples(jobs, database, samples, piece, now);
     });
     waiting_.resize(waiting_.size() - count);
 }
@@ -250,10 +258,26 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     else
         SUNFLECK_TRY(start_anew(database, light_maps, scene.curved, scene.rows, resources));
     const std::uint64_t usual = first ? max_first_evaluations : max_evaluations;
+    if (finish_.empty() && waiting_.empty())
+        mark_again(in_portions ? max_portion_marks : texel_count_);
     bake_waiting(database, scene.samples, in_portions ? max_portion_evaluations : usual);
     counters_ = {jobs_.changes().size(), waiting_.size()};
     jobs_.split(texels_at_a_time);
     return {};
+}
+
+void BakedLight::judge_by(const gpu::Buffer& ratios, bool refined) {
+    ratios_ = &ratios;
+    if (std::exchange(refined_, refined) != refined)
+        next_marked_ = 0;
+}
+
+// In a frame in which no other cells are marked.
+void BakedLight::mark_again(std::uint64_t most_texels) {
+    for (std::uint64_t texels = 0; marks_again() && texels < most_texels; ++next_marked_) {
+        finish_.add(pieces_[next_marked_].job, true);
+        texels += pieces_[next_marked_].texels();
+    }
 }
 
 // Texels become rough: all, or those of some pieces.
@@ -306,6 +330,7 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     constants.fixed_point = fixed_point_;
     constants.map_resolution = maps.resolution();
     constants.roughness_limit = roughness_limit;
+    constants.refined = refined_;
     const auto dispatch = [&](gpu::ComputePass& pass, std::size_t count) {
         constants.jobs = std::uint32_t(count);
         constants.row_length = std::min(constants.jobs, 32768u);
@@ -323,7 +348,11 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
         dispatch(pass, jobs_.jobs().size());
     }
     gpu::ComputePass pass(graph, "baked light cells", *finish);
-    pass.texels(finish_texels_.buffer()).texels(sums_).storage_read_write(texels_).storage_read(points_.buffer());
+    pass.texels(finish_texels_.buffer())
+        .texels(sums_)
+        .storage_read_write(texels_)
+        .storage_read(points_.buffer())
+        .texels(*ratios_);
     dispatch(pass, finish_.jobs().size());
     return {};
 }

@@ -43,6 +43,11 @@ public:
     void forget();
     bool in_use() const { return in_use_; }
 
+    // Whether cells are rough is judged by the light that is shown: if `refined`, `ratios` times what is baked, by
+    // texel. Where this changes, cells are marked again, from the next update on.
+    void judge_by(const gpu::Buffer& ratios, bool refined);
+    bool marks_again() const { return next_marked_ < pieces_.size(); }
+
     // Adds the passes that do the frame's share. After those that draw shadow maps.
     Status add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bool filter, gpu::FrameResources& resources);
 
@@ -59,8 +64,6 @@ public:
     }
     const BakedLightCounters& counters() const { return counters_; }
 
-private:
-    BakedLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
     // A patch, or a chart of a curved surface.
     struct Piece {
         shared::LightMapJob job;          // but for its changes
@@ -68,6 +71,18 @@ private:
 
         std::uint64_t texels() const { return std::uint64_t(job.columns) * job.rows; }
     };
+    // The changes of the last job of `jobs`, that of the piece: all samples whose light reaches it, as it is baked. The
+    // row of the first sample is `first_row`.
+    static void add_samples(LightMapJobs& jobs, const VisibilityDatabase& database,
+                            std::span<const LightSample> samples, const Piece& piece, std::uint32_t first_row);
+    const std::vector<Piece>& pieces() const { return pieces_; }
+    std::uint64_t pieces_generation() const { return generation_; } // of the database
+    std::uint64_t texel_count() const { return texel_count_; }      // of all pieces
+    const gpu::Buffer& points() const { return points_.buffer(); }  // CurvedPoints
+    float fixed_point() const { return fixed_point_; }
+
+private:
+    BakedLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
     void find_pieces(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved);
     Status start_anew(const VisibilityDatabase& database, const LightMaps& light_maps, const CurvedCharts& curved,
                       std::span<const shared::LightRow> rows, gpu::FrameResources& resources);
@@ -75,6 +90,7 @@ private:
     void follow_strengths(const VisibilityDatabase& database, std::span<const shared::LightRow> rows,
                           std::span<const std::uint32_t> changed, bool more_follow);
     void bake_later(std::uint32_t piece);
+    void mark_again(std::uint64_t most_texels);
     void add_wipe(gpu::FrameGraph& graph);
     Status upload_jobs(gpu::FrameGraph& graph, gpu::FrameResources& resources);
     std::uint32_t take_waiting(const VisibilityDatabase& database, std::span<const LightSample> samples,
@@ -94,13 +110,16 @@ private:
     std::vector<std::uint8_t>
         roughness_waits_;                // by piece: its light has changed, its rough cells are to be marked again
     std::uint32_t roughness_waited_ = 0; // frames
-    std::uint64_t generation_ = 0;
+    std::uint64_t generation_ = 0, texel_count_ = 0;
     float fixed_point_ = 0.0f;
     std::vector<shared::LightRow> baked_rows_; // what was baked with, or will be
     std::vector<shared::LightRow> job_rows_;   // those, then add_replacements of samples whose strength changed
     std::vector<std::uint32_t> waiting_;       // pieces, the next one last
     std::uint64_t evaluations_ = 0;            // samples times texels, of this frame
     LightMapJobs jobs_, finish_;               // sums; then cells
+    const gpu::Buffer* ratios_ = nullptr;
+    bool refined_ = false;
+    std::size_t next_marked_ = 0; // piece whose cells are to be marked again, and all after it
     BakedLightCounters counters_;
 };
 

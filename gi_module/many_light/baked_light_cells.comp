@@ -11,16 +11,23 @@ layout(set = 0, binding = 0) uniform usamplerBuffer jobs; // LightMapJobs
 layout(set = 0, binding = 1) uniform isamplerBuffer sums;
 layout(set = 0, binding = 2) buffer Texels { uvec2 texels[]; };
 layout(set = 0, binding = 3) readonly buffer Points { CurvedPoint points[]; };
+layout(set = 0, binding = 4) uniform samplerBuffer refined_ratios;
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
 #include "gi_module/many_light/light_map_job.glsl"
 
 const float largest_half = 65504.0;
 
-// Of places beside the map, something that is not looked at.
+int place_of(LightMapJob job, ivec2 texel) {
+    return int(job.first_texel) + clamp(texel.y * int(job.columns) + texel.x, 0, int(job.columns * job.rows) - 1);
+}
+
+vec3 sum_at(int place) { return vec3(texelFetch(sums, place).xyz); }
+
+// As it is shown. Of places beside the map, something that is not looked at.
 vec3 light_at(LightMapJob job, ivec2 texel) {
-    const int place = clamp(texel.y * int(job.columns) + texel.x, 0, int(job.columns * job.rows) - 1);
-    return vec3(texelFetch(sums, int(job.first_texel) + place).xyz);
+    const int place = place_of(job, texel);
+    return constants.refined != 0u ? sum_at(place) * texelFetch(refined_ratios, place).rgb : sum_at(place);
 }
 
 // Whether a texel is too far off the line between its neighbours, relative to the brightest of the three.
@@ -117,7 +124,8 @@ void finish_block(LightMapJob job, ivec2 block) {
     [[unroll]] for (int y = 0; y < block_rows; ++y)
         [[unroll]] for (int x = 0; x < block_columns; ++x)
             if (all(lessThan(block + ivec2(x, y), ivec2(job.columns, job.rows))))
-                finish(job, block + ivec2(x, y), region.light[(y + 1) * region_columns + x + 1],
+                finish(job, block + ivec2(x, y),
+                       constants.refined != 0u ? sum_at(place_of(job, block + ivec2(x, y))) : region.light[(y + 1) * region_columns + x + 1],
                        uneven[y][x] || uneven[y][x + 1] || uneven[y + 1][x] || uneven[y + 1][x + 1]);
 }
 

@@ -30,7 +30,15 @@ layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
 layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
 layout(set = 0, binding = 13) uniform samplerBuffer curved_rows; // CurvedChartRows
+layout(set = 0, binding = 14) uniform samplerBuffer refined_ratios;
+layout(set = 0, binding = 15) writeonly buffer Ratios { uvec2 ratios[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+// Where light is evaluated by pixel, what a texel lacks says less of it.
+const float least_rough_ratio = 0.5, most_rough_ratio = 2.0;
+
+// Not a kernel of its own: that would be compiled in the middle of a game.
+bool is_refined() { return constants.refined_share > 0.0; }
 
 // The chart without its cells.
 SurfaceChart chart_plane_at(uint i) {
@@ -94,18 +102,46 @@ vec3 light_map(NodeRow row, TexelPlace place) {
     return mix(low, high, place.weight.y) / constants.fixed_point;
 }
 
-// a: 0 if it may be used.
-vec4 baked_light(NodeRow row, TexelPlace place) {
+// Light of the samples of the frame, and refined light over it.
+struct BakedLight {
+    vec3 light;
+    vec3 ratio;
+};
+
+// From the texels `first`, `below` and those to their right. Both are interpolated, and then divided.
+BakedLight interpolated(int first, int below, vec2 weight) {
+    const int texels[4] = int[4](first, first + 1, below, below + 1);
+    const float weights[4] = float[4]((1.0 - weight.x) * (1.0 - weight.y), weight.x * (1.0 - weight.y),
+                                      (1.0 - weight.x) * weight.y, weight.x * weight.y);
+    BakedLight baked = BakedLight(vec3(0.0), vec3(1.0));
+    vec3 light = vec3(0.0);
+    for (int i = 0; i < 4; ++i) {
+        const vec3 texel = weights[i] * texelFetch(baked_texels, texels[i]).rgb;
+        baked.light += texel;
+        light += texel * mix(vec3(1.0), texelFetch(refined_ratios, texels[i]).rgb, constants.refined_share);
+    }
+    baked.ratio = mix(vec3(1.0), light / max(baked.light, 1e-30), greaterThan(baked.light, vec3(0.0)));
+    return baked;
+}
+
+vec3 interpolated_light(int first, int below, vec2 weight) {
+    const vec3 low = mix(texelFetch(baked_texels, first).rgb, texelFetch(baked_texels, first + 1).rgb, weight.x);
+    const vec3 high = mix(texelFetch(baked_texels, below).rgb, texelFetch(baked_texels, below + 1).rgb, weight.x);
+    return mix(low, high, weight.y);
+}
+
+// `rough`: its light is not to be used.
+BakedLight baked_light(NodeRow row, TexelPlace place, out bool rough) {
     const int first = int(place.first), below = first + int(row.columns);
-    const vec4 corner = texelFetch(baked_texels, first);
-    const vec3 low = mix(corner.rgb, texelFetch(baked_texels, first + 1).rgb, place.weight.x);
-    const vec3 high = mix(texelFetch(baked_texels, below).rgb, texelFetch(baked_texels, below + 1).rgb, place.weight.x);
-    return vec4(mix(low, high, place.weight.y), corner.a);
+    rough = texelFetch(baked_texels, first).a != 0.0;
+    if (!is_refined())
+        return BakedLight(interpolated_light(first, below, place.weight), vec3(1.0));
+    return interpolated(first, below, place.weight);
 }
 
 // The same on a curved surface, from the chart that its normal selects. Points that are not on the chart's surface are
 // rough, too.
-vec4 curved_light(uint first_chart, vec3 position, vec3 geometric_normal) {
+BakedLight curved_light(uint first_chart, vec3 position, vec3 geometric_normal, out bool rough) {
     const uint direction = curved_direction(geometric_normal);
     const int chart = int(first_chart + direction) * 2;
     const vec4 chart_place = texelFetch(curved_rows, chart), size = texelFetch(curved_rows, chart + 1);
@@ -114,12 +150,12 @@ vec4 curved_light(uint first_chart, vec3 position, vec3 geometric_normal) {
     const vec2 corner = clamp(floor(texel), vec2(0.0), max(size.xy - 2.0, 0.0));
     const vec2 weight = texel - corner;
     const int first = int(size.z) + int(corner.y) * int(size.x) + int(corner.x), below = first + int(size.x);
-    const vec4 light = texelFetch(baked_texels, first);
-    const vec3 low = mix(light.rgb, texelFetch(baked_texels, first + 1).rgb, weight.x);
-    const vec3 high = mix(texelFetch(baked_texels, below).rgb, texelFetch(baked_texels, below + 1).rgb, weight.x);
-    const bool found = size.x > 0.0 && abs(weight.x - 0.5) <= 0.5 && abs(weight.y - 0.5) <= 0.5 &&
-                       abs(point.z * size.w - light.a) <= curved_point_span * size.w / chart_place.w;
-    return vec4(mix(low, high, weight.y), found ? 0.0 : 1.0);
+    const float height = texelFetch(baked_texels, first).a;
+    const bool inside = size.x > 0.0 && abs(weight.x - 0.5) <= 0.5 && abs(weight.y - 0.5) <= 0.5;
+    rough = !(inside && abs(point.z * size.w - height) <= curved_point_span * size.w / chart_place.w);
+    if (is_refined() && inside)
+        return interpolated(first, below, weight);
+    return BakedLight(interpolated_light(first, below, weight), vec3(1.0));
 }
 
 void main() {
@@ -142,7 +178,7 @@ void main() {
     const bool in_picture = exists;
     exists = exists && surface != 0u;
     uint node = no_node;
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0), ratio = vec3(1.0);
     if (exists) {
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
         const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
@@ -155,27 +191,36 @@ void main() {
             if (row.first_texel != no_light_map) {
                 const TexelPlace place = texel_place(row, position);
                 const vec3 difference = unpack_normal(normals.r) - geometric_normal;
-                const vec4 light = baked != 0 ? baked_light(row, place) : vec4(1.0);
                 // Texels are lit with the patch's normal.
                 const bool differs = dot(difference, difference) >= flat_shaded_limit;
-                const bool unshadowed = !differs && light.a != 0.0;
-                node |= differs ? node_normal_differs : unshadowed ? 0u : node_baked;
-                sum = differs ? vec3(0.0) : light.rgb;
+                bool rough = true;
+                if (baked != 0) {
+                    const BakedLight light = baked_light(row, place, rough);
+                    sum = light.light;
+                    ratio = rough ? clamp(light.ratio, least_rough_ratio, most_rough_ratio) : light.ratio;
+                }
+                node |= differs ? node_normal_differs : rough ? 0u : node_baked;
                 curved = differs && baked != 0 && instance.first_curved_chart != no_node;
-                if (unshadowed)
+                if (rough)
                     sum = light_map(row, place);
+                if (differs)
+                    sum = vec3(0.0);
             } else {
                 curved = baked != 0 && instance.first_curved_chart != no_node;
             }
         }
         if (curved) {
-            const vec4 light = curved_light(instance.first_curved_chart, position, geometric_normal);
-            node |= light.a == 0.0 ? node_baked : 0u;
-            sum = light.a == 0.0 ? light.rgb : vec3(0.0);
+            bool rough;
+            const BakedLight light = curved_light(instance.first_curved_chart, position, geometric_normal, rough);
+            node |= rough ? 0u : node_baked;
+            sum = rough ? vec3(0.0) : light.light;
+            ratio = rough ? clamp(light.ratio, least_rough_ratio, most_rough_ratio) : light.ratio;
         }
     }
     if (from_list == 0)
         pixels[entry] = in_picture ? uint(pixel.x) | (uint(pixel.y) << 16) | (exists ? 0u : unlit_pixel) : no_pixel;
     entry_nodes[entry] = node;
-    sums[entry] = vec4(sum, exists ? 1.0 : 0.0);
+    sums[entry] = vec4(sum * ratio, exists ? 1.0 : 0.0);
+    if (is_refined())
+        ratios[entry] = uvec2(packHalf2x16(ratio.rg), packHalf2x16(vec2(ratio.b, 0.0)));
 }

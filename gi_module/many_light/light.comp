@@ -34,6 +34,7 @@ layout(set = 0, binding = 9) buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 10) writeonly uniform image2D output_image;
 layout(set = 0, binding = 11) uniform usamplerBuffer static_map_words;
 layout(set = 0, binding = 12) readonly buffer RoughEntries { uint rough_entries[]; };
+layout(set = 0, binding = 13) readonly buffer Ratios { uvec2 ratios[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
 
 #include "gi_module/shadows/map_words.glsl"
@@ -55,6 +56,10 @@ float mover_occlusion(LightRow light, Pixel pixel, float visibility) {
     use_static_maps = false;
     return max(before - visibility, 0.0);
 }
+
+// Whether the samples' light is scaled by pixel (refined_light.h). Not a kernel of its own: that would be compiled in the
+// middle of a game.
+bool is_refined() { return phase != phase_plain && constants.refined_share > 0.0; }
 
 void main() {
     const uint group = gl_WorkGroupID.x;
@@ -83,7 +88,7 @@ void main() {
         surface[k].on_mover = (entry_local_nodes[i] & entry_on_mover) != 0u ? 1.0 : 0.0;
         if (phase == phase_baked && (entry_local_nodes[i] & entry_is_baked) == 0u)
             surface[k].normal = vec3(0.0); // so that no sample lights it
-        sum[k] = sums[entry];
+        sum[k] = is_refined() ? vec4(0.0) : sums[entry];
     }
     // Loops are tested at their ends: a CPU device runs the body of others once more than they ask for.
     const uint first = group * constants.list_stride;
@@ -118,6 +123,11 @@ void main() {
         }
     } while (++i < count.untested);
     [[unroll]] for (uint k = 0; k < pixels_per_invocation; ++k) {
+        if (is_refined()) {
+            const uint entry = entry_of[k] != no_pixel ? entry_of[k] : 0u;
+            const uvec2 ratio = ratios[entry];
+            sum[k] = sums[entry] + vec4(sum[k].rgb * vec3(unpackHalf2x16(ratio.x), unpackHalf2x16(ratio.y).x), 0.0);
+        }
         // Slightly more may be subtracted than the interpolated light map holds: never below zero.
         if (to_image != 0) {
             if (place[k].x >= 0)

@@ -40,6 +40,14 @@ struct LightMapConstants {
     uint row_length;
     uint map_resolution;   // baked light
     float roughness_limit; // baked light
+    uint refined;          // baked light: 1 if cells are judged by refined light
+    float inset;           // baked light: columns that its outermost texels are moved inwards
+};
+
+// Of refined_light.comp.
+struct RefinedLightConstants {
+    uint texels;
+    uint row_length; // texels of a row of work groups, since a dispatch is limited in each direction
 };
 
 SHARED_END

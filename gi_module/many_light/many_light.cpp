@@ -10,6 +10,7 @@ Result<std::unique_ptr<ManyLight>> ManyLight::create(gpu::Device& device, gpu::P
     std::unique_ptr<ManyLight> technique(new ManyLight(device, pipelines));
     SUNFLECK_ASSIGN(technique->light_maps_, LightMaps::create(device, pipelines));
     SUNFLECK_ASSIGN(technique->baked_light_, BakedLight::create(device, pipelines));
+    SUNFLECK_ASSIGN(technique->refined_light_, RefinedLight::create(device, pipelines));
     VkSamplerCreateInfo sampler{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
     SUNFLECK_VK(device.vk.vkCreateSampler(device.handle(), &sampler, nullptr, &technique->sampler_),
                 "creating a sampler");
@@ -30,11 +31,14 @@ ManyLight::~ManyLight() {
 void ManyLight::restart() {
     light_maps_->restart();
     baked_light_->forget();
+    refined_light_->restart();
     tables_.restart();
 }
 
-Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& options, gpu::FrameResources& resources) {
+Status ManyLight::update(const ManyLightScene& scene, const RefinedLightScene& refined, const ManyLightOptions& options,
+                         gpu::FrameResources& resources) {
     VisibilityDatabase& database = scene.database;
+    gpu_scene_ = &scene.gpu_scene;
     if (options.light_maps && options.visibility)
         SUNFLECK_TRY(light_maps_->update(database, scene.samples, scene.rows, options.bake_in_portions, resources));
     else
@@ -46,6 +50,11 @@ Status ManyLight::update(const ManyLightScene& scene, const ManyLightOptions& op
                                           resources));
     else
         baked_light_->forget();
+    if (options.static_maps_changed)
+        refined_light_->forget();
+    marked_again_ = baked_light_->marks_again();
+    SUNFLECK_TRY(refined_light_->update(refined, *baked_light_, options.refinement_budget, resources));
+    baked_light_->judge_by(refined_light_->ratios(), refined_light_->share() == 1.0f);
     shared::NodeRow bare{};
     bare.first_texel = shared::no_light_map;
     std::vector<shared::NodeRow> node_rows;
@@ -86,6 +95,7 @@ Status ManyLight::make_buffers(const shared::ManyLightConstants& constants, gpu:
     const std::uint64_t entries = groups * shared::pixel_group_size;
     const std::uint64_t blocks = divide_up(std::uint32_t(groups), shared::pixel_groups_per_block);
     SUNFLECK_TRY(make_buffer(nodes_, "nodes of groups", entries * 4, 0, resources));
+    SUNFLECK_TRY(make_buffer(ratios_, "refined light of groups", entries * 8, 0, resources));
     SUNFLECK_TRY(make_buffer(local_nodes_, "local nodes of groups", entries * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(entries_, "lists of groups", groups * constants.list_stride * 4, 0, resources));
     SUNFLECK_TRY(make_buffer(counts_, "list lengths", groups * sizeof(shared::LightListCounts), 0, resources));
@@ -130,7 +140,10 @@ Status ManyLight::add_passes(gpu::FrameGraph& graph, const ManyLightInput& input
     tables_.add_passes(graph);
     if (options.light_maps && options.visibility)
         SUNFLECK_TRY(light_maps_->add_passes(graph, resources));
-    return baked_light_->in_use() ? baked_light_->add_passes(graph, input.maps, options.filter, resources) : Status();
+    if (!baked_light_->in_use())
+        return {};
+    SUNFLECK_TRY(baked_light_->add_passes(graph, input.maps, options.filter, resources));
+    return refined_light_->add_passes(graph, *gpu_scene_, *baked_light_, input.maps, options.filter, resources);
 }
 
 Status ManyLight::light(const PixelStage& stage, gpu::FrameResources& resources) {
@@ -139,7 +152,8 @@ Status ManyLight::light(const PixelStage& stage, gpu::FrameResources& resources)
     const bool shows = options_.show != shared::show_nothing;
     // Other false colours are of the work that there is without baked light.
     const bool baked = baked_light_->in_use() && (!shows || options_.show == shared::show_baked);
-    Frame frame{stage, options_, *maps_, make_constants(stage.constants), baked};
+    Frame frame{stage, options_, *maps_, make_constants(stage.constants), baked, baked && refines()};
+    frame.constants.refined_share = frame.refined ? refined_light_->share() : 0.0f;
     SUNFLECK_TRY(make_buffers(frame.constants, resources));
     // False colours show the groups of the low-resolution picture.
     if (!stage.repair || !shows) {
@@ -151,9 +165,10 @@ Status ManyLight::light(const PixelStage& stage, gpu::FrameResources& resources)
 }
 
 std::uint64_t ManyLight::memory_bytes() const {
-    std::uint64_t bytes = tables_.memory_bytes() + light_maps_->texels().size() + baked_light_->memory_bytes();
+    std::uint64_t bytes = tables_.memory_bytes() + light_maps_->texels().size() + baked_light_->memory_bytes() +
+                          refined_light_->memory_bytes();
     for (const gpu::Buffer* buffer :
-         {&nodes_, &local_nodes_, &entries_, &counts_, &block_groups_, &rough_entries_, &rough_commands_})
+         {&nodes_, &ratios_, &local_nodes_, &entries_, &counts_, &block_groups_, &rough_entries_, &rough_commands_})
         bytes += buffer->size();
     return bytes;
 }

@@ -11,6 +11,7 @@
 #include "gi_module/many_light/baked_light.h"
 #include "gi_module/many_light/light_maps.h"
 #include "gi_module/many_light/many_light_scene.h"
+#include "gi_module/many_light/refined_light.h"
 #include "gi_module/many_light/surface_tables.h"
 #include "gi_module/shadows/shadow_maps.h"
 #include "gi_module/transport/light_batch.h"
@@ -22,12 +23,13 @@ struct ManyLightOptions {
     bool filter = false;
     bool visibility = true; // off: every sample is tested at every pixel
     bool light_maps = true;
-    bool baked_light = true;                   // the static shadow maps of all samples are kept and complete
-    bool static_maps_changed = false;          // one of them is redrawn in this frame
-    bool bake_in_portions = false;             // also at first: no frame may take long
-    bool simplified_movers = false;            // in the maps
-    bool stale_maps = false;                   // some map shows movers where they were: see LightRow::bitangent
-    std::uint32_t show = shared::show_nothing; // false colours in place of the irradiance
+    bool baked_light = true;                       // the static shadow maps of all samples are kept and complete
+    bool static_maps_changed = false;              // one of them is redrawn in this frame
+    bool bake_in_portions = false;                 // also at first: no frame may take long
+    std::uint32_t refinement_budget = 0xffffffffu; // FrameInput::refinement_budget
+    bool simplified_movers = false;                // in the maps
+    bool stale_maps = false;                       // some map shows movers where they were: see LightRow::bitangent
+    std::uint32_t show = shared::show_nothing;     // false colours in place of the irradiance
 };
 
 // What the frame's passes read besides. Must live until the graph was executed, but for the spans.
@@ -43,7 +45,18 @@ public:
     ~ManyLight();
 
     // Follows the database; call once a frame before add_passes.
-    Status update(const ManyLightScene& scene, const ManyLightOptions& options, gpu::FrameResources& resources);
+    Status update(const ManyLightScene& scene, const RefinedLightScene& refined, const ManyLightOptions& options,
+                  gpu::FrameResources& resources);
+    // Whether light is refined in this frame, if only in part.
+    bool refines() const { return baked_light_->in_use() && refined_light_->share() > 0.0f; }
+    // Samples; 0: all is shown as it will stay.
+    std::uint64_t refinement_waiting() const {
+        return refined_light_->waiting() + (refinement_shows() && refined_light_->waiting() == 0 ? 1 : 0);
+    }
+    // What is shown takes it over in this frame, or has in the last.
+    bool refinement_shows() const {
+        return refines() && (refined_light_->share() < 1.0f || baked_light_->marks_again() || marked_again_);
+    }
     // Adds the passes that bring tables, light maps and baked light up to date.
     Status add_passes(gpu::FrameGraph& graph, const ManyLightInput& input, const ManyLightOptions& options,
                       gpu::FrameResources& resources);
@@ -58,6 +71,7 @@ public:
 
     const LightMaps& light_maps() const { return *light_maps_; }
     const BakedLight& baked_light() const { return *baked_light_; }
+    const RefinedLight& refined_light() const { return *refined_light_; }
     std::uint64_t memory_bytes() const;
 
 private:
@@ -87,13 +101,16 @@ private:
     gpu::PipelineStore& pipelines_;
     std::unique_ptr<LightMaps> light_maps_;
     std::unique_ptr<BakedLight> baked_light_;
+    std::unique_ptr<RefinedLight> refined_light_;
     SurfaceTables tables_;
     bool baked_with_filter_ = false;
+    bool marked_again_ = false; // in the last update, or before it
     std::vector<shared::NodeRow> node_rows_;
     std::uint32_t words_per_row_ = 0, state_words_ = 0, flag_words_ = 0, first_mover_ = 0, mover_count_ = 0;
     gpu::UploadSlice movers_; // spheres
     VkSampler sampler_ = VK_NULL_HANDLE;
-    gpu::Buffer nodes_, local_nodes_, entries_, counts_, block_groups_, rough_entries_, rough_commands_;
+    const scene::GpuScene* gpu_scene_ = nullptr;
+    gpu::Buffer nodes_, ratios_, local_nodes_, entries_, counts_, block_groups_, rough_entries_, rough_commands_;
     gpu::Buffer unused_texels_, unused_words_;
     // Of the frame, from add_passes on.
     ManyLightOptions options_;

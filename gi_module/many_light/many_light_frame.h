@@ -10,7 +10,8 @@ struct ManyLight::Frame {
     const ManyLightOptions& options;
     const ShadowMaps& maps;
     shared::ManyLightConstants constants;
-    bool baked = false; // baked light is used
+    bool baked = false;   // baked light is used
+    bool refined = false; // and refined
 
     // Light maps, and baked light, hold surface samples that stay.
     bool is_held(const LightBatch& batch) const {

@@ -74,6 +74,8 @@ Status ManyLight::add_gather(const Frame& frame) {
         .storage_read(light_maps_->texels())
         .texels(baked_light_->texels())
         .texels(frame.baked ? baked_light_->curved_rows() : unused_texels_)
+        .texels(refined_light_->ratios()) // of one format always: some drivers compile a kernel for each
+        .storage_write(ratios_)
         .push(frame.constants);
     dispatch(pass, frame, Phase::plain, shared::command_groups);
     return {};
@@ -169,6 +171,7 @@ Status ManyLight::add_light(const Frame& frame, Phase phase, const LightBatch& b
         .storage_write(frame.stage.output)
         .texels(phase == Phase::baked ? frame.maps.static_texels() : unused_words_)
         .storage_read(rough_entries_)
+        .storage_read(ratios_)
         .push(frame.constants);
     dispatch(pass, frame, phase, shared::command_groups);
     return {};

@@ -77,6 +77,7 @@ struct ManyLightConstants {
     uint first_mover;  // nodes from here on are movers
     uint entry_blocks; // blocks of pixel groups, for the list of rough entries
     uint mover_count;
+    float refined_share; // of refined light: RefinedLight::share
 };
 SHARED_CONSTANT uint pixel_groups_per_block = 4u;
 SHARED_CONSTANT uint max_culled_movers = 32u; // with more, light lists are not culled by movers
@@ -102,7 +103,7 @@ SHARED_CONSTANT uint show_static_shadows = 12u;
 SHARED_END
 #ifdef __cplusplus
 static_assert(sizeof(sunfleck::shared::NodeRow) == 32);
-static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 84);
+static_assert(sizeof(sunfleck::shared::ManyLightConstants) == 88);
 static_assert(sunfleck::shared::lights_per_batch <= sunfleck::shared::list_sample_mask + 1);
 static_assert(sunfleck::shared::list_values_shift + sunfleck::shared::local_node_count <=
               sunfleck::shared::list_tests_shift);

@@ -20,6 +20,10 @@ constexpr Counter baked_updates{"baked_light_updates", "contributions", "light m
                                 "Contributions of single samples to baked light in this frame"};
 constexpr Counter baked_waiting{"baked_light_waiting", "patches", "light maps",
                                 "Patches and charts whose light is not baked yet"};
+constexpr Counter refined_waiting{"refined_light_waiting", "samples", "light maps",
+                                  "Samples by which light is still to be refined (baked_samples)"};
+constexpr Counter refined_changes{"refined_light_changes", "", "light maps",
+                                  "1: what is shown takes over refined light in this frame"};
 constexpr Counter render_passes{"render_passes", "passes", "render passes",
                                 "Render passes that a renderer with a few lights a pass would need, merged"};
 constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "render passes",
@@ -27,8 +31,9 @@ constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "re
 constexpr Counter pass_fill{"pass_fill", "", "render passes",
                             "Pairs of object and light drawn in those passes, over those needed"};
 constexpr Counter memory{"many_light", "B", memory_group, "Lists, sums, light maps, baked light and tables on the GPU"};
-constexpr Counter technique_counters[] = {map_updates,   maps_waiting,        map_texels, baked_updates, baked_waiting,
-                                          render_passes, render_passes_alone, pass_fill,  memory};
+constexpr Counter technique_counters[] = {map_updates,         maps_waiting,    map_texels,      baked_updates,
+                                          baked_waiting,       refined_waiting, refined_changes, render_passes,
+                                          render_passes_alone, pass_fill,       memory};
 
 constexpr std::string_view samples_legend = "share of all samples: cyan none, green a quarter, yellow half, red all";
 constexpr DebugView technique_views[] = {
@@ -115,6 +120,7 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
     options_.visibility = own.visibility;
     options_.light_maps = own.light_maps && own.visibility;
     options_.baked_light = own.baked_light;
+    options_.refinement_budget = services.input.refinement_budget;
     find_static_maps(services, options_);
     VisibilityDatabase& database = *services.visibility;
     if (own.baked_light && curved_generation_ != database.generation()) {
@@ -124,7 +130,8 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
     }
     SUNFLECK_TRY(lighting_->update({database, curved_charts_, scene.gpu_scene, samples.samples(),
                                     owned_rows(samples, cells, owned_rows_), samples.late_changes() > 0},
-                                   options_, services.resources));
+                                   {database, samples, cells, scene.rays, settings, scene.gpu_scene.bounds()}, options_,
+                                   services.resources));
     if (own.count_passes && services.input.view_projection)
         passes_.count(database, *services.input.view_projection, own);
     else
@@ -157,6 +164,8 @@ void ManyLightTechnique::report(Report& report) const {
     report.set(map_texels, double(lighting_->light_maps().counters().texels));
     report.set(baked_updates, double(lighting_->baked_light().counters().updates));
     report.set(baked_waiting, double(lighting_->baked_light().counters().waiting));
+    report.set(refined_waiting, double(lighting_->refinement_waiting()));
+    report.set(refined_changes, lighting_->refinement_shows() ? 1.0 : 0.0);
     report.set(memory, double(lighting_->memory_bytes()));
     const PassGrouping* passes = passes_.passes();
     report.set(pass_fill, passes != nullptr ? passes->fill() : 1.0);

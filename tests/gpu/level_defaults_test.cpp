@@ -65,7 +65,7 @@ public:
     io::Picture settled() {
         const demo::DemoSettings settings = default_settings();
         int resting = 0;
-        for (int frames = 0; frames < 600 && resting < 40; ++frames) {
+        for (int frames = 0; frames < 2000 && resting < 40; ++frames) {
             const float exposure = level_->shown_exposure();
             frame(settings);
             resting = at_rest() && exposure == level_->shown_exposure() ? resting + 1 : 0;
@@ -78,7 +78,7 @@ private:
     bool at_rest() const {
         auto& counters = level_->renderer().statistics().counters;
         return !level_->light_share() && counters["shadow_maps_stale"] == 0 && counters["light_samples_late"] == 0 &&
-               counters["baked_light_waiting"] == 0;
+               counters["baked_light_waiting"] == 0 && counters["refined_light_waiting"] == 0;
     }
     std::unique_ptr<demo::Level> level_;
 };

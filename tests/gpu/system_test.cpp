@@ -17,6 +17,7 @@ gi::Settings settings_for(std::string_view technique, std::uint32_t lights = 60)
     gi::Settings settings = gi::Settings().all_light_by(technique);
     settings.lights = lights;
     settings.mover_share = 0.2f; // what the box reflects has a past
+    settings.baked_samples = 40; // which takes some frames
     settings.shadow_map_resolution = 64;
     settings.map_budget = 65536;
     return settings;

@@ -25,6 +25,7 @@ inline constexpr SettingValues host_settings[] = {
     {"plan", {"", "first_bounce.dynamic=none", "direct.fixed=brute_force"}},
     {"source", {"random_walk", "random_walk", "random_walk"}},
     {"lights", {"16", "8", "1"}},
+    {"baked_samples", {"0", "40", "2"}},
     {"direct_share", {"0.25", "0", "1"}},
     {"dynamic_share", {"0.15", "0", "1"}},
     {"mover_share", {"0", "0.3", "1"}},

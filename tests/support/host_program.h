@@ -87,8 +87,8 @@ public:
             SUNFLECK_TRY(frame(context, instance));
             double waiting = 0;
             for (const host::Statistic& counter : context.statistics().counters)
-                if (counter.name == "baked_light_waiting" || counter.name == "shadow_maps_stale" ||
-                    counter.name == "shadow_tiles_stale")
+                if (counter.name == "baked_light_waiting" || counter.name == "refined_light_waiting" ||
+                    counter.name == "shadow_maps_stale" || counter.name == "shadow_tiles_stale")
                     waiting += counter.value;
             if (waiting == 0)
                 return frame(context, instance);

@@ -91,8 +91,8 @@ public:
             frame(step);
             double waiting = 0;
             for (Lit& lit : systems_)
-                for (const char* counter :
-                     {"baked_light_waiting", "shadow_maps_stale", "shadow_tiles_stale", "light_samples_behind"})
+                for (const char* counter : {"baked_light_waiting", "refined_light_waiting", "shadow_maps_stale",
+                                            "shadow_tiles_stale", "light_samples_behind"})
                     waiting += lit.system->counters()[counter];
             if (waiting == 0)
                 return;
