@@ -16,6 +16,7 @@
 #include "game_demo/presets.h"
 #include "game_demo/walk_through.h"
 #include "viewer/lost_devices.h"
+#include "viewer/preparation.h"
 #include "viewer/progress.h"
 
 #include <algorithm>
@@ -89,9 +90,7 @@ public:
             viewer::FrameRequest request = level.request(settings_, options_.width, options_.height);
             request.milliseconds = 1e3 * simulation::step_seconds * double(level.simulation().steps());
             request.indirect_scale = options_.indirect ? 1.0f : 0.0f;
-            if (frame == 0) // with all of the light
-                request.progress = viewer::progress_until_stopped("lighting");
-            SUNFLECK_TRY(level.renderer().render_and_wait(request));
+            SUNFLECK_TRY(frame == 0 ? draw_first(level, request) : level.renderer().render_and_wait(request));
             if (stop_requested())
                 return stopped();
             if (frame == 0)
@@ -121,6 +120,17 @@ public:
     std::uint32_t pictures() const { return pictures_; }
 
 private:
+    // With all of the light, and refined, so that no picture depends on how many frames came before it.
+    static Status draw_first(Level& level, viewer::FrameRequest request) {
+        request.progress = viewer::progress_until_stopped("lighting");
+        request.refinement_budget = viewer::FrameRequest().refinement_budget;
+        viewer::SceneRenderer& renderer = level.renderer();
+        do
+            SUNFLECK_TRY(renderer.render_and_wait(request));
+        while (viewer::light_is_being_refined(renderer) && !stop_requested());
+        return {};
+    }
+
     void log_hitch(const viewer::FrameStatistics& statistics) {
         const std::string line = hitches_.add(statistics.frame_ms, statistics);
         if (options_.hitches && !line.empty())

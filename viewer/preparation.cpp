@@ -51,4 +51,8 @@ Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const Pre
     return renderer.render_and_wait(request);
 }
 
+bool light_is_being_refined(SceneRenderer& renderer) {
+    return renderer.lighting().counters()["refined_light_waiting"] > 0.0;
+}
+
 } // namespace sunfleck::viewer

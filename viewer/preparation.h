@@ -18,4 +18,8 @@ struct PreparationOptions {
 // Waits for the GPU.
 Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options);
 
+// Whether the light of what stands still is refined further in the frames that follow
+// (gi::FrameInput::refinement_budget).
+bool light_is_being_refined(SceneRenderer& renderer);
+
 } // namespace sunfleck::viewer

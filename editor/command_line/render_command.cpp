@@ -8,6 +8,7 @@
 #include "engine/core/user_folders.h"
 #include "engine/statistics/sample_series.h"
 #include "viewer/lost_devices.h"
+#include "viewer/preparation.h"
 #include "viewer/quality.h"
 #include "viewer/trace.h"
 #include "viewer/views.h"
@@ -107,14 +108,18 @@ void note_frame(const viewer::FrameStatistics& statistics, bool traced, Rendered
         frames.trace.add(statistics);
 }
 
-// The first frame makes all of the light; its shadow maps, of many triangles, can take minutes.
+// The first frame makes all of the light; its shadow maps, of many triangles, can take minutes. Where light is refined,
+// the same frame is drawn until it is.
 Status draw(viewer::SceneRenderer& renderer, const viewer::FrameRequest& request, bool first) {
     if (!first)
         return renderer.render_and_wait(request);
     Progress progress("drawing the first picture with all of its light");
     viewer::FrameRequest watched = request;
     watched.passes_done = [&](double share) { progress.show(share, ""); };
-    return renderer.render_and_wait(watched);
+    SUNFLECK_TRY(renderer.render_and_wait(watched));
+    while (viewer::light_is_being_refined(renderer) && !interrupted())
+        SUNFLECK_TRY(renderer.render_and_wait(request));
+    return {};
 }
 
 // Leaves `request` as it was for the last frame.

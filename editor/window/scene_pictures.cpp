@@ -3,6 +3,7 @@
 
 #include "editor/window/camera.h"
 #include "viewer/exposure.h"
+#include "viewer/preparation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -182,7 +183,7 @@ Status SceneThread::draw_picture() {
     picture->played = play_ != nullptr ? std::make_shared<PlayedPlaces>(copy_->renderer().registry()) : nullptr;
     if (was_behind && !copy_->renderer().geometry_outdated()) // shadows begin to follow
         frames_left_ = std::max(frames_left_, frames_after_edit);
-    if (copy_->renderer().lighting().counters()["refined_light_waiting"] > 0.0) // it goes on while nobody does anything
+    if (viewer::light_is_being_refined(copy_->renderer())) // it goes on while nobody does anything
         frames_left_ = std::max(frames_left_, 2);
     fill_listing();
     note_light();

@@ -16,7 +16,7 @@ std::vector<Field> sampling_fields() {
     std::vector<Field> fields = {
         source_field(),
         SUNFLECK_FIELD(SamplingSettings, lights, "", 0, 65536, "Number of light samples; more is smoother and slower"),
-        SUNFLECK_FIELD(SamplingSettings, baked_samples, "", 0, 65536,
+        SUNFLECK_FIELD(SamplingSettings, baked_samples, "", 0, 16384,
                        "Light that is baked is refined by so many samples over some hundred frames, and costs no more "
                        "afterwards; 0: it is that of the light samples"),
         SUNFLECK_FIELD(SamplingSettings, direct_share, "", 0, 1,

@@ -48,6 +48,7 @@ struct LightMapConstants {
 struct RefinedLightConstants {
     uint texels;
     uint row_length; // texels of a row of work groups, since a dispatch is limited in each direction
+    float own_steps; // of the frame's samples' sums, to a step of refined ones
 };
 
 SHARED_END

@@ -22,8 +22,8 @@ constexpr Counter baked_waiting{"baked_light_waiting", "patches", "light maps",
                                 "Patches and charts whose light is not baked yet"};
 constexpr Counter refined_waiting{"refined_light_waiting", "samples", "light maps",
                                   "Samples by which light is still to be refined (baked_samples)"};
-constexpr Counter refined_changes{"refined_light_changes", "", "light maps",
-                                  "1: what is shown takes over refined light in this frame"};
+constexpr Counter refined_changes{"refined_light_changes", "frames", "light maps",
+                                  "1 in a frame in which what is shown takes over refined light"};
 constexpr Counter render_passes{"render_passes", "passes", "render passes",
                                 "Render passes that a renderer with a few lights a pass would need, merged"};
 constexpr Counter render_passes_alone{"render_passes_unoptimised", "passes", "render passes",

@@ -11,7 +11,6 @@
 namespace sunfleck::gi {
 namespace {
 
-constexpr std::uint32_t set_size = 400;    // samples that are made at once: some 40 ms
 constexpr std::uint32_t map_side = 128;    // texels; of so many maps, no single one shows
 constexpr std::uint32_t small_group = 32;  // samples whose maps are drawn in one frame, with a budget
 constexpr std::uint32_t large_group = 512; // and without
@@ -21,6 +20,7 @@ constexpr std::uint32_t fading_frames = 16; // with a budget
 // thin ones (frames, mouldings) all texels are on edges.
 constexpr float border_inset = 0.25f;
 constexpr std::uint32_t texels_at_once = 64; // of a work group: baked_light.comp
+constexpr double sum_of_all = 0x1p30;        // samples at their bounds, in steps, as in light maps
 
 Result<gpu::Buffer> make_texels(gpu::Device& device, const char* name, std::uint64_t bytes, VkFormat format) {
     return gpu::Buffer::create(device, {name, bytes,
@@ -115,9 +115,16 @@ void RefinedLight::make_rows(const RefinedLightScene& scene) {
     const std::span<const LightSample> others = scene.samples.refining_samples();
     const float scale = scene.light_settings.clamp_scale;
     const float bound = geometry_bound(std::uint32_t(others.size()), scene.rays.static_area(), scale);
+    double most = 0.0;
     for (const LightSample& sample : others)
-        if (is_wanted(sample))
-            rows_.push_back(make_light_row(sample, 0, geometry_bound_of(sample.radius, bound, scale), scene.bounds));
+        if (is_wanted(sample)) {
+            const shared::LightRow row =
+                make_light_row(sample, 0, geometry_bound_of(sample.radius, bound, scale), scene.bounds);
+            const vec4& intensity = row.intensity_slot;
+            most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(row.position_bound.w);
+            rows_.push_back(row);
+        }
+    fixed_point_ = most > 0.0 ? float(sum_of_all / most) : 1.0f;
 }
 
 void RefinedLight::begin_group(std::uint32_t begin) {
@@ -239,7 +246,7 @@ Status RefinedLight::add_sums(gpu::FrameGraph& graph, const BakedLight& baked, c
     description.specialization = {sums_own_ && filter, used.bits()};
     SUNFLECK_ASSIGN(const gpu::Pipeline* const kernel, pipelines_.compute(description));
     shared::LightMapConstants constants{};
-    constants.fixed_point = cause_.fixed_point;
+    constants.fixed_point = sums_own_ ? cause_.fixed_point : fixed_point_;
     constants.map_resolution = used.resolution();
     constants.inset = sums_own_ ? 0.0f : border_inset;
     constants.jobs = std::uint32_t(jobs_.jobs().size());
@@ -264,6 +271,7 @@ Status RefinedLight::add_ratios(gpu::FrameGraph& graph) {
     shared::RefinedLightConstants constants{};
     constants.texels = std::uint32_t(texels_);
     constants.row_length = std::min(constants.texels, 1u << 20);
+    constants.own_steps = cause_.fixed_point / fixed_point_;
     gpu::ComputePass(graph, "refined light ratios", *kernel)
         .texels(own_sums_)
         .texels(refined_sums_)

@@ -88,7 +88,8 @@ private:
     // the first is compiled where that begins, in a preparation.
     bool own_ = false;
     std::uint32_t group_begin_ = 0, group_end_ = 0, largest_group_ = 0;
-    std::uint32_t piece_ = 0; // the next one
+    std::uint32_t piece_ = 0;  // the next one
+    float fixed_point_ = 1.0f; // of the sums of those that refine: steps per W/m2
     float share_ = 0.0f;
     std::uint64_t texels_ = 0;
     // Of the frame.

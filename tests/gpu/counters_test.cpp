@@ -73,6 +73,7 @@ const std::vector<Course>& courses() {
         {assets::make_two_rooms, {{"lights", "300"}}, 64, 48, {{"shadow_map_resolution", "32"}}},
         {assets::make_cornell, {{"direct", "brute_force"}, {"indirect", "brute_force"}, {"count_clamped", "on"}}},
         {assets::make_ring, {{"specular", "gloss"}}, 64, 48, {}, 0xffffffffu, 1.0f, shared::view_final},
+        {assets::make_cornell, {{"baked_samples", "100"}}},
         {assets::make_cornell, {}, 64, 48, {}, 2, 0.5f}, // bounced light is dimmed, two samples a frame
         {assets::make_cornell, {{"repair_contrast", "0"}, {"repair_angle", "0.1"}, {"low_resolution", "4"}}, 640, 480},
         // Fine light maps of many samples, in portions.

@@ -102,6 +102,13 @@ protected:
     ecs::Entity door() { return scene::find_by_name(world->renderer->registry(), "door"); }
     const gi::SampleSet& samples() { return world->renderer->lighting().sample_set(); }
 
+    // Of the frame, and those by which light is refined.
+    std::vector<gi::LightSample> all_samples() {
+        std::vector<gi::LightSample> all(samples().samples().begin(), samples().samples().end());
+        all.insert(all.end(), samples().refining_samples().begin(), samples().refining_samples().end());
+        return all;
+    }
+
     // Whether some value of the field gives other samples; a new set of the same samples counts as none.
     bool changes_samples(const gi::Settings& settings, const Field& field) {
         bool changed = false;
@@ -113,9 +120,9 @@ protected:
                 continue; // a plan that this base does not allow
             update(settings);
             const std::uint64_t generation = samples().generation();
-            const std::vector<gi::LightSample> before(samples().samples().begin(), samples().samples().end());
+            const std::vector<gi::LightSample> before = all_samples();
             update(with);
-            const bool same = same_samples(before, samples().samples(), door());
+            const bool same = same_samples(before, all_samples(), door());
             changed = changed || !same;
             if ((field.flags & gi::needs_new_samples) == 0) {
                 EXPECT_EQ(samples().generation(), generation) << field.name << "=" << value << " made new samples";
