@@ -164,7 +164,9 @@ void RefinedLight::take_portion(const RefinedLightScene& scene, const BakedLight
         job_rows_.assign(rows_.begin() + group_begin_, rows_.begin() + group_end_);
     const std::vector<BakedLight::Piece>& pieces = baked.pieces();
     const std::uint32_t first = piece_;
-    for (std::uint64_t taken = 0; piece_ < pieces.size() && taken < most; ++piece_)
+    const std::uint64_t most_changes = device_.traits().max_storage_range / sizeof(std::uint32_t);
+    const std::uint64_t most_pieces = std::max<std::uint64_t>(most_changes / job_rows_.size(), 1);
+    for (std::uint64_t taken = 0; piece_ < pieces.size() && taken < most && piece_ - first < most_pieces; ++piece_)
         taken += pieces[piece_].texels() * job_rows_.size() / 2 + 1; // half of them look the other way
     jobs_.add_all(piece_ - first, [&](LightMapJobs& jobs, std::uint32_t i) {
         const BakedLight::Piece& piece = pieces[first + i];
