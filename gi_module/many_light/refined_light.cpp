@@ -207,8 +207,7 @@ Status RefinedLight::update(const RefinedLightScene& scene, const BakedLight& ba
             resources.retire(std::move(*sums));
     if (is_summed)
         share_ = in_portions ? std::min(share_ + 1.0f / float(fading_frames), 1.0f) : 1.0f;
-    else if (budget > 0 && baked.counters().waiting == 0 && !(in_portions && baked.counters().updates > 0))
-        // Where light changes, that comes first.
+    else if (budget > 0 && baked.counters().waiting == 0) // that comes first
         take_portion(scene, baked, in_portions ? std::uint64_t(budget) * 1000 : most_evaluations);
     return {};
 }
