@@ -55,7 +55,7 @@ public:
 
 private:
     RefinedLight(gpu::Device& device, gpu::PipelineStore& pipelines) : device_(device), pipelines_(pipelines) {}
-    // What the ratios are of: a change of any of it begins anew.
+    // What the ratios depend on: where any of it changes, they are computed from scratch.
     struct Cause {
         std::uint64_t samples = 0, pieces = 0; // generations
         CellSet cells;
