@@ -50,9 +50,10 @@ void set_rays(RTCRay16& query, int (&valid)[packet_size], const ShadowPacket& pa
 RayScene::RayScene() : implementation_(std::make_unique<Implementation>()) {}
 RayScene::~RayScene() = default;
 
-Result<std::unique_ptr<RayScene>> RayScene::create() {
+Result<std::unique_ptr<RayScene>> RayScene::create(const char* instructions) {
     std::unique_ptr<RayScene> scene(new RayScene());
-    scene->implementation_->device.reset(rtcNewDevice(nullptr));
+    scene->implementation_->device.reset(
+        rtcNewDevice(instructions != nullptr ? (std::string("isa=") + instructions).c_str() : nullptr));
     if (!scene->implementation_->device)
         return Error{"Embree could not be started on this processor", ErrorCode::unsupported};
     scene->implementation_->static_scene = scene->implementation_->new_scene();
@@ -76,12 +77,11 @@ std::optional<Hit> RayScene::closest_hit(const Ray& ray, Scope scope) const {
         return std::nullopt;
     Hit hit;
     hit.distance = query.ray.tfar;
-    const std::uint32_t instance = query.hit.instID[0];
-    const bool in_static = scope == Scope::static_only || instance == 0;
-    hit.instance = in_static ? query.hit.geomID : self.static_count + instance - 1;
+    hit.instance = self.instance_at(query.hit.geomID, query.hit.instID[0], scope);
     hit.primitive = query.hit.primID;
     hit.u = query.hit.u;
     hit.v = query.hit.v;
+    self.place(hit, ray);
     return hit;
 }
 
@@ -126,12 +126,10 @@ std::array<float, packet_size> RayScene::blockers(const ShadowPacket& packet, Sc
     for (std::size_t i = 0; i < packet_size; ++i) {
         if (!valid[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
             continue;
-        distances[i] = query.ray.tfar[i];
-        const std::uint32_t mover = scope == Scope::static_only ? 0 : query.hit.instID[0][i];
-        if (mover == 0 || implementation_->instances[implementation_->static_count + mover - 1].casts_shadow)
-            continue;
         Ray ray = packet.rays[i];
-        std::optional<Hit> hit{{distances[i], implementation_->static_count + mover - 1}};
+        const std::uint32_t instance = implementation_->instance_at(query.hit.geomID[i], query.hit.instID[0][i], scope);
+        std::optional<Hit> hit{{query.ray.tfar[i], instance, query.hit.primID[i], query.hit.u[i], query.hit.v[i]}};
+        implementation_->place(*hit, ray);
         while (hit && !implementation_->instances[hit->instance].casts_shadow) {
             ray.minimum = hit->distance * (1.0f + 0x1p-17f);
             hit = closest_hit(ray, scope);
@@ -141,13 +139,43 @@ std::array<float, packet_size> RayScene::blockers(const ShadowPacket& packet, Sc
     return distances;
 }
 
+std::array<vec3, 3> RayScene::Implementation::corners(const Instance& instance, std::uint32_t primitive) const {
+    const scene::Mesh& mesh = (*meshes)[instance.mesh];
+    std::array<vec3, 3> result;
+    for (std::size_t k = 0; k < 3; ++k)
+        result[k] = vec3(instance.matrix * vec4(mesh.positions[mesh.indices[std::size_t(primitive) * 3 + k]], 1.0f));
+    return result;
+}
+
+// Embree tells which triangle a ray meets. Where, it rounds as the processor's instructions allow, and from a last bit
+// that differs walks of light go other ways, so that pictures of two processors would differ: here it is the same on
+// all, and as exact as a float can say.
+void RayScene::Implementation::place(Hit& hit, const Ray& ray) const {
+    const std::array<vec3, 3> corner = corners(instances[hit.instance], hit.primitive);
+    const glm::dvec3 origin(ray.origin), direction(ray.direction), first(corner[0]);
+    const glm::dvec3 second_edge = glm::dvec3(corner[1]) - first, third_edge = glm::dvec3(corner[2]) - first;
+    const glm::dvec3 normal = glm::cross(second_edge, third_edge);
+    const double slope = glm::dot(normal, direction), squared_area = glm::dot(normal, normal);
+    if (!(std::abs(slope) > 0.0 && squared_area > 0.0))
+        return; // it lies in the triangle's plane, or the triangle is none
+    double distance = glm::dot(normal, first - origin) / slope;
+    const glm::dvec3 inside = origin + distance * direction - first;
+    const double u = glm::dot(glm::cross(inside, third_edge), normal) / squared_area;
+    const double v = glm::dot(glm::cross(second_edge, inside), normal) / squared_area;
+    const double clamped_u = std::clamp(u, 0.0, 1.0), clamped_v = std::clamp(v, 0.0, 1.0 - clamped_u);
+    if (u != clamped_u || v != clamped_v) { // it went by, less than a rounding away: the triangle's nearest point
+        const glm::dvec3 nearest = first + clamped_u * second_edge + clamped_v * third_edge;
+        distance = glm::dot(nearest - origin, direction) / glm::dot(direction, direction);
+    }
+    hit.distance = std::clamp(float(distance), ray.minimum, ray.maximum);
+    hit.u = float(clamped_u);
+    hit.v = float(clamped_v);
+}
+
 // `position`: where on the triangle, if that is known better than by the weights.
 SurfacePoint RayScene::Implementation::describe(const Instance& instance, const TrianglePlace& place,
                                                 const vec3* position) const {
-    const std::uint32_t* t = &place.mesh.indices[std::size_t(place.primitive) * 3];
-    vec3 p[3];
-    for (int k = 0; k < 3; ++k)
-        p[k] = vec3(instance.matrix * vec4(place.mesh.positions[t[k]], 1.0f));
+    const std::array<vec3, 3> p = corners(instance, place.primitive);
     SurfacePoint point;
     point.on_triangle = (1.0f - place.u - place.v) * p[0] + place.u * p[1] + place.v * p[2];
     point.position = position != nullptr ? *position : point.on_triangle;

@@ -65,7 +65,9 @@ struct ShadowPacket {
 
 class RayScene {
 public:
-    static Result<std::unique_ptr<RayScene>> create();
+    // `instructions`: the processor's instructions that Embree may use, by its name for them ("sse2", "avx2"), for
+    // tests; by default the best. Where rays meet triangles does not depend on them.
+    static Result<std::unique_ptr<RayScene>> create(const char* instructions = nullptr);
     ~RayScene();
     RayScene(const RayScene&) = delete;
     RayScene& operator=(const RayScene&) = delete;

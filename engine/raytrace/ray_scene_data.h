@@ -124,6 +124,12 @@ struct RayScene::Implementation {
     void list_instances(const scene::SceneChanges& changes, bool static_ones);
     Status check_size() const;
     Status rebuild(const Differences& differences, BuildWatch& watch);
+    // The instance of an Embree hit, by its two numbers.
+    std::uint32_t instance_at(std::uint32_t geometry, std::uint32_t placed, Scope scope) const {
+        return scope == Scope::static_only || placed == 0 ? geometry : static_count + placed - 1;
+    }
+    std::array<vec3, 3> corners(const Instance& instance, std::uint32_t primitive) const;
+    void place(Hit& hit, const Ray& ray) const;
     SurfacePoint describe(const Instance& instance, const TrianglePlace& place, const vec3* position) const;
 
     RTCScene scope_scene(Scope scope) const {

@@ -186,8 +186,7 @@ TEST_F(EditorWindowBadInput, TextsOfAllKinds) {
     }
     // Names: none, one that is taken, quotes, and ten thousand letters.
     const auto rename = [&](const std::string& name) {
-        EXPECT_TRUE(editor->click("inspector/name"));
-        editor->key("ctrl+a");
+        EXPECT_TRUE(editor->select_text("inspector/name"));
         if (name.empty())
             editor->key("BackSpace");
         else

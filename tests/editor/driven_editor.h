@@ -157,11 +157,24 @@ public:
     void type(const std::string& text) {
         run("xdotool type --delay " + std::string(text.size() > 200 ? "1" : "15") + " -- '" + text + "'");
     }
-    // A number into a box, by clicking and typing.
-    bool enter(const std::string& name, const std::string& text) {
-        if (!click(name) || !catch_up()) // it takes letters a frame or two after the click
+    // Clicks on a box of text until it takes letters, a frame or two after the click, and selects what it holds.
+    bool select_text(const std::string& name) {
+        if (!click(name) || !catch_up())
+            return false;
+        key("ctrl+a");
+        return true;
+    }
+    // In place of what a box of text holds.
+    bool write(const std::string& name, const std::string& text) {
+        if (!select_text(name))
             return false;
         type(text);
+        return true;
+    }
+    // A number into a box, by clicking and typing.
+    bool enter(const std::string& name, const std::string& text) {
+        if (!write(name, text))
+            return false;
         key("Return");
         return true;
     }

@@ -109,10 +109,7 @@ void EditorWindowFirst::make_a_group() {
     ASSERT_TRUE(editor->wait_for("inspector/name", "rectangle light 2"));
     editor->key("ctrl+g");
     ASSERT_TRUE(editor->appears("inspector/name"));
-    ASSERT_TRUE(editor->click("inspector/name"));
-    editor->key("ctrl+a");
-    editor->type("ceiling lights");
-    editor->key("Return");
+    ASSERT_TRUE(editor->enter("inspector/name", "ceiling lights"));
     EXPECT_TRUE(editor->appears("hierarchy/ceiling lights"));
 }
 
@@ -141,16 +138,13 @@ void EditorWindowFirst::measure_and_compare() {
     ASSERT_TRUE(editor->click("compare/Nothing"));
 
     // Two presets and what differs.
-    ASSERT_TRUE(editor->click("compare/preset"));
-    editor->type("many");
+    ASSERT_TRUE(editor->write("compare/preset", "many"));
     ASSERT_TRUE(editor->click("compare/Save"));
     ASSERT_TRUE(editor->appears("compare/many/Keep"));
     ASSERT_TRUE(editor->click("compare/many/Keep"));
     ASSERT_TRUE(editor->enter("lighting/lights/value", "400"));
     EXPECT_TRUE(editor->wait_for("compare/difference lights", "Lights: 400 here, 600 kept"));
-    ASSERT_TRUE(editor->click("compare/preset"));
-    editor->key("ctrl+a");
-    editor->type("fewer");
+    ASSERT_TRUE(editor->write("compare/preset", "fewer"));
     ASSERT_TRUE(editor->click("compare/Save"));
     ASSERT_TRUE(editor->appears("compare/fewer/Keep"));
     ASSERT_TRUE(editor->click("compare/fewer/Keep"));

@@ -75,9 +75,7 @@ TEST_F(EditorWindowLoss, EverythingIsWhereItWas) {
     ASSERT_TRUE(editor->wait_for(roughness, "0.25"));
 
     // In the middle of a word, and while light is compared.
-    ASSERT_TRUE(editor->click(roughness));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    editor->type("0.7");
+    ASSERT_TRUE(editor->write(roughness, "0.7"));
     lose();
     ASSERT_TRUE(goes_on(1)) << editor->log();
     editor->type("5");

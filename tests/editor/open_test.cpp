@@ -29,9 +29,7 @@ TEST_F(EditorOpen, AnAddedTechniqueAppearsIsUndoneAndSaved) {
 
     // It lights what is reflected from now on; then its view shows.
     ASSERT_NO_FATAL_FAILURE(search("lighting/search", "plan"));
-    ASSERT_TRUE(editor->click("lighting/plan/value"));
-    editor->type("indirect.diffuse=constant_light");
-    editor->key("Return");
+    ASSERT_TRUE(editor->enter("lighting/plan/value", "indirect.diffuse=constant_light"));
     ASSERT_TRUE(editor->wait_for("lighting/plan/value", "indirect.diffuse=constant_light"));
     ASSERT_TRUE(editor->settles());
     ASSERT_TRUE(editor->click("tab Views"));

@@ -74,13 +74,10 @@ void EditorSizeWindow::edit_one(int round) {
     ASSERT_NO_FATAL_FAILURE(search("hierarchy/search", name));
     ASSERT_TRUE(editor->click("hierarchy/" + name));
     ASSERT_TRUE(editor->wait_for("inspector/name", name));
-    ASSERT_TRUE(editor->click("hierarchy/search"));
-    editor->key("ctrl+a");
+    ASSERT_TRUE(editor->select_text("hierarchy/search"));
     editor->key("BackSpace");
     ASSERT_TRUE(editor->wait_for("hierarchy/search", ""));
-    ASSERT_TRUE(editor->click("inspector/name"));
-    editor->key("ctrl+a");
-    editor->type(other);
+    ASSERT_TRUE(editor->write("inspector/name", other));
     ASSERT_TRUE(editor->catch_up());
     note("rename", true, [&] { editor->key("Return"); });
     ASSERT_TRUE(editor->wait_for("inspector/name", other));

@@ -35,17 +35,13 @@ protected:
     // Types a path into the file dialog that is open, or is about to open.
     void name_file(const std::string& path) const {
         ASSERT_TRUE(editor->catch_up()); // and no other dialog is meant
-        ASSERT_TRUE(editor->click("dialog/name"));
-        editor->key("ctrl+a");
-        editor->type(path);
+        ASSERT_TRUE(editor->write("dialog/name", path));
         editor->key("Return");
         ASSERT_TRUE(editor->catch_up()); // a frame for each key
     }
     // Types into a list's search box, until the list follows.
     void search(const std::string& box, const std::string& text) const {
-        ASSERT_TRUE(editor->click(box));
-        editor->key("ctrl+a");
-        editor->type(text);
+        ASSERT_TRUE(editor->write(box, text));
         ASSERT_TRUE(editor->wait_for(box, text));
     }
     // The bytes of the scene as it is saved: under the same name each time, into a folder of its own.

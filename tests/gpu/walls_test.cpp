@@ -1,7 +1,6 @@
 // The default sampler, held to the path tracer wall by wall: the light of its samples with shadows traced by rays, so
 // that neither maps nor techniques have a part in it.
 #include "tests/support/gpu_world.h"
-#include "tests/support/processor.h"
 #include "tests/support/techniques.h"
 #include "tests/support/test_size.h"
 
@@ -198,12 +197,11 @@ struct SamplerCase {
 // The aim is 3 % of each wall's light in the mean over seeds, and at most 6 % in 95 % of single seeds, which reflected
 // light does not reach everywhere: medoids stand for their clusters with an error that seeds share, and the bound of
 // the geometry term takes more from corners than from the middle of a room. The limits are what was measured in the
-// long size, and a fifth more at most (of two kinds of CPUs, whose rays are rounded otherwise, so that other paths
-// represent their clusters: cornell has 1.7 % with AVX-512 and 3.0 % without); they guard what is there and do not say
+// long size, and a fifth more at most; they guard what is there and do not say
 // that it is enough. Clusters have less than 0.9 of the squared error of plain walks in each room but lantern_house
 // (0.91), and less than half in the geometric mean.
 TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
-    const SamplerCase cases[] = {{"cornell", assets::make_cornell, has_avx512() ? 0.02 : 0.036},
+    const SamplerCase cases[] = {{"cornell", assets::make_cornell, 0.03},
                                  {"area_room", assets::make_area_room, 0.061},
                                  {"table_room", assets::make_table_room, 0.01},
                                  {"four_pillars", assets::make_four_pillars, 0.029},
@@ -217,7 +215,7 @@ TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
                                  {"gap_room", assets::make_gap_room, 0.075},
                                  {"lantern_house", assets::make_lantern_house, 0.087, 1.0},
                                  {"lantern_game", assets::make_lantern_game, 0.057}};
-    const std::uint32_t seeds = has_avx512() ? by_size(8u, 32u) : 32u;
+    constexpr std::uint32_t seeds = 32; // 8 do not tell 1.7 % from 4.5 %, where rays are rounded otherwise
     double logarithms = 0.0;
     const auto tested = std::span(cases).first(by_size<std::size_t>(4, std::size(cases)));
     for (const SamplerCase& one : tested) {

@@ -3,7 +3,6 @@
 #include "engine/core/random.h"
 #include "gi_module/light_sampling/emitters.h"
 #include "gi_module/splatting/followed_lights.h"
-#include "tests/support/processor.h"
 #include "tests/support/test_size.h"
 
 #include <algorithm>
@@ -106,17 +105,19 @@ vec3 on_circle(int step, int round) {
     return vec3(1.4f * std::cos(angle), 3.4f, 0.4f + 1.4f * std::sin(angle));
 }
 
-// In each step all of the flux is there, in as many lights as are allowed; no light moves, and of the flux little
-// passes from light to light. After a round they fit as well as those of a fresh start.
-TEST(SplatFollowedLights, StayWhileTheLampWalksAndFitAfterARound) {
+// Of a round of a lamp, in which each step's flux must be there, in as many lights as are allowed.
+struct Round {
+    double most_passed = 0.0, passed = 0.0; // shares of the flux that pass from light to light in a step
+    double distance = 0.0, fresh = 0.0;     // m2, at the end, and of a fresh start there
+};
+Round walk_round(int first, int steps) {
     Walk walk;
-    const int round = by_size(240, 960);
+    Round result;
     std::vector<FollowedLight> before;
-    double most_passed = 0.0, passed = 0.0;
-    for (int i = 0; i <= round; ++i) {
-        walk.step(on_circle(i, round));
+    for (int i = 0; i <= steps; ++i) {
+        walk.step(on_circle(first + i, steps));
         const auto lights = walk.followed.lights();
-        ASSERT_LE(lights.size(), walk.count);
+        EXPECT_LE(lights.size(), walk.count);
         glm::dvec3 sum(0.0);
         double all = 0.0, moved = 0.0;
         for (const FollowedLight& light : lights) {
@@ -130,20 +131,35 @@ TEST(SplatFollowedLights, StayWhileTheLampWalksAndFitAfterARound) {
         }
         EXPECT_NEAR(sum.x, walk.flux_of_map().x, 1e-4 * sum.x);
         if (i > 0) {
-            most_passed = std::max(most_passed, moved / all);
-            passed += moved / all / round;
+            result.most_passed = std::max(result.most_passed, moved / all);
+            result.passed += moved / all / steps;
         }
         before.assign(lights.begin(), lights.end());
     }
     EXPECT_EQ(walk.followed.starts(), 1u);
-    EXPECT_LT(passed, by_size(0.12, 0.04)); // of all flux, in a step of 3.7 or 0.9 cm
-    EXPECT_LT(most_passed, by_size(0.3, 0.1));
+    result.distance = walk.mean_distance();
     Walk fresh;
-    fresh.step(on_circle(0, round));
-    std::printf("passed %.4f in the mean, %.4f at most; distance %.4f m2, fresh %.4f m2\n", passed, most_passed,
-                walk.mean_distance(), fresh.mean_distance());
-    // Without AVX-512, 1.27: other lights are followed.
-    EXPECT_LT(walk.mean_distance(), (has_avx512() ? 1.25 : 1.35) * fresh.mean_distance());
+    fresh.step(on_circle(first, steps));
+    result.fresh = fresh.mean_distance();
+    return result;
+}
+
+// No light moves, and of the flux little passes from light to light. After a round they fit nearly as well as those of
+// a fresh start: 1.26 in the mean of eight rounds, of which single ones have 1.15 to 1.34.
+TEST(SplatFollowedLights, StayWhileTheLampWalksAndFitAfterARound) {
+    constexpr int rounds = 8;
+    const int steps = by_size(240, 960);
+    double distance = 0.0, fresh = 0.0;
+    for (int k = 0; k < rounds; ++k) {
+        const Round round = walk_round(k * steps / rounds, steps);
+        EXPECT_LT(round.passed, by_size(0.12, 0.04)); // of all flux, in a step of 3.7 or 0.9 cm
+        EXPECT_LT(round.most_passed, by_size(0.3, 0.1));
+        std::printf("passed %.4f in the mean, %.4f at most; distance %.4f m2, fresh %.4f m2\n", round.passed,
+                    round.most_passed, round.distance, round.fresh);
+        distance += round.distance;
+        fresh += round.fresh;
+    }
+    EXPECT_LT(distance, 1.3 * fresh) << distance / fresh;
 }
 
 // Where light jumps, the lights do, at once; where there is none, there are none.
