@@ -4,12 +4,6 @@
 #include <utility>
 
 namespace sunfleck::editor {
-namespace {
-
-using Hand = std::chrono::steady_clock;
-constexpr auto hand_pause = std::chrono::milliseconds(300); // longer than between the movements of one gesture
-
-} // namespace
 
 bool same_view(const ViewRequest& a, const ViewRequest& b) {
     return a.camera.position == b.camera.position && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
@@ -21,7 +15,9 @@ bool same_view(const ViewRequest& a, const ViewRequest& b) {
 }
 
 void Comparison::note_hand() {
-    hand_rests_ = Hand::now() + hand_pause;
+    scene_.note_hand();
+    if (second_ != nullptr)
+        second_->note_hand();
 }
 
 void Comparison::forget_device() {
@@ -81,7 +77,7 @@ void Comparison::follow(const std::optional<SceneChange>& change, const std::fun
         const bool is_new = reference_ == nullptr;
         if (is_new)
             reference_ = std::make_unique<ReferenceThread>(
-                *device_, [this] { return scene_.busy() || Hand::now() < hand_rests_.load(); }, wake_);
+                *device_, [this] { return scene_.busy() || !scene_.hand_rests(); }, wake_);
         tell(*reference_, is_new, [](SceneChange all) { return all; });
     }
     if (needs_second()) {

@@ -34,7 +34,7 @@ public:
     bool without_scene() const {
         return with == CompareWith::reference && what == CompareWhat::kept_settings && kept_.has_value();
     }
-    // Somebody points, types or flies: the reference waits until the hand rests, so that the window answers at once.
+    // SceneThread::note_hand, for both; the reference waits, too.
     void note_hand();
     // Each frame of the GUI: `change` is what the scene thread is told, if anything, and `everything` makes all of it.
     void follow(const std::optional<SceneChange>& change, const std::function<SceneChange()>& everything,
@@ -64,7 +64,6 @@ private:
     gpu::Device* device_;
     SceneThread& scene_;
     const std::function<void()> wake_;
-    std::atomic<std::chrono::steady_clock::time_point> hand_rests_{}; // from then on
     std::unique_ptr<ReferenceThread> reference_;
     std::unique_ptr<SceneThread> second_;
     std::unique_ptr<DifferenceThread> differences_;

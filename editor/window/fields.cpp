@@ -147,7 +147,7 @@ void text_cell(Session& session, const FieldSource& source, float width) {
     ImGui::SetNextItemWidth(width);
     const bool enter = ImGui::InputText("##value", &shown, ImGuiInputTextFlags_EnterReturnsTrue);
     ui::note("value", shown);
-    if (ImGui::IsItemActive()) {
+    if (ImGui::IsItemActive() || enter) { // on a slow machine, letters may come in the same frame as Enter
         editing = id;
         text = shown;
     }

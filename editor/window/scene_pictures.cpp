@@ -37,7 +37,7 @@ viewer::FrameRequest SceneThread::frame_request() {
     request.overlay_sample = view_.chosen_sample;
     request.antialiasing = view_.look.antialiasing;
     request.glare = view_.look.glare;
-    request.refinement_budget = refinement;
+    request.refinement_budget = hand_rests() ? refinement : 0;
     request.keep_samples = light_is_slow_;
     request.keep_geometry = hand_moves();
     request.simulate = play_ == nullptr;
@@ -158,7 +158,7 @@ Status SceneThread::look_into_pixel() {
 
 // Where something has changed since the last answer, and the picture has settled.
 void SceneThread::follow_inspection() {
-    if (!inspection_ || failed_ || frames_left_ > 0 || moves() || light_pending_)
+    if (!inspection_ || failed_ || frames_left_ > 0 || moves() || light_comes())
         return;
     const std::array<std::uint64_t, 5> now{inspection_->serial, revision_, hiding_, steps(), status().builds};
     if (now == inspected_state_)
@@ -183,11 +183,10 @@ Status SceneThread::draw_picture() {
     picture->played = play_ != nullptr ? std::make_shared<PlayedPlaces>(copy_->renderer().registry()) : nullptr;
     if (was_behind && !copy_->renderer().geometry_outdated()) // shadows begin to follow
         frames_left_ = std::max(frames_left_, frames_after_edit);
-    if (viewer::light_is_being_refined(copy_->renderer())) // it goes on while nobody does anything
-        frames_left_ = std::max(frames_left_, 2);
+    refining_ = viewer::light_is_being_refined(copy_->renderer());
     fill_listing();
     note_light();
-    picture->settled = frames_left_ <= 1 && !moves() && !light_pending_;
+    picture->settled = frames_left_ <= 1 && !moves() && !light_comes();
     picture->ev100 = request.ev100;
     picture->frame_ms = 1e3 * seconds_since(began);
     longest_frame_ms_ = std::max(longest_frame_ms_, picture->frame_ms);

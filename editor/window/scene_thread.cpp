@@ -54,7 +54,7 @@ void SceneThread::forget_device() {
     listing_.reset();
     inspected_state_ = {};
     change_ = next_change_ = {};
-    light_pending_ = change_waits_ = false;
+    light_pending_ = refining_ = change_waits_ = false;
     status_.busy = busy_ = status_.building = false;
     status_.error.clear();
 }
@@ -134,20 +134,20 @@ SceneStatus SceneThread::status() const {
 bool SceneThread::has_work() const {
     const bool draws = copy_ != nullptr && !failed_ && view_.width > 0 && view_.height > 0;
     return next_change_.source != nullptr || view_changed_ || steps_ > 0 || !next_shaders_.empty() ||
-           inspection_changed_ || !next_actions_.empty() || (draws && (frames_left_ > 0 || moves()));
+           inspection_changed_ || !next_actions_.empty() || (draws && draws_frame());
 }
 
 // What the GUI asked for becomes the thread's own. False: the thread ends.
 bool SceneThread::take_work() {
     std::unique_lock lock(mutex_);
-    if (!has_work() && !light_pending_ && !stop_ && status_.busy) {
+    if (!has_work() && !light_comes() && !stop_ && status_.busy) {
         status_.busy = busy_ = false;
         lock.unlock();
         wake_();
         lock.lock();
     }
     const auto wakes = [this] { return stop_ || has_work(); };
-    if (light_pending_)
+    if (light_comes())
         changed_.wait_for(lock, light_interval, wakes);
     else if (!changed_.wait_for(lock, rest, wakes)) {
         lock.unlock();
@@ -202,7 +202,7 @@ Status SceneThread::work() {
     follow_play();
     follow_light();
     take_actions(std::exchange(actions_, {}));
-    if (frames_left_ > 0 || moves())
+    if (draws_frame())
         frame();
     follow_inspection();
     return {};
@@ -377,7 +377,7 @@ void SceneThread::fail(const Error& error) {
     {
         const std::scoped_lock lock(mutex_);
         status_.error = error.message;
-        status_.building = light_pending_ = false;
+        status_.building = light_pending_ = refining_ = false;
     }
     wake_();
 }

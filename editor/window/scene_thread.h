@@ -5,7 +5,8 @@
 // Where light takes long to make, edits that need new light (a wall moves, another number of samples) show at once in
 // the old one, while the new one is prepared behind the frames (lighting_change.h); a further edit cancels that. While
 // a hand drags, shadows of what stands still wait, too: they follow when it rests. Samples that have followed lamps are
-// renewed once the scene is left alone, so that what was edited looks as it will when it is opened.
+// renewed once the scene is left alone, so that what was edited looks as it will when it is opened. Light is refined
+// while nobody does anything: frames that do so keep the device busy, and the GUI draws with it.
 //
 // All functions may be called from the GUI thread; none of them waits for a frame.
 #pragma once
@@ -141,6 +142,10 @@ public:
     SceneStatus status() const;
     // Of the first thousands of frames.
     std::vector<FrameNote> frame_notes() const;
+    // Somebody points, types or flies: what goes on by itself waits until the hand rests, so that the window answers at
+    // once.
+    void note_hand() { hand_rests_at_ = Clock::now() + hand_pause; }
+    bool hand_rests() const { return Clock::now() >= hand_rests_at_.load(); } // from any thread
     // SceneStatus::busy, at once and from any thread.
     bool busy() const { return busy_; }
     // The document has outgrown the copy, which is to be told everything: true once each time.
@@ -148,6 +153,7 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::milliseconds hand_pause{300}; // longer than between the movements of one gesture
     static constexpr double patience = 0.3; // s: lighting that takes longer is cancelled by the next edit
     // As many as `sunfleck render` draws, so that both show the same.
     static constexpr int frames_after_edit = 4;
@@ -158,6 +164,8 @@ private:
     Status work();
     void end();
     bool moves() const { return view_.playing && !view_.paused; }
+    bool draws_frame() const { return frames_left_ > 0 || moves() || (refining_ && hand_rests()); }
+    bool light_comes() const { return light_pending_ || refining_; }
     std::uint64_t steps() const { return play_ != nullptr ? play_->steps() : 0; }
     void follow_play();
     bool has_work() const;
@@ -202,12 +210,14 @@ private:
     SceneStatus status_;
     std::vector<FrameNote> frame_notes_;
 
+    std::atomic<Clock::time_point> hand_rests_at_{};
     std::atomic<bool> stop_{false}, change_waits_{false}, busy_{false}, wants_everything_{false};
     // Of the thread alone.
     std::unique_ptr<SceneCopy> copy_;
     std::unique_ptr<viewer::LightingChanges> light_; // of copy_, which it does not outlive
     std::unique_ptr<ScenePlay> play_;                // of copy_; null: it stands as edited
     bool light_pending_ = false;                     // the picture has not got all of its light yet
+    bool refining_ = false;                          // its light is refined by the frames that follow
     bool dragged_ = false;                           // the gesture of the last change has not ended
     std::vector<CompiledShader> shaders_;            // in place of those of the program
     std::vector<CompiledShader> new_shaders_;        // not in use yet

@@ -163,9 +163,11 @@ void EditorWindowFirst::undo_redo_and_save() {
     const std::string all =
         " ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z ctrl+z";
     editor->run("xdotool key --delay 40" + all);
+    ASSERT_TRUE(editor->catch_up());
     EXPECT_TRUE(editor->wait_for("menu/title", "room.glb")) << "nothing is unsaved";
     EXPECT_FALSE(editor->find("hierarchy/ceiling lights").has_value());
     editor->run("xdotool key --delay 40" + std::regex_replace(all, std::regex("ctrl.z"), "ctrl+shift+z"));
+    ASSERT_TRUE(editor->catch_up());
     EXPECT_TRUE(editor->appears("hierarchy/ceiling lights"));
     editor->key("ctrl+s");
     ASSERT_TRUE(editor->wait_for("dialog/name", "room 2.scene.json"));

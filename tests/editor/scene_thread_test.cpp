@@ -35,6 +35,37 @@ TEST_F(EditorScene, ShowsWhatRenderDraws) {
     }
 }
 
+// Frames that only refine light wait while somebody does something, and then go on until all of it is refined.
+TEST_F(EditorScene, LightIsRefinedWhileTheHandRests) {
+    const std::shared_ptr<Document> document = open_scene();
+    ASSERT_NE(document, nullptr);
+    SceneThread scene(tests::device(), [] {});
+    SceneChange change = ChangeCollector::everything(document);
+    change.settings->baked_samples = 1000;
+    scene.note_hand();
+    scene.change(std::move(change));
+    scene.show(view(*document));
+    const auto waiting = [&] {
+        const Picture picture = scene.picture();
+        return picture != nullptr ? picture->statistics.counters["refined_light_waiting"] : 0.0;
+    };
+    std::uint64_t frames = 0, unchanged = 0;
+    for (int i = 0; i < 1000 && unchanged < 20; ++i) { // until the frames of the edit have been drawn
+        scene.note_hand();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        const std::uint64_t now = scene.status().frames;
+        unchanged = now > 0 && now == frames ? unchanged + 1 : 0;
+        frames = now;
+    }
+    ASSERT_EQ(unchanged, 20u);
+    EXPECT_GT(waiting(), 0.0);
+    EXPECT_TRUE(scene.busy()) << "there is something left to do";
+    EXPECT_FALSE(scene.picture()->settled);
+    ASSERT_NE(settled(scene, *document), nullptr);
+    EXPECT_EQ(waiting(), 0.0);
+    EXPECT_GT(scene.status().frames, frames);
+}
+
 // A body is dropped into the room, falls while it plays, and hangs where it was edited when play ends: the same
 // picture, bit for bit, and the document has heard nothing of it.
 TEST_F(EditorScene, PlayLeavesThePictureAsItWas) {
