@@ -167,7 +167,7 @@ void RayScene::Implementation::place(Hit& hit, const Ray& ray) const {
         const glm::dvec3 nearest = first + clamped_u * second_edge + clamped_v * third_edge;
         distance = glm::dot(nearest - origin, direction) / glm::dot(direction, direction);
     }
-    hit.distance = std::clamp(float(distance), ray.minimum, ray.maximum);
+    hit.distance = float(std::clamp(distance, double(ray.minimum), double(ray.maximum)));
     hit.u = float(clamped_u);
     hit.v = float(clamped_v);
 }
