@@ -61,6 +61,9 @@ struct DemoSettings {
     float volume = 0.6f;
     bool subtitles = false;
     std::array<app::Key, action_count> bindings{};
+    // Not saved: the light of what stands still is refined as the preset says. What soon gives way to other light is
+    // not.
+    bool refines = true;
 
     DemoSettings();
     static const TypeDescription& description();

@@ -35,7 +35,10 @@ gi::Settings lighting_of(const DemoSettings& settings) {
     preset.light_samples = settings.light_samples;
     preset.map_budget = settings.map_budget;
     preset.transfer = settings.transfer;
-    return viewer::quality_settings(quality, preset);
+    gi::Settings result = viewer::quality_settings(quality, preset);
+    if (!settings.refines)
+        result.baked_samples = 0;
+    return result;
 }
 
 DemoSettings first_light(DemoSettings settings) {
@@ -43,6 +46,7 @@ DemoSettings first_light(DemoSettings settings) {
     settings.preset = Preset::custom;
     settings.light_samples = std::min(settings.light_samples, std::max(settings.light_samples / share, least));
     settings.transfer = false;
+    settings.refines = false;
     return settings;
 }
 

@@ -10,7 +10,8 @@ namespace sunfleck::demo {
 void apply_preset(DemoSettings& settings);
 // The lighting settings that correspond to `settings`.
 gi::Settings lighting_of(const DemoSettings& settings);
-// Light that is ready in a fraction of the time, for the first pictures of a level: of few samples.
+// Light that is ready in a fraction of the time, for the first pictures of a level: of few samples, none of which
+// refine.
 DemoSettings first_light(DemoSettings settings);
 // Whether this build has precomputed transfer for movers; a technique can be left out.
 bool has_transfer();

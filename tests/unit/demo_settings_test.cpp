@@ -93,6 +93,10 @@ TEST_F(DemoSettingsTest, PresetsDoMoreAndMoreWork) {
         EXPECT_TRUE(lighting.validate());
         EXPECT_EQ(lighting.lights, settings.light_samples);
         EXPECT_EQ(lighting.get("movers") == "prt", settings.transfer && has_transfer());
+        const gi::Settings first = lighting_of(first_light(settings));
+        EXPECT_LT(first.lights, lighting.lights);
+        EXPECT_GT(lighting.baked_samples, 0u);
+        EXPECT_EQ(first.baked_samples, 0u) << "it soon gives way to all of the light";
         EXPECT_TRUE(settings.transfer || !before.transfer);
         before = settings;
     }
