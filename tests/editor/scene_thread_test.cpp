@@ -5,6 +5,7 @@
 #include "engine/io/image.h"
 #include "engine/scene/simulation_components.h"
 #include "tests/editor/editor_scene.h"
+#include "tests/support/techniques.h"
 
 namespace sunfleck::editor {
 namespace {
@@ -37,6 +38,8 @@ TEST_F(EditorScene, ShowsWhatRenderDraws) {
 
 // Frames that only refine light wait while somebody does something, and then go on until all of it is refined.
 TEST_F(EditorScene, LightIsRefinedWhileTheHandRests) {
+    if (!tests::has_technique("light_samples"))
+        GTEST_SKIP() << "it is what light is refined by";
     const std::shared_ptr<Document> document = open_scene();
     ASSERT_NE(document, nullptr);
     SceneThread scene(tests::device(), [] {});

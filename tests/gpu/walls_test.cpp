@@ -197,9 +197,9 @@ struct SamplerCase {
 // The aim is 3 % of each wall's light in the mean over seeds, and at most 6 % in 95 % of single seeds, which reflected
 // light does not reach everywhere: medoids stand for their clusters with an error that seeds share, and the bound of
 // the geometry term takes more from corners than from the middle of a room. The limits are what was measured in the
-// long size, and a fifth more at most; they guard what is there and do not say
-// that it is enough. Clusters have less than 0.9 of the squared error of plain walks in each room but lantern_house
-// (0.91), and less than half in the geometric mean.
+// long size, and a fifth more at most; they guard what is there and do not say that it is enough. Clusters have less
+// than 0.9 of the squared error of plain walks in each room but lantern_house (0.91), and less than half in the
+// geometric mean.
 TEST_F(AnywhereSampler, WallsAreAsBrightAsThePathTracerSays) {
     const SamplerCase cases[] = {{"cornell", assets::make_cornell, 0.03},
                                  {"area_room", assets::make_area_room, 0.061},
