@@ -93,7 +93,8 @@ private:
         const raytrace::RayScene& rays = world_.renderer->rays();
         std::vector<std::vector<WallPoint>> found;
         for (std::uint32_t i = 0; i < truth.width * truth.height; ++i) {
-            const vec2 pixel(float(i % truth.width) + 0.5f, float(i / truth.width) + 0.5f);
+            const std::uint32_t line = i / truth.width;
+            const vec2 pixel(float(i % truth.width) + 0.5f, float(line) + 0.5f);
             const raytrace::Ray view{vec3(row.position), shared::camera_ray(row, pixel), 0.0f, 1e30f};
             const auto hit = rays.closest_hit(view);
             if (!hit || !truth.covered[i])
