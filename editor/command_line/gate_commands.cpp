@@ -115,9 +115,10 @@ std::function<int()> add_compare(CLI::App& bench, CLI::App*& app) {
 std::function<int()> add_pictures(CLI::App& bench, CLI::App*& app) {
     auto options = std::make_shared<PicturesOptions>();
     app = bench.add_subcommand("pictures", "Does a program still draw the stored pictures of named frames?");
-    app->footer("Example: sunfleck bench pictures --stored tests/images/level --steps-per-frame 30\n"
-                "Equal to the bit on the processor and driver that they were drawn on, within limits elsewhere\n"
-                "(docs/gate.md). Exit status: 0 fine, 2 error, 4 pictures changed.");
+    app->footer(
+        "Example: sunfleck bench pictures --stored tests/images/level --steps-per-frame 30 --set baked_samples=0\n"
+        "Equal to the bit on the processor and driver that they were drawn on, within limits elsewhere\n"
+        "(docs/gate.md). Exit status: 0 fine, 2 error, 4 pictures changed.");
     app->add_option("PROGRAM", options->program, "As HEAD of `bench compare` (default: this one)");
     viewer::add_name(*app, "--stored", options->stored, "Folder of stored pictures", "FOLDER")->required();
     viewer::add_flag(*app, "--accept", options->accept, "Store what is drawn now, and list what was written");
