@@ -41,8 +41,8 @@ protected:
 TEST_F(GateLevel, TheStoredPicturesAreStillDrawn) {
     if (!tests::has_technique("light_samples") || !tests::has_technique("adaptive_shadows"))
         GTEST_SKIP() << "they are what these two draw";
-    // Of the 1,600 samples that refine light, some go another way where one of a million rays meets another triangle,
-    // as it may on another processor.
+    // Light that is refined differs by more than the limits on another processor: which of two triangles a ray meets
+    // may be another there, and then other paths represent some of the clusters of so many samples.
     const Outcome outcome = tool("pictures --stored " SUNFLECK_SOURCE_DIR "/tests/images/level --steps-per-frame 30 "
                                  "--set baked_samples=0 --differences d");
     EXPECT_EQ(outcome.status, 0) << outcome.output;
