@@ -53,7 +53,8 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     composition.ev100 = request.ev100;
     const bool final = request.tone_map && request.view == shared::view_final;
     const bool temporal = temporal_frame_, smoothed = request.antialiasing && final && !temporal;
-    composition.alpha_is_brightness = smoothed;
+    const bool enlarged = request.is_enlarged();
+    composition.alpha_is_brightness = smoothed && !enlarged;
     registry_.view<scene::Environment>().each([&](ecs::Entity entity, const scene::Environment& environment) {
         composition.sky += environment.radiance;
         if (const auto* map = registry_.try_get<scene::EnvironmentMap>(entity))
@@ -70,13 +71,9 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
         SUNFLECK_TRY(
             meter_->add(*graph_, *gpu_scene_, g_buffer, composition, camera, {submission_->serial(), completed}));
     }
-    const bool enlarged = request.is_enlarged();
-    const bool drawn_with_edges = smoothed && enlarged && request.screen_width == 2 * request.width &&
-                                  request.screen_height == 2 * request.height;
-    const auto picture = [&](const char* name, bool last) {
-        return last ? output : graph_->create_image(name, shown_format, request.width, request.height);
-    };
-    gpu::ResourceId current = picture("composed picture", !smoothed && !enlarged && !temporal);
+    const bool shown_as_it_is = !smoothed && !enlarged && !temporal;
+    const gpu::ResourceId current =
+        shown_as_it_is ? output : graph_->create_image("composed picture", shown_format, request.width, request.height);
     composition_.add(*graph_, *gpu_scene_, g_buffer, composition, camera, current);
     if (final && gpu_scene_->has_stippled_surfaces())
         stipple_.add(*graph_, g_buffer, render::stippled_rectangle(*gpu_scene_, camera_row(request)), current,
@@ -92,16 +89,10 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     }
     if (temporal)
         return temporal_->add(*graph_, {current, g_buffer.depth, g_buffer.motion, changes}, output, *resources_);
-    if (smoothed) {
-        const gpu::ResourceId smooth = picture("smoothed picture", !enlarged);
-        if (drawn_with_edges)
-            antialiasing_.add_codes(*graph_, current, smooth);
-        else
-            antialiasing_.add(*graph_, current, smooth);
-        current = smooth;
-    }
-    if (drawn_with_edges)
-        upscale_.add_with_edges(*graph_, current, output);
+    if (smoothed && enlarged)
+        return subpixel_edges_->add(*graph_, *gpu_scene_, {current, g_buffer, camera}, output, *resources_);
+    if (smoothed)
+        antialiasing_.add(*graph_, current, output);
     else if (enlarged)
         upscale_.add(*graph_, current, output);
     return {};

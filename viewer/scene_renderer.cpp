@@ -59,6 +59,7 @@ Result<std::unique_ptr<SceneRenderer>> SceneRenderer::create(gpu::Device& device
     SUNFLECK_ASSIGN(renderer->stipple_, render::StipplePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->glare_, render::GlarePass::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->antialiasing_, render::AntialiasingPass::create(*renderer->pipelines_));
+    SUNFLECK_ASSIGN(renderer->subpixel_edges_, render::SubpixelEdges::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->upscale_, render::UpscalePass::create(*renderer->pipelines_));
     SUNFLECK_ASSIGN(renderer->temporal_, render::TemporalEnlargement::create(device, *renderer->pipelines_));
     SUNFLECK_ASSIGN(auto lines, render::DebugLines::create(*renderer->pipelines_, display_format));

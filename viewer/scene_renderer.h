@@ -10,6 +10,7 @@
 #include "engine/render/exposure_meter.h"
 #include "engine/render/glare.h"
 #include "engine/render/stipple.h"
+#include "engine/render/subpixel_edges.h"
 #include "engine/render/temporal_enlargement.h"
 #include "engine/render/upscale.h"
 #include "gi_module/system.h"
@@ -186,6 +187,7 @@ private:
     render::GlarePass glare_;
     render::StipplePass stipple_;
     render::AntialiasingPass antialiasing_;
+    std::unique_ptr<render::SubpixelEdges> subpixel_edges_;
     render::UpscalePass upscale_;
     std::unique_ptr<render::TemporalEnlargement> temporal_;
     std::unique_ptr<render::DebugLines> debug_lines_;

@@ -101,11 +101,11 @@ ResourceId FrameGraph::create_virtual(const std::string& name) {
 }
 
 ResourceId FrameGraph::create_image(const std::string& name, VkFormat format, std::uint32_t width, std::uint32_t height,
-                                    std::uint32_t layers) {
+                                    std::uint32_t layers, std::uint32_t samples) {
     Resource resource;
     resource.name = name;
     resource.is_image = resource.created = true;
-    resource.description = {name, format, width, height, layers, 1, 0, layers > 1};
+    resource.description = {name, format, width, height, layers, 1, 0, layers > 1, samples};
     // Images of one name in one frame (two lightings of a scene, say) are distinguished by their order.
     const auto same = std::count_if(resources_.begin(), resources_.end(),
                                     [&](const Resource& other) { return other.created && other.name == name; });
@@ -254,7 +254,7 @@ Status FrameGraph::realise_images(FrameResources& resources) {
         const ImageDescription& has = image.description();
         const bool fits = image && has.format == resource.description.format &&
                           has.width == resource.description.width && has.height == resource.description.height &&
-                          has.layers == resource.description.layers &&
+                          has.layers == resource.description.layers && has.samples == resource.description.samples &&
                           (has.usage & resource.description.usage) == resource.description.usage;
         if (!fits) {
             // Rare (first use, resize): frames in flight may still use the old image.

@@ -87,7 +87,7 @@ public:
     ResourceId create_virtual(const std::string& name);
     // Content is undefined at the frame's first use. Usage flags are gathered from the passes.
     ResourceId create_image(const std::string& name, VkFormat format, std::uint32_t width, std::uint32_t height,
-                            std::uint32_t layers = 1);
+                            std::uint32_t layers = 1, std::uint32_t samples = 1);
     // Two images by turns: `current` is written in this frame and is `previous` in the next. In the first frame (or
     // after a change of size) previous_valid is false.
     struct History {

@@ -46,10 +46,10 @@ VkPipelineDepthStencilStateCreateInfo depth_test(const GraphicsDescription& desc
     return info;
 }
 
-VkPipelineColorBlendAttachmentState blending(bool blend) {
+VkPipelineColorBlendAttachmentState blending(const GraphicsDescription& description) {
     VkPipelineColorBlendAttachmentState state{};
-    state.colorWriteMask = 0xf;
-    if (!blend)
+    state.colorWriteMask = description.colour_write ? 0xf : 0;
+    if (!description.blend)
         return state;
     state.blendEnable = VK_TRUE;
     state.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
@@ -80,10 +80,10 @@ VkResult create_pipeline(Device& device, const GraphicsDescription& description,
     viewport.scissorCount = 1;
     const VkPipelineRasterizationStateCreateInfo raster = rasterization(description);
     VkPipelineMultisampleStateCreateInfo multisample{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    multisample.rasterizationSamples = VkSampleCountFlagBits(description.samples);
     const VkPipelineDepthStencilStateCreateInfo depth = depth_test(description);
     const std::vector<VkPipelineColorBlendAttachmentState> blends(description.colour_formats.size(),
-                                                                  blending(description.blend));
+                                                                  blending(description));
     VkPipelineColorBlendStateCreateInfo blend{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
     blend.attachmentCount = std::uint32_t(blends.size());
     blend.pAttachments = blends.data();

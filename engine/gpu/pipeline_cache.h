@@ -58,6 +58,8 @@ struct GraphicsDescription {
     bool depth_write = true;
     bool depth_clamp = false;
     bool blend = false; // colours over what is there, by their alpha
+    bool colour_write = true;
+    std::uint32_t samples = 1; // of a pixel of the attachments (ImageDescription::samples)
     bool operator==(const GraphicsDescription&) const = default;
 };
 

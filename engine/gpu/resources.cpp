@@ -97,7 +97,7 @@ Result<Image> Image::create(Device& device, const ImageDescription& description)
     info.extent = {description.width, description.height, 1};
     info.mipLevels = description.levels;
     info.arrayLayers = description.layers;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.samples = VkSampleCountFlagBits(description.samples);
     info.usage = description.usage;
     SUNFLECK_VK(device.vk.vkCreateImage(device.handle(), &info, nullptr, &image.handle_), doing);
     VkMemoryRequirements requirements;

@@ -51,7 +51,8 @@ struct ImageDescription {
     std::uint32_t width = 1, height = 1, layers = 1;
     std::uint32_t levels = 1; // of detail, each half the size of the one before
     VkImageUsageFlags usage = 0;
-    bool array = false; // the view is an array view even with one layer
+    bool array = false;        // the view is an array view even with one layer
+    std::uint32_t samples = 1; // of a pixel: 1 or 4, which every device can have of colours and depth
     bool operator==(const ImageDescription&) const = default;
 };
 

@@ -1,13 +1,10 @@
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 // Morphological anti-aliasing (see antialiasing.h).
-#extension GL_GOOGLE_include_directive : require
-#include "engine/render/edge_code.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 // Pixels of an invocation, one below the other, which share what they read.
 const int antialiasing_rows = 4;
-layout(constant_id = 0) const uint writes_codes = 0; // 1: the picture as it is, with edge codes as its alpha
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
 layout(set = 0, binding = 1) uniform writeonly image2D target;
 layout(push_constant) uniform Constants { ivec2 size; }
@@ -23,8 +20,6 @@ const float most_blur = 0.5;
 // As far, a line that is thinner than a pixel is followed. It shows where it happens to meet the middle of one: in
 // dashes, each a row farther than the one before.
 const int line_reach = walk_lengths[walk_steps - 1];
-// Shorter lines are those of slopes, which an enlargement draws well by itself.
-const float shortest_coded_run = 2.0;
 
 vec4 load(ivec2 pixel) { return imageLoad(source, clamp(pixel, ivec2(0), constants.size - 1)); }
 float at(ivec2 pixel) { return load(pixel).a; }
@@ -65,7 +60,6 @@ vec3 walk(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond) {
 // How far the neighbour over the edge reaches into a pixel.
 struct Cover {
     float share; // of the pixel
-    float slope; // how that rises along the edge, a pixel
     float run;   // length of the edge's line, in pixels
     int end;     // steps to the nearer end, if the edge moves into the pixel's row there: < 0 before, > 0 after; else 0
     float there; // brightness at that end
@@ -79,13 +73,7 @@ Cover cover_of(ivec2 pixel, ivec2 along, ivec2 over, float centre, float beyond)
     const vec3 end = first ? before : after;
     const float run = before.x + after.x;
     const float side = end.y > 0.0 ? (first ? -1.0 : 1.0) : 0.0;
-    return Cover(side != 0.0 ? max(0.5 - end.x / run, 0.0) : 0.0, side / run, run, int(side * (end.x + 0.5)), end.z);
-}
-
-// Of the two quarters of the pixel at the edge, which are what the neighbour covers first.
-float code_of(ivec2 along, ivec2 over, Cover cover) {
-    const vec2 quarters = clamp(2.0 * (cover.share + vec2(-0.25, 0.25) * cover.slope), 0.0, 1.0);
-    return edge_code(over.x + over.y > 0, along.x == 0, quarters);
+    return Cover(side != 0.0 ? max(0.5 - end.x / run, 0.0) : 0.0, run, int(side * (end.x + 0.5)), end.z);
 }
 
 // Whether something is brighter than both of what lies beside it, or darker than both.
@@ -166,7 +154,7 @@ void draw_line(ivec2 pixel, LinePixel line, vec4 shown) {
                                                                 min(length, float(line_reach)), line.run));
     } else if (!goes_on && near <= line_reach && (gap <= line_reach || length <= float(line_reach))) {
         const float share = share_of_line(0.5 - float(near), length, float(min(gap, line_reach)));
-        result = vec4(mix(0.5 * (one.rgb + other.rgb), dash.rgb, share), writes_codes == 0 ? 1.0 : 0.0);
+        result = vec4(mix(0.5 * (one.rgb + other.rgb), dash.rgb, share), 1.0);
     }
     imageStore(target, pixel, result);
 }
@@ -195,10 +183,8 @@ uvec2 smooth_edge(ivec2 pixel) {
     const float alone = smoothstep(0.0, 1.0, min(abs(mean - n.centre) / (high - low), 1.0));
     const bool in_dash = is_apart(n.centre, one, other);
     const bool in_gap = cover.end != 0 && is_apart(cover.there, n.centre, first ? one : other);
-    const bool coded = writes_codes != 0 && cover.run >= shortest_coded_run;
-    const float share = coded ? 0.0 : max(cover.share, most_blur * alone * alone);
-    const float alpha = writes_codes == 0 ? 1.0 : coded ? code_of(along, over, cover) : 0.0;
-    const vec4 result = vec4(mix(centre.rgb, load(pixel + over).rgb, share), alpha);
+    const float share = max(cover.share, most_blur * alone * alone);
+    const vec4 result = vec4(mix(centre.rgb, load(pixel + over).rgb, share), 1.0);
     imageStore(target, pixel, result);
     const uint line = line_code(LinePixel(across, first, in_dash ? 0 : cover.end, in_dash ? 0.0 : cover.run));
     return uvec2(packUnorm4x8(result), in_dash || in_gap ? line : 0u);
@@ -217,7 +203,7 @@ void main() {
         const float high = max(centre.a, max(max(above.a, below.a), max(left, right)));
         const float low = min(centre.a, min(min(above.a, below.a), min(left, right)));
         if (pixel.y < constants.size.y) {
-            imageStore(target, pixel, vec4(centre.rgb, writes_codes != 0 ? 0.0 : 1.0));
+            imageStore(target, pixel, vec4(centre.rgb, 1.0));
             if (high - low > max(least_contrast, relative_contrast * high))
                 edges |= 1u << i;
         }

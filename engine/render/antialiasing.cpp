@@ -15,25 +15,13 @@ Result<AntialiasingPass> AntialiasingPass::create(gpu::PipelineStore& pipelines)
     AntialiasingPass pass;
     gpu::ComputeDescription description;
     description.shader = "engine/render/antialiasing.comp";
-    description.specialization = {0};
-    SUNFLECK_ASSIGN(pass.smoothing_, pipelines.compute(description));
-    description.specialization = {1};
-    SUNFLECK_ASSIGN(pass.coding_, pipelines.compute(description));
+    SUNFLECK_ASSIGN(pass.kernel_, pipelines.compute(description));
     return pass;
 }
 
 void AntialiasingPass::add(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const {
-    add(graph, *smoothing_, source, target);
-}
-
-void AntialiasingPass::add_codes(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const {
-    add(graph, *coding_, source, target);
-}
-
-void AntialiasingPass::add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline, gpu::ResourceId source,
-                           gpu::ResourceId target) const {
     const gpu::ImageDescription& size = graph.description(source);
-    gpu::ComputePass(graph, "anti-aliasing", pipeline)
+    gpu::ComputePass(graph, "anti-aliasing", *kernel_)
         .storage_read(source)
         .storage_write(target)
         .push(glm::ivec2(int(size.width), int(size.height)))

@@ -16,15 +16,9 @@ public:
     // Both are storage images of one size with 8 bits a channel; the alpha of `source` is its brightness
     // (CompositionInput::alpha_is_brightness); `target` is written whole.
     void add(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const;
-    // For UpscalePass::add_with_edges: edges are left as they are, and alpha says where they run
-    // (edge_code.glsl).
-    void add_codes(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::ResourceId target) const;
 
 private:
-    void add(gpu::FrameGraph& graph, const gpu::Pipeline& pipeline, gpu::ResourceId source,
-             gpu::ResourceId target) const;
-    const gpu::Pipeline* smoothing_ = nullptr;
-    const gpu::Pipeline* coding_ = nullptr;
+    const gpu::Pipeline* kernel_ = nullptr;
 };
 
 } // namespace sunfleck::render

@@ -1,6 +1,7 @@
 #include "engine/render/g_buffer.h"
 
 #include "engine/gpu/rendering.h"
+#include "engine/render/visible_draws.h"
 
 #include <algorithm>
 #include <cstring>
@@ -48,22 +49,6 @@ Result<GBufferPass> GBufferPass::create(gpu::PipelineStore& pipelines) {
 
 namespace {
 
-bool outside(const mat4& view_projection, const Bounds& bounds) {
-    // Outside of one plane of the view with all corners. Reverse Z: the near plane is z = w, the far one at infinity.
-    int left = 0, right = 0, below = 0, above = 0, behind = 0;
-    for (int i = 0; i < 8; ++i) {
-        const vec3 corner(i & 1 ? bounds.maximum.x : bounds.minimum.x, i & 2 ? bounds.maximum.y : bounds.minimum.y,
-                          i & 4 ? bounds.maximum.z : bounds.minimum.z);
-        const vec4 clip = view_projection * vec4(corner, 1.0f);
-        left += clip.x < -clip.w;
-        right += clip.x > clip.w;
-        below += clip.y < -clip.w;
-        above += clip.y > clip.w;
-        behind += clip.w < 0.0f;
-    }
-    return left == 8 || right == 8 || below == 8 || above == 8 || behind == 8;
-}
-
 bool same_bindings(const scene::DrawItem& a, const scene::DrawItem& b) {
     return a.kind == b.kind && std::equal(std::begin(a.textures), std::end(a.textures), std::begin(b.textures));
 }
@@ -77,23 +62,6 @@ std::vector<gpu::Binding> bindings_of(const scene::DrawItem& item, const scene::
     for (const std::int32_t texture : item.textures)
         bindings.push_back(scene.textures().binding(texture));
     return bindings;
-}
-
-// What the camera may see, nearest first: what is hidden by then is not shaded.
-std::vector<const scene::DrawItem*> visible_from(const shared::CameraRow& camera,
-                                                 const std::vector<scene::DrawItem>& draws) {
-    std::vector<std::pair<float, const scene::DrawItem*>> seen;
-    const vec3 eye(camera.position);
-    for (const scene::DrawItem& item : draws)
-        if (!outside(camera.view_projection, item.bounds)) {
-            const vec3 nearest = glm::clamp(eye, item.bounds.minimum, item.bounds.maximum);
-            seen.emplace_back(glm::length(nearest - eye), &item);
-        }
-    std::stable_sort(seen.begin(), seen.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<const scene::DrawItem*> result;
-    for (const auto& [distance, item] : seen)
-        result.push_back(item);
-    return result;
 }
 
 } // namespace
@@ -178,11 +146,9 @@ Status GBufferPass::draw(gpu::PassContext& context, const scene::GpuScene& scene
         if (bound == nullptr || !same_bindings(*bound, *item))
             SUNFLECK_TRY(context.resources.bind(context.commands, pipeline, bindings_of(*item, scene, camera)));
         bound = item;
-        const VkCullModeFlags hidden = item->single_sided ? VK_CULL_MODE_BACK_BIT : VK_CULL_MODE_NONE;
-        if (hidden != cull)
+        if (const VkCullModeFlags hidden = hidden_faces(row, *item); hidden != cull)
             vk.vkCmdSetCullMode(context.commands, cull = hidden);
-        const VkFrontFace side = item->mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE;
-        if (side != front)
+        if (const VkFrontFace side = front_face(*item); side != front)
             vk.vkCmdSetFrontFace(context.commands, front = side);
         SUNFLECK_TRY(context.resources.push(context.commands, pipeline, item->constants));
         vk.vkCmdDrawIndexed(context.commands, item->index_count, 1, item->first_index, item->vertex_offset, 0);

@@ -21,7 +21,7 @@ layout(push_constant) uniform Constants {
 // A history that was this far out of the range of the new picture's colours counts no more.
 const float most_correction = 0.25;
 // Of the history, in whole samples; and of a picture that was made by itself.
-const float most_weight = 4.0, weight_of_single = 0.5;
+const float most_weight = 4.0, weight_of_single = 2.0;
 
 #include "engine/render/temporal_samples.glsl"
 

@@ -6,9 +6,9 @@
 // Where nothing changes at all for a round of samples, the picture becomes the mean of that, and stays as it is, to the
 // bit.
 //
-// Frames of a camera that moves are better made each by itself (upscale.h): at the few frames a second of a CPU device
-// much of what such a frame shows was hidden in the one before, and what was not is blurred by being moved again and
-// again. The first frame after them goes on from what they showed.
+// Frames of a camera that moves are better made each by itself (subpixel_edges.h): at the few frames a second of a CPU
+// device much of what such a frame shows was hidden in the one before, and what was not is blurred by being moved again
+// and again. The first frame after them goes on from what they showed.
 #pragma once
 
 #include "engine/gpu/frame_graph.h"

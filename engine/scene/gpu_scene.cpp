@@ -84,7 +84,7 @@ Result<GpuScene::Geometry> GpuScene::gather(const MeshStore& meshes, const std::
         if (!went_on)
             return Error{"preparing the meshes was stopped", ErrorCode::stopped};
         before += mesh.triangle_count();
-        ranges_.back().closed = is_closed(details.front().indices);
+        ranges_.back().closed = is_solid(details.front().indices, mesh.positions);
         for (const MeshDetail& detail : details) {
             ranges_.back().details.push_back({std::uint32_t(indices.size()), std::uint32_t(detail.indices.size()),
                                               detail.vertex_count, detail.error});

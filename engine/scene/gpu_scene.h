@@ -36,7 +36,7 @@ struct DrawItem {
     std::uint32_t row = 0;
     std::uint32_t vertex_count = 0;
     std::span<const DetailRange> details;        // from fine to coarse; the first is the whole mesh
-    bool closed = false;                         // and not mirrored: seen from outside, only front faces show
+    bool closed = false;                         // is_solid, and not mirrored: from outside, only front faces show
     bool single_sided = false;                   // pictures do not show it from behind
     bool mirrored = false;                       // the model matrix turns triangles round
     float scale = 1.0f;                          // greatest length of the model matrix's axes

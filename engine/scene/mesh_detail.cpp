@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <meshoptimizer.h>
+#include <numeric>
 
 namespace sunfleck::scene {
 namespace {
@@ -24,6 +25,38 @@ std::vector<std::uint32_t> join_vertices(const Mesh& mesh) {
         meshopt_generateShadowIndexBuffer(result.data(), mesh.indices.data(), mesh.indices.size(), &mesh.positions[0].x,
                                           mesh.positions.size(), sizeof(vec3), sizeof(vec3));
     return result;
+}
+
+bool has_paired_edges(const std::vector<std::uint32_t>& joined_indices) {
+    std::vector<std::uint64_t> edges, reversed;
+    for (std::size_t i = 0; i + 2 < joined_indices.size(); i += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint64_t a = joined_indices[i + k], b = joined_indices[i + (k + 1) % 3];
+            if (a == b)
+                continue; // degenerate triangle
+            edges.push_back(a << 32 | b);
+            reversed.push_back(b << 32 | a);
+        }
+    std::sort(edges.begin(), edges.end());
+    std::sort(reversed.begin(), reversed.end());
+    return !edges.empty() && edges == reversed && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
+
+// For each vertex, one that stands for all that triangles connect it with.
+std::vector<std::uint32_t> connected_parts(const std::vector<std::uint32_t>& joined_indices, std::size_t vertices) {
+    std::vector<std::uint32_t> part(vertices);
+    std::iota(part.begin(), part.end(), 0u);
+    const auto find = [&](std::uint32_t vertex) {
+        while (part[vertex] != vertex)
+            vertex = part[vertex] = part[part[vertex]];
+        return vertex;
+    };
+    for (std::size_t i = 0; i + 2 < joined_indices.size(); i += 3)
+        for (std::size_t k = 1; k < 3; ++k)
+            part[find(joined_indices[i + k])] = find(joined_indices[i]);
+    for (std::uint32_t vertex = 0; vertex < part.size(); ++vertex)
+        part[vertex] = find(vertex);
+    return part;
 }
 
 } // namespace
@@ -62,23 +95,24 @@ std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<
     return details;
 }
 
-bool is_closed(const std::vector<std::uint32_t>& joined_indices) {
-    std::vector<std::uint64_t> edges, reversed;
-    for (std::size_t i = 0; i + 2 < joined_indices.size(); i += 3)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint64_t a = joined_indices[i + k], b = joined_indices[i + (k + 1) % 3];
-            if (a == b)
-                continue; // degenerate triangle
-            edges.push_back(a << 32 | b);
-            reversed.push_back(b << 32 | a);
-        }
-    std::sort(edges.begin(), edges.end());
-    std::sort(reversed.begin(), reversed.end());
-    return !edges.empty() && edges == reversed && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+bool is_closed(const Mesh& mesh) {
+    return has_paired_edges(join_vertices(mesh));
 }
 
-bool is_closed(const Mesh& mesh) {
-    return is_closed(join_vertices(mesh));
+bool is_solid(const std::vector<std::uint32_t>& joined_indices, const std::vector<vec3>& positions) {
+    if (!has_paired_edges(joined_indices))
+        return false;
+    const std::vector<std::uint32_t> parts = connected_parts(joined_indices, positions.size());
+    std::vector<double> volumes(positions.size(), 0.0); // six times that of a part, at the vertex that stands for it
+    for (std::size_t i = 0; i + 2 < joined_indices.size(); i += 3) {
+        const std::uint32_t part = parts[joined_indices[i]];
+        const auto from_part = [&](std::size_t k) {
+            return glm::dvec3(positions[joined_indices[k]]) - glm::dvec3(positions[part]);
+        };
+        volumes[part] += glm::dot(from_part(i), glm::cross(from_part(i + 1), from_part(i + 2)));
+    }
+    return std::all_of(joined_indices.begin(), joined_indices.end(),
+                       [&](std::uint32_t index) { return volumes[parts[index]] > 0.0; });
 }
 
 } // namespace sunfleck::scene

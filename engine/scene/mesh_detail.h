@@ -18,9 +18,11 @@ struct MeshDetail {
 // called before each level of a large mesh, with the share that is done; the list ends where it returns false.
 std::vector<MeshDetail> make_mesh_details(const Mesh& mesh, const std::function<bool(float)>& progress = {});
 
-// Watertight: every edge has two triangles, once in each direction (coincident vertices count as one). From outside,
-// only front faces are visible.
-bool is_closed(const std::vector<std::uint32_t>& joined_indices);
+// Watertight: every edge has two triangles, once in each direction (coincident vertices count as one).
 bool is_closed(const Mesh& mesh);
+
+// Closed, and each of its connected parts has its front faces outside: who is outside sees only these.
+// `joined_indices`: as of the first level of detail.
+bool is_solid(const std::vector<std::uint32_t>& joined_indices, const std::vector<vec3>& positions);
 
 } // namespace sunfleck::scene

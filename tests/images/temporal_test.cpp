@@ -60,7 +60,7 @@ io::Picture picture_of(TemporalScene& world, int turning, int standing) {
 }
 
 // Within a round of the sequence, of which one frame is none of it since the camera arrives in it. What each frame
-// shows by itself is enlarged with the edges that morphological anti-aliasing finds.
+// shows by itself has four samples a pixel at the edges of surfaces (subpixel_edges.h).
 TEST_F(TemporalPicture, StandingStillComesNearToASupersampledPicture) {
     TemporalScene by_itself;
     const io::Picture single = picture_of(by_itself, 4, 0), truth = truth_of(by_itself.request.camera);
@@ -76,7 +76,7 @@ TEST_F(TemporalPicture, StandingStillComesNearToASupersampledPicture) {
         last = error;
     }
     std::printf("\n");
-    EXPECT_LT(last, 0.5 * first); // 0.38: sixteen samples a pixel, as the truth has, but not the same ones
+    EXPECT_LT(last, 0.5 * first); // 0.47: sixteen samples a pixel, as the truth has, but not the same ones
 }
 
 // A camera that moves sees each frame by itself, to the bit.
@@ -104,8 +104,8 @@ TEST_F(TemporalPicture, ComesToRest) {
     EXPECT_EQ(picture_of(world, 0, 40).pixels, first.pixels);
 }
 
-// A mover leaves no trail: a frame after it stopped, the picture is nearer to one that never saw it, and is at rest,
-// than a frame by itself is. Light that is switched shows as in a frame by itself.
+// A mover leaves no trail: a frame after it stopped, the picture is about as near to one that never saw it, and is at
+// rest, as a frame by itself is. Light that is switched shows as in a frame by itself.
 TEST_F(TemporalPicture, WhatChangesLeavesNoTrail) {
     constexpr std::uint64_t steps = 30;
     TemporalScene temporal, by_itself, fresh;
@@ -127,7 +127,7 @@ TEST_F(TemporalPicture, WhatChangesLeavesNoTrail) {
     };
     const double now = difference(temporal.picture()), single = difference(by_itself.picture());
     std::printf("%.5f, a frame by itself %.5f\n", now, single);
-    EXPECT_LT(now, single);
+    EXPECT_LT(now, 1.1 * single); // 1.03 here; 1.39 where what was there is not kept within what is
     temporal.request.indirect_scale = by_itself.request.indirect_scale = 0.0f;
     EXPECT_EQ(temporal.picture().pixels, by_itself.picture().pixels);
 }
