@@ -17,6 +17,9 @@ layout(constant_id = 2) const uint repairs_contacts = 1;
 // If the valid neighbours' bilinear weights sum up to less, the pixel lies beyond them, at a crease or a silhouette,
 // and blending would extrapolate.
 const float min_weight_sum = 0.3;
+// The same where two surfaces meet in a corner: light falls off towards it, and neighbours farther from it are too
+// bright, now more and now less along its line.
+const float corner_weight_sum = 0.9;
 
 // A surface that stands before another by less than this, in tolerances (about two low-resolution pixels in all),
 // darkens it where they seem to meet: under a shelf, beside a frame.
@@ -202,14 +205,14 @@ void main() {
         // Distances in the octahedral encoding approximate angles: 1 is 55 to 90 degrees. Across a fold they are too
         // large, and the pixel is lit again.
         const vec2 normal = unpackSnorm2x16(packed_normal);
-        vec4 off_plane, apart; // distance from the neighbours' planes, times depth; squared distance of the normals
+        vec4 before, apart; // how far before the neighbours' planes, times depth; squared distance of the normals
         bvec4 same_normal;
         [[unroll]] for (int i = 0; i < 4; ++i) {
-            off_plane[i] = heights[i] * abs(dot(neighbours[i].depth_plane, vec3(1.0, vec2(inside))) - depth);
+            before[i] = heights[i] * (depth - dot(neighbours[i].depth_plane, vec3(1.0, vec2(inside))));
             apart[i] = dot(neighbours[i].normal - normal, neighbours[i].normal - normal);
             same_normal[i] = neighbours[i].packed_normal == packed_normal;
         }
-        const bvec4 on_plane = lessThan(off_plane, vec4(tolerance));
+        const bvec4 on_plane = lessThan(abs(before), vec4(tolerance));
         vec4 shares = weights;
         int own = 0; // a neighbour on the pixel's plane
         [[unroll]] for (int i = 1; i < 4; ++i)
@@ -225,7 +228,9 @@ void main() {
             const vec4 low = mix(vec4(1e30), bright, valid), high = bright * valid;
             const float highest = max(max(high.x, high.y), max(high.z, high.w));
             const float lowest = min(min(low.x, low.y), min(low.z, low.w));
-            again = contact || sum < min_weight_sum || highest - lowest > constants.contrast * highest;
+            const vec4 beyond = mix(vec4(1e30), before, vec4(greaterThanEqual(before, vec4(tolerance))) * vec4(exists));
+            const bool corner = min(min(beyond.x, beyond.y), min(beyond.z, beyond.w)) < contact_reach * tolerance;
+            again = contact || sum < (corner ? corner_weight_sum : min_weight_sum) || highest - lowest > constants.contrast * highest;
             shares = sum == 0.0 ? weights : shares / sum; // in case there is no room to light it again
         }
         const bool surface = depth > 0.0;
