@@ -6,7 +6,8 @@
 #define PLACES_ACCESS readonly
 #endif
 layout(set = 0, binding = 2) PLACES_ACCESS buffer Places {
-    uint groups[3]; // of 64 places each, for vkCmdDispatchIndirect
+    uint groups[3]; // for vkCmdDispatchIndirect, row by row
     uint count;
     uint places[];
 } edges;
+const uint places_of_group = 64u, most_groups = 65535u; // of a row: what every device can

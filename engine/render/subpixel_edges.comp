@@ -23,7 +23,8 @@ layout(push_constant) uniform Constants {
 
 #include "engine/render/emitting_surface.glsl"
 
-// Where Vulkan's standard places the samples of a pixel.
+// Where Vulkan's standard places the samples of a pixel. (A device may place them elsewhere, and says so: edges are then
+// off by some of the distance.)
 const vec2 sample_places[4] = {vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875)};
 // A sample is on the plane that it is nearest to, and on others that are farther from it by less than this: in pixels
 // of the source, plus what depths and normals are rounded by, as a share of the distance.
@@ -101,9 +102,11 @@ void write_four(ivec2 first) {
 }
 
 void main() {
-    if (gl_GlobalInvocationID.x >= edges.count)
+    const uint group = gl_WorkGroupID.y * most_groups + gl_WorkGroupID.x;
+    const uint at = group * places_of_group + gl_LocalInvocationIndex;
+    if (at >= edges.count)
         return;
-    const uint packed = edges.places[gl_GlobalInvocationID.x];
+    const uint packed = edges.places[at];
     const ivec2 place = ivec2(packed & 0xffffu, packed >> 16u) - 1;
     if (doubling != 0)
         write_four(place);

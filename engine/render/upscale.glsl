@@ -4,7 +4,6 @@
 // Twice the size is the usual case: there, four pixels share the sixteen that they are made of.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint doubling = 0;
-const int doubling_rows = 1; // cells between source pixels that an invocation fills, one below the other
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
 layout(set = 0, binding = 1) uniform writeonly image2D target;
 #ifdef LISTS_EDGES
@@ -33,8 +32,11 @@ void list_if_edge(ivec2 place, vec3 lowest, vec3 highest) {
         return;
     const uint at = atomicAdd(edges.count, 1u);
     edges.places[at] = uint(place.x + 1) | uint(place.y + 1) << 16u;
-    if (at % 64u == 0u)
+    const uint group = at / places_of_group;
+    if (at % places_of_group == 0u && group < most_groups)
         atomicAdd(edges.groups[0], 1u);
+    else if (at % places_of_group == 0u)
+        atomicMax(edges.groups[1], group / most_groups + 1u);
 #endif
 }
 
@@ -64,54 +66,40 @@ void write_one(ivec2 pixel) {
     list_if_edge(pixel, low, high); // its samples lie between others of the sixteen, too
 }
 
-// A row of four source pixels, a quarter and three quarters of the way between the second and the third, and those two.
-struct Row {
-    vec3 left, right, lowest, highest;
-};
-
-Row row_at(ivec2 first) {
+// The pixels between the middles of four source pixels, a quarter and three quarters of the way.
+void write_four(ivec2 corner) {
     const vec4 quarter = catmull_rom(0.25), rest = catmull_rom(0.75);
-    vec3 colours[4];
-    [[unroll]] for (int x = 0; x < 4; ++x)
-        colours[x] = load(first + ivec2(x, 0));
-    Row row = Row(vec3(0.0), vec3(0.0), min(colours[1], colours[2]), max(colours[1], colours[2]));
-    [[unroll]] for (int x = 0; x < 4; ++x) {
-        row.left += quarter[x] * colours[x];
-        row.right += rest[x] * colours[x];
-    }
-    return row;
-}
-
-// The pixels between the middles of four source pixels, a quarter and three quarters of the way, for cells one below
-// the other, which share rows.
-void write_fours(ivec2 corner) {
-    const vec4 quarter = catmull_rom(0.25), rest = catmull_rom(0.75);
-    Row rows[4];
-    [[unroll]] for (int y = 0; y < 3; ++y)
-        rows[y + 1] = row_at(corner + ivec2(-1, y - 1));
-    [[unroll]] for (int cell = 0; cell < doubling_rows; ++cell, ++corner.y) {
-        rows[0] = rows[1];
-        rows[1] = rows[2];
-        rows[2] = rows[3];
-        rows[3] = row_at(corner + ivec2(-1, 2));
-        const vec3 lowest = min(rows[1].lowest, rows[2].lowest), highest = max(rows[1].highest, rows[2].highest);
-        [[unroll]] for (int i = 0; i < 4; ++i) {
-            vec3 sum = vec3(0.0);
-            [[unroll]] for (int y = 0; y < 4; ++y)
-                sum += (i < 2 ? quarter[y] : rest[y]) * ((i & 1) == 0 ? rows[y].left : rows[y].right);
-            const ivec2 pixel = 2 * corner + 1 + ivec2(i & 1, i >> 1);
-            if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, constants.target_size)))
-                imageStore(target, pixel, vec4(clamp(sum, lowest, highest), 1.0));
+    vec3 sums[4] = {vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)};
+    vec3 lowest = vec3(1.0), highest = vec3(0.0);
+    [[unroll]] for (int y = 0; y < 4; ++y) {
+        vec3 left = vec3(0.0), right = vec3(0.0);
+        [[unroll]] for (int x = 0; x < 4; ++x) {
+            const vec3 colour = load(corner + ivec2(x - 1, y - 1));
+            left += quarter[x] * colour;
+            right += rest[x] * colour;
+            if ((x == 1 || x == 2) && (y == 1 || y == 2)) {
+                lowest = min(lowest, colour);
+                highest = max(highest, colour);
+            }
         }
-        if (corner.x < constants.source_size.x && corner.y < constants.source_size.y)
-            list_if_edge(corner, lowest, highest);
+        sums[0] += quarter[y] * left;
+        sums[1] += quarter[y] * right;
+        sums[2] += rest[y] * left;
+        sums[3] += rest[y] * right;
     }
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        const ivec2 pixel = 2 * corner + 1 + ivec2(i & 1, i >> 1);
+        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, constants.target_size)))
+            imageStore(target, pixel, vec4(clamp(sums[i], lowest, highest), 1.0));
+    }
+    if (corner.x < constants.source_size.x && corner.y < constants.source_size.y)
+        list_if_edge(corner, lowest, highest);
 }
 
 void main() {
     const ivec2 place = ivec2(gl_GlobalInvocationID.xy);
     if (doubling != 0)
-        write_fours(place * ivec2(1, doubling_rows) - 1);
+        write_four(place - 1);
     else
         write_one(place);
 }
