@@ -29,7 +29,7 @@ const vec2 sample_places[4] = {vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.12
 // A sample is on the plane that it is nearest to, and on others that are farther from it by less than this: in pixels
 // of the source, plus what depths and normals are rounded by, as a share of the distance.
 const float tolerance_pixels = 0.1, rounding = 1e-4;
-// That of another surface counts as so much farther, in pixels: two may share a plane.
+// That of another surface that emits counts as so much farther, in pixels: two may share a plane.
 const float other_surface = 0.5;
 
 // The four source pixels about a place, and the planes that they show: distance of a sample from plane i, in pixels, is
@@ -37,7 +37,7 @@ const float other_surface = 0.5;
 struct Planes {
     vec3 colours[4];
     vec4 level, across, down, factor;
-    vec4 surfaces; // subpixel_surface
+    vec4 surfaces; // emitting_surface
 };
 
 // Depth (near / distance along the axis) is linear on a plane, in the picture. Of the sky, all but depth 0 is far.

@@ -33,7 +33,7 @@ void UpscalePass::add(gpu::FrameGraph& graph, gpu::ResourceId source, gpu::Resou
         .storage_read(source)
         .storage_write(target)
         .push(Constants{{int(from.width), int(from.height)}, {int(to.width), int(to.height)}})
-        .dispatch(divide_up(columns, 8), divide_up(rows, doubling ? 8 : 8));
+        .dispatch(divide_up(columns, 8), divide_up(rows, 8));
 }
 
 } // namespace sunfleck::render
