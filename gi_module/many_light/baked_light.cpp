@@ -266,8 +266,8 @@ Status BakedLight::update(const ManyLightScene& scene, const LightMaps& light_ma
     return {};
 }
 
-void BakedLight::judge_by(const gpu::Buffer& ratios, bool refined) {
-    ratios_ = &ratios;
+void BakedLight::judge_by(const gpu::Buffer& texels, bool refined) {
+    refined_texels_ = &texels;
     if (std::exchange(refined_, refined) != refined)
         next_marked_ = 0;
 }
@@ -352,7 +352,7 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
         .texels(sums_)
         .storage_read_write(texels_)
         .storage_read(points_.buffer())
-        .texels(*ratios_);
+        .texels(*refined_texels_);
     dispatch(pass, finish_.jobs().size());
     return {};
 }

@@ -43,9 +43,9 @@ public:
     void forget();
     bool in_use() const { return in_use_; }
 
-    // Whether cells are rough is judged by the light that is shown: if `refined`, `ratios` times what is baked, by
-    // texel. Where this changes, cells are marked again, from the next update on.
-    void judge_by(const gpu::Buffer& ratios, bool refined);
+    // Whether cells are rough is judged by the light that is shown: if `refined`, that of `texels`
+    // (RefinedLight::texels). Where this changes, cells are marked again, from the next update on.
+    void judge_by(const gpu::Buffer& texels, bool refined);
     bool marks_again() const { return next_marked_ < pieces_.size(); }
 
     // Adds the passes that do the frame's share. After those that draw shadow maps.
@@ -117,7 +117,7 @@ private:
     std::vector<std::uint32_t> waiting_;       // pieces, the next one last
     std::uint64_t evaluations_ = 0;            // samples times texels, of this frame
     LightMapJobs jobs_, finish_;               // sums; then cells
-    const gpu::Buffer* ratios_ = nullptr;
+    const gpu::Buffer* refined_texels_ = nullptr;
     bool refined_ = false;
     std::size_t next_marked_ = 0; // piece whose cells are to be marked again, and all after it
     BakedLightCounters counters_;

@@ -11,10 +11,11 @@ layout(set = 0, binding = 0) uniform usamplerBuffer jobs; // LightMapJobs
 layout(set = 0, binding = 1) uniform isamplerBuffer sums;
 layout(set = 0, binding = 2) buffer Texels { uvec2 texels[]; };
 layout(set = 0, binding = 3) readonly buffer Points { CurvedPoint points[]; };
-layout(set = 0, binding = 4) uniform samplerBuffer refined_ratios;
+layout(set = 0, binding = 4) uniform usamplerBuffer refined_texels;
 layout(push_constant) uniform Constants { LightMapConstants constants; };
 
 #include "gi_module/many_light/light_map_job.glsl"
+#include "gi_module/many_light/refined_texel.glsl"
 
 const float largest_half = 65504.0;
 
@@ -27,7 +28,10 @@ vec3 sum_at(int place) { return vec3(texelFetch(sums, place).xyz); }
 // As it is shown. Of places beside the map, something that is not looked at.
 vec3 light_at(LightMapJob job, ivec2 texel) {
     const int place = place_of(job, texel);
-    return constants.refined != 0u ? sum_at(place) * texelFetch(refined_ratios, place).rgb : sum_at(place);
+    if (constants.refined == 0u)
+        return sum_at(place);
+    const RefinedTexel refined = to_refined_texel(texelFetch(refined_texels, place).rg);
+    return sum_at(refined.source) * refined.ratio;
 }
 
 // Whether a texel is too far off the line between its neighbours, relative to the brightest of the three.

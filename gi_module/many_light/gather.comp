@@ -30,9 +30,11 @@ layout(set = 0, binding = 10) writeonly buffer Sums { vec4 sums[]; };
 layout(set = 0, binding = 11) readonly buffer LightMaps { ivec4 light_map_texels[]; };
 layout(set = 0, binding = 12) uniform samplerBuffer baked_texels;
 layout(set = 0, binding = 13) uniform samplerBuffer curved_rows; // CurvedChartRows
-layout(set = 0, binding = 14) uniform samplerBuffer refined_ratios;
+layout(set = 0, binding = 14) uniform usamplerBuffer refined_texels;
 layout(set = 0, binding = 15) writeonly buffer Ratios { uvec2 ratios[]; };
 layout(push_constant) uniform Constants { ManyLightConstants constants; };
+
+#include "gi_module/many_light/refined_texel.glsl"
 
 // Where light is evaluated by pixel, what a texel lacks says less of it.
 const float least_rough_ratio = 0.5, most_rough_ratio = 2.0;
@@ -102,26 +104,38 @@ vec3 light_map(NodeRow row, TexelPlace place) {
     return mix(low, high, place.weight.y) / constants.fixed_point;
 }
 
-// Light of the samples of the frame, and refined light over it.
+// Light of the samples of the frame, and what is shown of it: refined.
 struct BakedLight {
     vec3 light;
-    vec3 ratio;
+    vec3 refined;
 };
 
-// From the texels `first`, `below` and those to their right. Both are interpolated, and then divided.
+// From the texels `first`, `below` and those to their right.
 BakedLight interpolated(int first, int below, vec2 weight) {
     const int texels[4] = int[4](first, first + 1, below, below + 1);
     const float weights[4] = float[4]((1.0 - weight.x) * (1.0 - weight.y), weight.x * (1.0 - weight.y),
                                       (1.0 - weight.x) * weight.y, weight.x * weight.y);
-    BakedLight baked = BakedLight(vec3(0.0), vec3(1.0));
-    vec3 light = vec3(0.0);
+    BakedLight baked = BakedLight(vec3(0.0), vec3(0.0));
     for (int i = 0; i < 4; ++i) {
-        const vec3 texel = weights[i] * texelFetch(baked_texels, texels[i]).rgb;
-        baked.light += texel;
-        light += texel * mix(vec3(1.0), texelFetch(refined_ratios, texels[i]).rgb, constants.refined_share);
+        const RefinedTexel texel = to_refined_texel(texelFetch(refined_texels, texels[i]).rg);
+        const vec3 light = texelFetch(baked_texels, texels[i]).rgb;
+        const vec3 refined = texelFetch(baked_texels, texel.source).rgb * texel.ratio;
+        baked.light += weights[i] * light;
+        baked.refined += weights[i] * mix(light, refined, constants.refined_share);
     }
-    baked.ratio = mix(vec3(1.0), light / max(baked.light, 1e-30), greaterThan(baked.light, vec3(0.0)));
     return baked;
+}
+
+// By what light is scaled that is evaluated by pixel: all of it where it is rough, else what movers take away.
+vec3 ratio_of(BakedLight baked, bool rough) {
+    const vec3 ratio = baked.refined / max(baked.light, 1e-30);
+    const vec3 bounded = rough ? clamp(ratio, least_rough_ratio, most_rough_ratio) : min(ratio, largest_ratio);
+    return mix(vec3(1.0), bounded, greaterThan(baked.light, vec3(0.0)));
+}
+
+// And what is added to it where it is rough: even light, which hardly any of the frame's samples give.
+vec3 remainder_of(BakedLight baked, bool rough) {
+    return rough ? max(baked.refined - most_rough_ratio * baked.light, 0.0) : vec3(0.0);
 }
 
 vec3 interpolated_light(int first, int below, vec2 weight) {
@@ -134,9 +148,10 @@ vec3 interpolated_light(int first, int below, vec2 weight) {
 BakedLight baked_light(NodeRow row, TexelPlace place, out bool rough) {
     const int first = int(place.first), below = first + int(row.columns);
     rough = texelFetch(baked_texels, first).a != 0.0;
-    if (!is_refined())
-        return BakedLight(interpolated_light(first, below, place.weight), vec3(1.0));
-    return interpolated(first, below, place.weight);
+    if (is_refined())
+        return interpolated(first, below, place.weight);
+    const vec3 light = interpolated_light(first, below, place.weight);
+    return BakedLight(light, light);
 }
 
 // The same on a curved surface, from the chart that its normal selects. Points that are not on the chart's surface are
@@ -155,7 +170,8 @@ BakedLight curved_light(uint first_chart, vec3 position, vec3 geometric_normal, 
     rough = !(inside && abs(point.z * size.w - height) <= curved_point_span * size.w / chart_place.w);
     if (is_refined() && inside)
         return interpolated(first, below, weight);
-    return BakedLight(interpolated_light(first, below, weight), vec3(1.0));
+    const vec3 light = interpolated_light(first, below, weight);
+    return BakedLight(light, light);
 }
 
 void main() {
@@ -178,7 +194,7 @@ void main() {
     const bool in_picture = exists;
     exists = exists && surface != 0u;
     uint node = no_node;
-    vec3 sum = vec3(0.0), ratio = vec3(1.0);
+    vec3 sum = vec3(0.0), ratio = vec3(1.0), remainder = vec3(0.0);
     if (exists) {
         const vec3 position = camera_position_at(camera, vec2(pixel) + 0.5, depth);
         const uvec2 normals = texelFetch(normals_image, pixel, 0).rg;
@@ -196,15 +212,16 @@ void main() {
                 bool rough = true;
                 if (baked != 0) {
                     const BakedLight light = baked_light(row, place, rough);
-                    sum = light.light;
-                    ratio = rough ? clamp(light.ratio, least_rough_ratio, most_rough_ratio) : light.ratio;
+                    sum = light.refined;
+                    ratio = ratio_of(light, rough);
+                    remainder = remainder_of(light, rough);
                 }
                 node |= differs ? node_normal_differs : rough ? 0u : node_baked;
                 curved = differs && baked != 0 && instance.first_curved_chart != no_node;
                 if (rough)
-                    sum = light_map(row, place);
+                    sum = light_map(row, place) * ratio;
                 if (differs)
-                    sum = vec3(0.0);
+                    sum = remainder = vec3(0.0);
             } else {
                 curved = baked != 0 && instance.first_curved_chart != no_node;
             }
@@ -213,14 +230,15 @@ void main() {
             bool rough;
             const BakedLight light = curved_light(instance.first_curved_chart, position, geometric_normal, rough);
             node |= rough ? 0u : node_baked;
-            sum = rough ? vec3(0.0) : light.light;
-            ratio = rough ? clamp(light.ratio, least_rough_ratio, most_rough_ratio) : light.ratio;
+            sum = rough ? vec3(0.0) : light.refined;
+            ratio = ratio_of(light, rough);
+            remainder = remainder_of(light, rough);
         }
     }
     if (from_list == 0)
         pixels[entry] = in_picture ? uint(pixel.x) | (uint(pixel.y) << 16) | (exists ? 0u : unlit_pixel) : no_pixel;
     entry_nodes[entry] = node;
-    sums[entry] = vec4(sum * ratio, exists ? 1.0 : 0.0);
+    sums[entry] = vec4(sum + remainder, exists ? 1.0 : 0.0);
     if (is_refined())
         ratios[entry] = uvec2(packHalf2x16(ratio.rg), packHalf2x16(vec2(ratio.b, 0.0)));
 }

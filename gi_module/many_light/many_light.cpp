@@ -54,7 +54,7 @@ Status ManyLight::update(const ManyLightScene& scene, const RefinedLightScene& r
         refined_light_->forget();
     marked_again_ = baked_light_->marks_again();
     SUNFLECK_TRY(refined_light_->update(refined, *baked_light_, options.refinement_budget, resources));
-    baked_light_->judge_by(refined_light_->ratios(), refined_light_->share() == 1.0f);
+    baked_light_->judge_by(refined_light_->texels(), refined_light_->share() == 1.0f);
     shared::NodeRow bare{};
     bare.first_texel = shared::no_light_map;
     std::vector<shared::NodeRow> node_rows;

@@ -74,7 +74,7 @@ Status ManyLight::add_gather(const Frame& frame) {
         .storage_read(light_maps_->texels())
         .texels(baked_light_->texels())
         .texels(frame.baked ? baked_light_->curved_rows() : unused_texels_)
-        .texels(refined_light_->ratios()) // of one format always: some drivers compile a kernel for each
+        .texels(refined_light_->texels()) // of one format always: some drivers compile a kernel for each
         .storage_write(ratios_)
         .push(frame.constants);
     dispatch(pass, frame, Phase::plain, shared::command_groups);

@@ -128,10 +128,11 @@ Status ManyLightTechnique::update(const SceneView& scene, Services& services, Ce
                              light_map_texel(samples.geometry_bound()), max_curved_points);
         curved_generation_ = database.generation();
     }
-    SUNFLECK_TRY(lighting_->update({database, curved_charts_, scene.gpu_scene, samples.samples(),
-                                    owned_rows(samples, cells, owned_rows_), samples.late_changes() > 0},
-                                   {database, samples, cells, scene.rays, settings, scene.gpu_scene.bounds()}, options_,
-                                   services.resources));
+    SUNFLECK_TRY(
+        lighting_->update({database, curved_charts_, scene.gpu_scene, samples.samples(),
+                           owned_rows(samples, cells, owned_rows_), samples.late_changes() > 0},
+                          {database, samples, curved_charts_, cells, scene.rays, settings, scene.gpu_scene.bounds()},
+                          options_, services.resources));
     if (own.count_passes && services.input.view_projection)
         passes_.count(database, *services.input.view_projection, own);
     else

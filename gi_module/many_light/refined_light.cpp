@@ -19,13 +19,15 @@ constexpr std::uint32_t fading_frames = 16; // with a budget
 // Columns of texels: whether a place on the very edge of a surface is lit depends on how it is rounded, and of the many
 // thin ones (frames, mouldings) all texels are on edges.
 constexpr float border_inset = 0.25f;
-constexpr std::uint32_t texels_at_once = 64; // of a work group: baked_light.comp
-constexpr double sum_of_all = 0x1p30;        // samples at their bounds, in steps, as in light maps
+constexpr std::uint32_t texels_at_once = 64;     // of a work group: baked_light.comp
+constexpr double sum_of_all = 0x1p30;            // samples at their bounds, in steps, as in light maps
+constexpr std::uint64_t evaluations_of_ray = 40; // a ray of nearby light takes as long
+constexpr double bounded_share = 0.02; // of reflected light, by samples that are bounded more than all are in common
 
 Result<gpu::Buffer> make_texels(gpu::Device& device, const char* name, std::uint64_t bytes, VkFormat format) {
     return gpu::Buffer::create(device, {name, bytes,
                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
-                                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                            VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                         gpu::MemoryUse::device, format});
 }
 
@@ -41,11 +43,61 @@ bool may_light(const shared::LightRow& row, const shared::LightMapJob& piece) {
     return here + std::max(u, 0.0f) + std::max(v, 0.0f) > 0.0f;
 }
 
+// The bounds of the geometry terms of those that refine. Samples of reflected light have one in common, which hardly
+// any of their light undercuts: what it takes away is known at any point then, and given back (nearby_light.h).
+class RefiningBounds {
+public:
+    explicit RefiningBounds(const RefinedLightScene& scene) : scale_(scene.light_settings.clamp_scale) {
+        const std::span<const LightSample> samples = scene.samples.refining_samples();
+        bound_ = geometry_bound(std::uint32_t(samples.size()), scene.rays.static_area(), scale_);
+        // Where another technique lights some of what is reflected, it is not known here how bright surfaces are.
+        if (!std::all_of(samples.begin(), samples.end(), [&](const LightSample& sample) {
+                return !held_by_light_maps(sample) || owns_sample(scene.cells, sample);
+            }))
+            return;
+        std::vector<std::pair<float, double>> reflected; // bound, light
+        double all = 0.0, below = 0.0;
+        for (const LightSample& sample : samples)
+            if (sample.bounce > 0 && held_by_light_maps(sample)) {
+                reflected.emplace_back(geometry_bound_of(sample.radius, bound_, scale_), luminance(sample.flux));
+                all += reflected.back().second;
+            }
+        std::sort(reflected.begin(), reflected.end());
+        for (const auto& [bound, light] : reflected) {
+            common_ = bound;
+            if ((below += light) >= bounded_share * all)
+                break;
+        }
+    }
+
+    float common() const { return common_; } // 0: nothing is reflected
+    float of(const LightSample& sample) const {
+        const float own = geometry_bound_of(sample.radius, bound_, scale_);
+        return sample.bounce > 0 && common_ > 0.0f ? std::min(own, common_) : own;
+    }
+
+private:
+    float scale_, bound_ = 0.0f, common_ = 0.0f;
+};
+
+// The share of the light of samples that is reflected once more; at the last bounce, it is not.
+float reflected_again(std::span<const LightSample> samples) {
+    std::uint32_t last = 0;
+    for (const LightSample& sample : samples)
+        last = std::max(last, sample.bounce);
+    double all = 0.0, again = 0.0;
+    for (const LightSample& sample : samples) {
+        all += luminance(sample.flux);
+        again += sample.bounce < last ? luminance(sample.flux) : 0.0;
+    }
+    return all > 0.0 ? float(again / all) : 0.0f;
+}
+
 } // namespace
 
 Result<std::unique_ptr<RefinedLight>> RefinedLight::create(gpu::Device& device, gpu::PipelineStore& pipelines) {
     std::unique_ptr<RefinedLight> light(new RefinedLight(device, pipelines));
-    SUNFLECK_ASSIGN(light->ratios_, make_texels(device, "refined light", 8, VK_FORMAT_R16G16B16A16_SFLOAT));
+    SUNFLECK_ASSIGN(light->refined_texels_, make_texels(device, "refined light", 8, VK_FORMAT_R32G32_UINT));
     return light;
 }
 
@@ -57,10 +109,11 @@ void RefinedLight::forget() {
     share_ = 0.0f;
     jobs_.clear();
     draws_maps_ = divides_ = false;
+    nearby_.forget();
 }
 
 void RefinedLight::restart() {
-    if (!draws_maps_ && !divides_ && jobs_.empty())
+    if (!draws_maps_ && !divides_ && jobs_.empty() && !nearby_.has_work())
         return;
     forget();
     if (maps_)
@@ -68,7 +121,7 @@ void RefinedLight::restart() {
 }
 
 std::uint64_t RefinedLight::memory_bytes() const {
-    return own_sums_.size() + refined_sums_.size() + ratios_.size() + (maps_ ? maps_->texels().size() : 0);
+    return own_sums_.size() + refined_sums_.size() + refined_texels_.size() + (maps_ ? maps_->texels().size() : 0);
 }
 
 Status RefinedLight::begin(const RefinedLightScene& scene, const BakedLight& baked, std::uint32_t group,
@@ -95,8 +148,9 @@ Status RefinedLight::begin(const RefinedLightScene& scene, const BakedLight& bak
     };
     SUNFLECK_TRY(renew(own_sums_, "sums of the frame's samples", 16, VK_FORMAT_R32G32B32A32_SINT));
     SUNFLECK_TRY(renew(refined_sums_, "sums of refined light", 16, VK_FORMAT_R32G32B32A32_SINT));
-    SUNFLECK_TRY(renew(ratios_, "refined light", 8, VK_FORMAT_R16G16B16A16_SFLOAT));
+    SUNFLECK_TRY(renew(refined_texels_, "refined light", 8, VK_FORMAT_R32G32_UINT));
     make_rows(scene);
+    begin_nearby(scene, baked);
     begin_group(0);
     return {};
 }
@@ -112,19 +166,30 @@ void RefinedLight::make_rows(const RefinedLightScene& scene) {
         vec4& intensity = own_rows_[sample.index].intensity_slot;
         intensity = vec4(is_wanted(sample) ? sample.flux / pi : vec3(0.0f), intensity.w);
     }
-    const std::span<const LightSample> others = scene.samples.refining_samples();
-    const float scale = scene.light_settings.clamp_scale;
-    const float bound = geometry_bound(std::uint32_t(others.size()), scene.rays.static_area(), scale);
+    const RefiningBounds bounds(scene);
     double most = 0.0;
-    for (const LightSample& sample : others)
+    for (const LightSample& sample : scene.samples.refining_samples())
         if (is_wanted(sample)) {
-            const shared::LightRow row =
-                make_light_row(sample, 0, geometry_bound_of(sample.radius, bound, scale), scene.bounds);
+            const shared::LightRow row = make_light_row(sample, 0, bounds.of(sample), scene.bounds);
             const vec4& intensity = row.intensity_slot;
             most += double(std::max({intensity.x, intensity.y, intensity.z})) * double(row.position_bound.w);
             rows_.push_back(row);
         }
     fixed_point_ = most > 0.0 ? float(sum_of_all / most) : 1.0f;
+}
+
+NearbyLightScene RefinedLight::nearby_scene(const RefinedLightScene& scene, const BakedLight& baked) const {
+    return {scene.database, scene.curved, scene.rays, scene.bounds, baked.pieces(), texels_, border_inset};
+}
+
+void RefinedLight::begin_nearby(const RefinedLightScene& scene, const BakedLight& baked) {
+    std::vector<IncomingLight> others;
+    for (const LightSample& sample : scene.samples.samples())
+        if (sample.kind != SampleKind::surface && !sample.dynamic)
+            others.push_back({make_light_row(sample, 0, 0.0f, scene.bounds), light_class(sample.kind)});
+    const float reflected = reflected_again(scene.samples.refining_samples());
+    nearby_.begin(nearby_scene(scene, baked), {RefiningBounds(scene).common(), reflected, fixed_point_},
+                  std::move(others));
 }
 
 void RefinedLight::begin_group(std::uint32_t begin) {
@@ -189,6 +254,7 @@ Status RefinedLight::update(const RefinedLightScene& scene, const BakedLight& ba
                             gpu::FrameResources& resources) {
     jobs_.clear();
     draws_maps_ = divides_ = false;
+    nearby_.end_frame();
     const bool in_portions = budget != FrameInput().refinement_budget;
     const Cause now{scene.samples.generation(), baked.pieces_generation(), scene.cells,
                     scene.light_settings.clamp_scale, baked.fixed_point()};
@@ -201,14 +267,19 @@ Status RefinedLight::update(const RefinedLightScene& scene, const BakedLight& ba
     cause_ = now;
     if (rows_.empty())
         return {};
-    const bool is_summed = unsummed() == 0 && !own_;
+    const bool is_summed = unsummed() == 0 && !own_ && !nearby_.light_waits() && !nearby_.sources_wait();
     if (is_summed && own_sums_)
         for (gpu::Buffer* sums : {&own_sums_, &refined_sums_})
             resources.retire(std::move(*sums));
     if (is_summed)
         share_ = in_portions ? std::min(share_ + 1.0f / float(fading_frames), 1.0f) : 1.0f;
-    else if (budget > 0 && baked.counters().waiting == 0) // that comes first
-        take_portion(scene, baked, in_portions ? std::uint64_t(budget) * 1000 : most_evaluations);
+    else if (budget > 0 && baked.counters().waiting == 0) { // that comes first
+        const std::uint64_t evaluations = in_portions ? std::uint64_t(budget) * 1000 : most_evaluations;
+        if (unsummed() == 0 && (nearby_.light_waits() || !own_))
+            nearby_.update(nearby_scene(scene, baked), evaluations / evaluations_of_ray);
+        else
+            take_portion(scene, baked, evaluations);
+    }
     return {};
 }
 
@@ -277,7 +348,7 @@ Status RefinedLight::add_ratios(gpu::FrameGraph& graph) {
     gpu::ComputePass(graph, "refined light ratios", *kernel)
         .texels(own_sums_)
         .texels(refined_sums_)
-        .storage_write(ratios_)
+        .storage_write(refined_texels_)
         .push(constants)
         .dispatch(divide_up(constants.row_length, 64), divide_up(constants.texels, constants.row_length));
     return {};
@@ -289,6 +360,8 @@ Status RefinedLight::add_passes(gpu::FrameGraph& graph, const scene::GpuScene& g
         SUNFLECK_TRY(add_maps(graph, gpu_scene, resources));
     if (!jobs_.empty())
         SUNFLECK_TRY(add_sums(graph, baked, maps, filter, resources));
+    const NearbyLight::Target target{refined_sums_, own_sums_, refined_texels_, cause_.fixed_point / fixed_point_};
+    SUNFLECK_TRY(nearby_.add_passes(graph, pipelines_, target, resources));
     return divides_ ? add_ratios(graph) : Status();
 }
 

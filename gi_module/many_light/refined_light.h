@@ -14,6 +14,7 @@
 #pragma once
 
 #include "gi_module/many_light/baked_light.h"
+#include "gi_module/many_light/nearby_light.h"
 
 #include "gi_module/light_sampling/sample_set.h"
 #include "gi_module/transport/light_plan.h"
@@ -24,7 +25,8 @@ namespace sunfleck::gi {
 struct RefinedLightScene {
     const VisibilityDatabase& database;
     const SampleSet& samples; // of the frame
-    CellSet cells;            // whose light is baked
+    const CurvedCharts& curved;
+    CellSet cells; // whose light is baked
     const raytrace::RayScene& rays;
     const LightSettings& light_settings;
     Bounds bounds;
@@ -47,8 +49,8 @@ public:
 
     // How far light is refined in this frame: 0 not at all, 1 in full. It grows from frame to frame once all is known.
     float share() const { return share_; }
-    // By texel of baked light: refined light over the frame's samples' own.
-    const gpu::Buffer& ratios() const { return ratios_; }
+    // By texel of baked light: see refined_texel.glsl.
+    const gpu::Buffer& texels() const { return refined_texels_; }
     // Samples whose light is still to be summed, and one until it is shown in full.
     std::uint64_t waiting() const { return unsummed() + (!rows_.empty() && share_ < 1.0f ? 1 : 0); }
     std::uint64_t memory_bytes() const;
@@ -66,6 +68,8 @@ private:
     Status begin(const RefinedLightScene& scene, const BakedLight& baked, std::uint32_t group,
                  gpu::FrameResources& resources);
     void make_rows(const RefinedLightScene& scene);
+    void begin_nearby(const RefinedLightScene& scene, const BakedLight& baked);
+    NearbyLightScene nearby_scene(const RefinedLightScene& scene, const BakedLight& baked) const;
     void begin_group(std::uint32_t begin);
     void take_portion(const RefinedLightScene& scene, const BakedLight& baked, std::uint64_t most);
     void add_job(LightMapJobs& jobs, const shared::LightMapJob& piece) const;
@@ -79,7 +83,7 @@ private:
     gpu::PipelineStore& pipelines_;
     std::unique_ptr<ShadowMaps> maps_;    // of a group's samples
     gpu::Buffer own_sums_, refined_sums_; // fixed point, as in baked light
-    gpu::Buffer ratios_;                  // of 16-bit floats
+    gpu::Buffer refined_texels_;          // ratios and sources, see refined_texel.glsl
     gpu::UploadedBuffer job_texels_, row_texels_;
     Cause cause_;
     std::vector<shared::LightRow> own_rows_; // of the frame's samples, by their index
@@ -92,6 +96,7 @@ private:
     float fixed_point_ = 1.0f; // of the sums of those that refine: steps per W/m2
     float share_ = 0.0f;
     std::uint64_t texels_ = 0;
+    NearbyLight nearby_;
     // Of the frame.
     LightMapJobs jobs_;
     std::vector<shared::LightRow> job_rows_; // that they are of

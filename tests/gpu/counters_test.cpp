@@ -111,7 +111,8 @@ void count(const Course& course, std::map<std::string, double>& greatest) {
     std::set<std::string_view> declared;
     for (const gi::Counter* counter : gi::all_counters())
         declared.insert(counter->name);
-    for (int frame = 0; frame < 4; ++frame) {
+    const auto refines = [&] { return world.renderer->lighting().counters()["refined_light_waiting"] > 0.0; };
+    for (int frame = 0; frame < 4 || (frame < 16 && refines()); ++frame) {
         world.request.step = std::uint64_t(frame) * 15;
         if (frame == 2 && !course.halfway.empty())
             change(course.halfway);
