@@ -22,6 +22,8 @@ constexpr std::uint64_t max_portion_marks = 50000; // texels whose cells are mar
 // Of the light: by so much may second differences of neighbouring texels exceed a straight line. Interpolation is off
 // by at most half of it where a single edge lies between two texels, by an eighth where light is curved evenly.
 constexpr float roughness_limit = 0.2f;
+// Where light is refined, that of a frame's few samples at a pixel is off by more than that.
+constexpr float refined_roughness_limit = 0.5f;
 constexpr std::uint64_t texel_bytes = 8;
 constexpr std::uint32_t longest_roughness_wait = 32; // frames, where strengths never cease to change
 
@@ -329,7 +331,7 @@ Status BakedLight::add_passes(gpu::FrameGraph& graph, const ShadowMaps& maps, bo
     shared::LightMapConstants constants{};
     constants.fixed_point = fixed_point_;
     constants.map_resolution = maps.resolution();
-    constants.roughness_limit = roughness_limit;
+    constants.roughness_limit = refined_ ? refined_roughness_limit : roughness_limit;
     constants.refined = refined_;
     const auto dispatch = [&](gpu::ComputePass& pass, std::size_t count) {
         constants.jobs = std::uint32_t(count);
