@@ -307,10 +307,10 @@ bool Gizmo::draw(Session& session, bool hovered) {
             handle_ = -1;
         else if (ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
             end(session, false);
-        else if (!ImGui::IsMouseDown(0))
-            end(session, true);
         else
-            follow(session);
+            follow(session); // also where it is let go: a slow frame has the last motion and the release
+        if (dragging() && !ImGui::IsMouseDown(0))
+            end(session, true);
     }
     const Frame frame = find_frame(session);
     if (tops_.empty() || frame.length <= 0.0f) // all locked; behind the camera

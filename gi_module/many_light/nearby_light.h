@@ -10,7 +10,7 @@
 // take most.
 //
 // Rays are few and the same for all texels, so that they leave no noise; what they meet is found once, on the CPU, a
-// portion in a frame, and kept for the second round. Surfaces that have no texels are taken to be as bright as the
+// portion in a frame, and kept for the other rounds. Surfaces that have no texels are taken to be as bright as the
 // texel that sees them. Emitters' own samples are not looked at: there are many of them on a small surface.
 #pragma once
 
@@ -55,12 +55,12 @@ public:
     void update(const NearbyLightScene& scene, std::uint64_t rays);
     bool has_work() const { return copies_ || portion_ != nullptr; }
     struct Target {
-        const gpu::Buffer& sums; // refined, by texel, in steps
-        const gpu::Buffer&
-            own_sums;              // of the frame's samples; before they are summed, it holds what the first round made
-        const gpu::Buffer& texels; // RefinedLight::texels
-        float own_steps = 1.0f;    // RefinedLightConstants
+        const gpu::Buffer& sums;     // refined, by texel, in steps
+        const gpu::Buffer& own_sums; // of the frame's samples; until those are summed, what the first round makes
+        const gpu::Buffer& texels;   // RefinedLight::texels
+        float own_steps = 1.0f;      // RefinedLightConstants
     };
+    // Adds the passes of the frame's portion; nothing if it has none.
     Status add_passes(gpu::FrameGraph& graph, gpu::PipelineStore& pipelines, const Target& target,
                       gpu::FrameResources& resources) const;
 

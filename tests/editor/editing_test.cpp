@@ -210,6 +210,16 @@ TEST_F(EditorWindowEditing, HandlesTurnAndScaleSeveralAboutOnePivot) {
     EXPECT_EQ(editor->end()["edits"], 2) << "one entry for each drag";
 }
 
+// On a slow machine, a frame has the last motion and the release at once.
+TEST_F(EditorWindowEditing, AHandleThatIsLetGoAtOnceStaysThere) {
+    ASSERT_TRUE(editor->click("hierarchy/tall block"));
+    ASSERT_TRUE(editor->reach("viewport/gizmo y"));
+    const std::string place = "inspector/Transform/position/y", before = editor->value(place);
+    editor->run("xdotool mousedown 1 mousemove_relative -- 0 -20 mouseup 1");
+    EXPECT_TRUE(editor->wait_until([&] { return editor->value(place) != before; }));
+    EXPECT_EQ(editor->end()["edits"], 1);
+}
+
 // Of a handle and of a number: Escape and the loss of focus leave no entry, and everything where it was.
 TEST_F(EditorWindowEditing, AGestureThatIsGivenUpLeavesNothing) {
     ASSERT_TRUE(editor->click("hierarchy/tall block"));
