@@ -108,7 +108,8 @@ std::optional<std::uint32_t> NearbyLight::texel_at(const NearbyLightScene& scene
         const shared::LightMapJob& job = scene.pieces[piece_of_[node]].job;
         const vec3 from = point.on_triangle - vec3(job.corner), u(job.u_edge), v(job.v_edge);
         const auto place = [](float along, std::uint32_t count) {
-            return std::uint32_t(std::lround(std::clamp(along, 0.0f, 1.0f) * float(count - 1)));
+            const float inside = along > 0.0f ? std::min(along, 1.0f) : 0.0f; // also of a patch without extent
+            return std::uint32_t(std::lround(inside * float(count - 1)));
         };
         return job.first_texel + place(glm::dot(from, v) / glm::dot(v, v), job.rows) * job.columns +
                place(glm::dot(from, u) / glm::dot(u, u), job.columns);
