@@ -149,14 +149,14 @@ Status RefinedLight::begin(const RefinedLightScene& scene, const BakedLight& bak
     SUNFLECK_TRY(renew(own_sums_, "sums of the frame's samples", 16, VK_FORMAT_R32G32B32A32_SINT));
     SUNFLECK_TRY(renew(refined_sums_, "sums of refined light", 16, VK_FORMAT_R32G32B32A32_SINT));
     SUNFLECK_TRY(renew(refined_texels_, "refined light", 8, VK_FORMAT_R32G32_UINT));
-    make_rows(scene);
-    begin_nearby(scene, baked);
+    begin_nearby(scene, baked, make_rows(scene));
     begin_group(0);
     return {};
 }
 
-// The frame's own samples as they are when nothing blocks their paths, and the others.
-void RefinedLight::make_rows(const RefinedLightScene& scene) {
+// The frame's own samples as they are when nothing blocks their paths, and the others. Returns the bound that those of
+// reflected light have in common.
+float RefinedLight::make_rows(const RefinedLightScene& scene) {
     own_rows_.assign(scene.samples.rows().begin(), scene.samples.rows().end());
     rows_.clear();
     const auto is_wanted = [&](const LightSample& sample) {
@@ -176,20 +176,20 @@ void RefinedLight::make_rows(const RefinedLightScene& scene) {
             rows_.push_back(row);
         }
     fixed_point_ = most > 0.0 ? float(sum_of_all / most) : 1.0f;
+    return bounds.common();
 }
 
 NearbyLightScene RefinedLight::nearby_scene(const RefinedLightScene& scene, const BakedLight& baked) const {
     return {scene.database, scene.curved, scene.rays, scene.bounds, baked.pieces(), texels_, border_inset};
 }
 
-void RefinedLight::begin_nearby(const RefinedLightScene& scene, const BakedLight& baked) {
+void RefinedLight::begin_nearby(const RefinedLightScene& scene, const BakedLight& baked, float bound) {
     std::vector<IncomingLight> others;
     for (const LightSample& sample : scene.samples.samples())
         if (sample.kind != SampleKind::surface && !sample.dynamic)
             others.push_back({make_light_row(sample, 0, 0.0f, scene.bounds), light_class(sample.kind)});
     const float reflected = reflected_again(scene.samples.refining_samples());
-    nearby_.begin(nearby_scene(scene, baked), {RefiningBounds(scene).common(), reflected, fixed_point_},
-                  std::move(others));
+    nearby_.begin(nearby_scene(scene, baked), {bound, reflected, fixed_point_}, std::move(others));
 }
 
 void RefinedLight::begin_group(std::uint32_t begin) {

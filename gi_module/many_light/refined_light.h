@@ -67,8 +67,8 @@ private:
     std::uint64_t unsummed() const { return rows_.size() - group_begin_; }
     Status begin(const RefinedLightScene& scene, const BakedLight& baked, std::uint32_t group,
                  gpu::FrameResources& resources);
-    void make_rows(const RefinedLightScene& scene);
-    void begin_nearby(const RefinedLightScene& scene, const BakedLight& baked);
+    float make_rows(const RefinedLightScene& scene);
+    void begin_nearby(const RefinedLightScene& scene, const BakedLight& baked, float bound);
     NearbyLightScene nearby_scene(const RefinedLightScene& scene, const BakedLight& baked) const;
     void begin_group(std::uint32_t begin);
     void take_portion(const RefinedLightScene& scene, const BakedLight& baked, std::uint64_t most);
