@@ -3,6 +3,7 @@
 #include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "gi_module/shadows/light_batches.h"
+#include "gi_module/technique.h"
 #include "gi_module/transport/clamping.h"
 
 #include <algorithm>
