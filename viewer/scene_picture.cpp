@@ -90,7 +90,10 @@ Status SceneRenderer::add_picture(const FrameRequest& request, const render::GBu
     if (temporal)
         return temporal_->add(*graph_, {current, g_buffer.depth, g_buffer.motion, changes}, output, *resources_);
     if (smoothed && enlarged)
-        return subpixel_edges_->add(*graph_, *gpu_scene_, {current, g_buffer, camera}, output, *resources_);
+        return subpixel_edges_->add(
+            *graph_, *gpu_scene_,
+            {current, g_buffer, camera, composition.irradiance, composition.specular, composition.ev100}, output,
+            *resources_);
     if (smoothed)
         antialiasing_.add(*graph_, current, output);
     else if (enlarged)

@@ -10,7 +10,6 @@
 layout(constant_id = 0) const uint pattern_kind = pattern_none;
 
 layout(set = 0, binding = 0) uniform Camera { CameraRow camera; };
-layout(set = 0, binding = 1) readonly buffer Rows { InstanceRow rows[]; };
 
 layout(push_constant) uniform Constants { DrawConstants draw; };
 
@@ -18,6 +17,8 @@ layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_previous;
 layout(location = 3) in vec4 in_current;
+layout(location = 4) in vec3 in_local;
+layout(location = 5) in flat vec4 in_pattern;
 
 layout(location = 0) out uvec2 out_normals; // x: shading normal, y: geometric normal (octahedral, 16 bits each)
 layout(location = 1) out uint out_surface;  // row + 1, and what instance_shared.h marks
@@ -25,6 +26,8 @@ layout(location = 2) out vec4 out_albedo;
 layout(location = 3) out vec2 out_motion;   // in units of the picture: where the point was, minus where it is
 layout(location = 4) out vec4 out_emission; // radiance, W/(sr m2)
 layout(location = 5) out vec2 out_gloss;    // metallic, roughness
+
+#include "engine/render/pattern_albedo.glsl"
 
 void main() {
     // Surfaces are two-sided: the geometric normal faces the camera, the shading normal is on its side.
@@ -37,20 +40,7 @@ void main() {
     out_surface = draw.surface;
     out_emission = vec4(draw.emission.rgb, 1.0);
     out_gloss = unpackUnorm2x16(draw.gloss);
-    vec3 albedo = base_colour_of(draw);
-    if (pattern_kind != pattern_none) {
-        const uint row = surface_row(draw.surface);
-        const vec4 pattern = rows[row].pattern;
-        const mat3 to_local = mat3(rows[row].inverse_model);
-        const vec3 local = (rows[row].inverse_model * vec4(in_position, 1.0)).xyz;
-        const vec3 local_normal = to_local * normalize(geometric);
-        // Not derivatives of `local`: beside a triangle's edge a device may not read buffers, and they would be wrong.
-        const vec3 across = to_local * dFdx(in_position), down = to_local * dFdy(in_position);
-        const vec3 footprint = sqrt(across * across + down * down);
-        albedo = mix(albedo, pattern.rgb,
-                     filtered_pattern_share(pattern_kind, pattern.w, local, local_normal, footprint));
-    }
-    out_albedo = pack_albedo(albedo, (draw.surface & surface_unlit) != 0u,
+    out_albedo = pack_albedo(pattern_albedo(in_local, in_pattern), (draw.surface & surface_unlit) != 0u,
                              (draw.surface & surface_glossy) != 0u);
     out_motion = (in_previous.xy / in_previous.w - in_current.xy / in_current.w) * 0.5;
 }

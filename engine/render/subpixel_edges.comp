@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_GOOGLE_include_directive : require
-// Subpixel reconstruction (see subpixel_edges.h), where upscale.comp has listed edges.
+// Subpixel reconstruction (see subpixel_edges.h), where subpixel_places.comp has listed edges.
 #include "engine/core/octahedral.h"
 #include "engine/scene/camera_shared.h"
 #include "engine/scene/instance_shared.h"
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint doubling = 0;
 layout(set = 0, binding = 0, rgba8) uniform readonly image2D source;
 layout(set = 0, binding = 1) uniform writeonly image2D target;
-#include "engine/render/edge_places.glsl"
+#include "engine/render/subpixel_places.glsl"
 layout(set = 0, binding = 3) uniform sampler2D depth_image; // this and the next two: of the source's size
 layout(set = 0, binding = 4) uniform usampler2D normals_image;
 layout(set = 0, binding = 5) uniform usampler2D surface_image;
@@ -19,9 +19,11 @@ layout(set = 0, binding = 7) uniform sampler2DMS surface_samples;
 layout(set = 0, binding = 8) uniform Camera { CameraRow camera; }; // of the source's pixels
 layout(push_constant) uniform Constants {
     ivec2 source_size, target_size;
+    float exposed; // from irradiance to what a white surface reflects of it, exposed
 } constants;
 
-#include "engine/render/emitting_surface.glsl"
+#include "engine/render/diffuse_light.glsl"
+#include "engine/render/sample_surface.glsl"
 
 // Where Vulkan's standard places the samples of a pixel. (A device may place them elsewhere, and says so: edges are then
 // off by some of the distance.)
@@ -37,7 +39,8 @@ const float other_surface = 0.5;
 struct Planes {
     vec3 colours[4];
     vec4 level, across, down, factor;
-    vec4 surfaces; // emitting_surface
+    vec4 surfaces;    // emitting_surface
+    FourPixels pixels;
 };
 
 // Depth (near / distance along the axis) is linear on a plane, in the picture. Of the sky, all but depth 0 is far.
@@ -48,12 +51,13 @@ Planes planes_about(ivec2 first) {
     const vec3 right = camera.right.xyz * (2.0 / camera.forward.w), below = camera.down.xyz * (2.0 / camera.right.w);
     Planes planes;
     [[unroll]] for (int i = 0; i < 4; ++i) {
-        const ivec2 pixel = clamp(first + ivec2(i & 1, i >> 1), ivec2(0), constants.source_size - 1);
+        const ivec2 pixel = source_pixel(first, i);
         const float depth = texelFetch(depth_image, pixel, 0).r;
         const vec3 normal = unpack_normal(texelFetch(normals_image, pixel, 0).g) / pixel_size;
         const vec3 ray = camera_ray(camera, vec2(pixel) + 0.5);
         const bool sky = depth <= 0.0;
         planes.colours[i] = imageLoad(source, pixel).rgb;
+        find_light(planes.pixels, i, pixel, planes.colours[i]);
         planes.surfaces[i] = emitting_surface(texelFetch(surface_image, pixel, 0).r);
         planes.level[i] = sky ? 0.0 : dot(normal, corner);
         planes.across[i] = sky ? 0.0 : dot(normal, right);
@@ -63,18 +67,18 @@ Planes planes_about(ivec2 first) {
     return planes;
 }
 
-// What a sample shows, at a place from the first of the four: the mean of those whose surface it is on.
+// What a sample shows, at a place from the first of the four: the mean of those whose surface it is on, with its own
+// albedo.
 vec3 sample_colour(Planes planes, vec2 place, ivec2 pixel, int index) {
-    const float depth = texelFetch(depth_samples, pixel, index).r, surface = texelFetch(surface_samples, pixel, index).r;
+    const float depth = texelFetch(depth_samples, pixel, index).r;
+    const vec4 surface = texelFetch(surface_samples, pixel, index);
     const vec4 off = abs(planes.level + planes.across * place.x + planes.down * place.y - planes.factor * depth) +
-                     mix(vec4(other_surface), vec4(0.0), lessThan(abs(planes.surfaces - surface), vec4(0.5 / 255.0)));
+                     mix(vec4(other_surface), vec4(0.0), lessThan(abs(planes.surfaces - surface.a), vec4(0.5 / 255.0)));
     const float least = min(min(off.x, off.y), min(off.z, off.w));
     const float tolerance = tolerance_pixels + rounding * camera.forward.w / (2.0 * length(camera.right.xyz));
-    const vec4 near = vec4(1.0 - place.x, place.x, 1.0 - place.x, place.x) * vec4(vec2(1.0 - place.y), vec2(place.y));
-    const vec4 shares = clamp(1.0 - (off - least) / tolerance, 0.0, 1.0) * (near + 1e-3);
-    const vec3 sum = planes.colours[0] * shares.x + planes.colours[1] * shares.y + planes.colours[2] * shares.z +
-                     planes.colours[3] * shares.w;
-    return sum / (shares.x + shares.y + shares.z + shares.w);
+    vec4 shares = clamp(1.0 - (off - least) / tolerance, 0.0, 1.0) * (bilinear_shares(place) + 1e-3);
+    shares /= shares.x + shares.y + shares.z + shares.w;
+    return is_detailed(surface) ? detailed_colour(planes.pixels, shares, surface.rgb) : weighted(planes.colours, shares);
 }
 
 void write_one(ivec2 pixel) {
@@ -102,12 +106,10 @@ void write_four(ivec2 first) {
 }
 
 void main() {
-    const uint group = gl_WorkGroupID.y * most_groups + gl_WorkGroupID.x;
-    const uint at = group * places_of_group + gl_LocalInvocationIndex;
-    if (at >= edges.count)
+    const uint at = place_index();
+    if (at >= places.counts[edge_list].count)
         return;
-    const uint packed = edges.places[at];
-    const ivec2 place = ivec2(packed & 0xffffu, packed >> 16u) - 1;
+    const ivec2 place = unpack_place(places.all[at]);
     if (doubling != 0)
         write_four(place);
     else

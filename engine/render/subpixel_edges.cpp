@@ -3,7 +3,9 @@
 #include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "engine/gpu/rendering.h"
+#include "engine/render/tone_map.h"
 #include "engine/render/visible_draws.h"
+#include "engine/scene/pattern_shared.h"
 
 #include <algorithm>
 #include <cstring>
@@ -11,14 +13,34 @@
 namespace sunfleck::render {
 namespace {
 
-constexpr std::uint32_t samples = 4;                           // of a pixel: sample_places in the shader
-constexpr VkFormat sample_surface_format = VK_FORMAT_R8_UNORM; // integers need not have samples
-constexpr std::uint32_t shown_columns = 64, shown_run = 8;     // of shown_surfaces.comp
-constexpr VkDeviceSize word = 4, head_words = 4;               // of edge_places.glsl
+constexpr std::uint32_t samples = 4;                                 // of a pixel: sample_places in the shader
+constexpr VkFormat sample_surface_format = VK_FORMAT_R8G8B8A8_UNORM; // sample_surface.glsl
+constexpr std::uint32_t shown_columns = 64, shown_run = 8;           // of shown_surfaces.comp
+constexpr VkDeviceSize word = 4, list_words = 4, edge_list = 0, detail_list = 1; // of subpixel_places.glsl
 
 struct EnlargementConstants {
     glm::ivec2 source_size, target_size;
 };
+struct ListedConstants {
+    EnlargementConstants sizes;
+    float exposed; // from irradiance to what a white surface reflects of it, exposed
+};
+
+bool has_holes(const scene::DrawItem& item) {
+    return item.kind == scene::surface_kind_holes;
+}
+bool emits(const scene::DrawItem& item) {
+    return (item.constants.surface & shared::surface_emits) != 0;
+}
+
+// A texture or a pattern makes its albedo differ from place to place, and light shows that. (Of what is blended, the
+// picture shows what is behind, too.)
+bool is_detailed(const scene::DrawItem& item) {
+    constexpr std::uint32_t others = shared::surface_emits | shared::surface_unlit | shared::surface_stippled;
+    const bool varies =
+        item.kind < scene::surface_kind_textured ? item.kind != shared::pattern_none : item.textures[0] >= 0;
+    return varies && (item.constants.surface & others) == 0;
+}
 
 } // namespace
 
@@ -43,23 +65,36 @@ Status SubpixelEdges::make_pipelines(gpu::PipelineStore& pipelines) {
     drawing.depth_format = depth_format;
     drawing.dynamic_cull = true;
     drawing.samples = samples;
-    for (const bool has_holes : {false, true})
-        for (const bool emits : {false, true}) {
-            drawing.fragment_shader = has_holes || emits ? "engine/render/subpixel_samples.frag" : "";
-            drawing.colour_write = emits;
-            drawing.specialization = {has_holes};
-            SUNFLECK_ASSIGN(samples_[has_holes][emits], pipelines.graphics(drawing));
-        }
+    const auto make = [&](const gpu::Pipeline*& pipeline, std::vector<std::uint32_t> constants, bool colour) -> Status {
+        drawing.specialization = std::move(constants);
+        drawing.colour_write = colour;
+        drawing.fragment_shader = colour || drawing.specialization[0] != 0 ? "engine/render/subpixel_samples.frag" : "";
+        SUNFLECK_ASSIGN(pipeline, pipelines.graphics(drawing));
+        return {};
+    };
+    for (const bool with_holes : {false, true}) {
+        SUNFLECK_TRY(make(plain_[with_holes], {with_holes, 0, 0}, false));
+        SUNFLECK_TRY(make(emitting_[with_holes], {with_holes, 0, 0}, true));
+    }
+    for (std::uint32_t kind = 1; kind < scene::surface_kinds; ++kind) {
+        const bool textured = kind >= scene::surface_kind_textured;
+        SUNFLECK_TRY(make(detailed_[kind], {kind == scene::surface_kind_holes, textured ? 0 : kind, textured}, true));
+    }
     gpu::ComputeDescription kernel;
     kernel.shader = "engine/render/shown_surfaces.comp";
     SUNFLECK_ASSIGN(shown_, pipelines.compute(kernel));
     for (const bool doubling : {false, true}) {
         Kernels& kernels = doubling ? doubling_ : any_;
         kernel.specialization = {doubling};
-        kernel.shader = "engine/render/upscale_with_edges.comp";
+        kernel.shader = "engine/render/subpixel_places.comp";
         SUNFLECK_ASSIGN(kernels.enlargement, pipelines.compute(kernel));
-        kernel.shader = "engine/render/subpixel_edges.comp";
-        SUNFLECK_ASSIGN(kernels.edges, pipelines.compute(kernel));
+        for (const bool gloss : {false, true}) {
+            kernel.specialization = {doubling, gloss};
+            kernel.shader = "engine/render/subpixel_edges.comp";
+            SUNFLECK_ASSIGN(kernels.edges[gloss], pipelines.compute(kernel));
+            kernel.shader = "engine/render/texture_detail.comp";
+            SUNFLECK_ASSIGN(kernels.details[gloss], pipelines.compute(kernel));
+        }
     }
     return {};
 }
@@ -80,7 +115,7 @@ Status SubpixelEdges::make_buffers(const scene::GpuScene& scene, std::uint32_t p
     };
     const VkDeviceSize rows = std::max<VkDeviceSize>(scene.rows().size / sizeof(shared::InstanceRow), 1);
     SUNFLECK_TRY(make(rows_, "shown surfaces", word * rows, 0));
-    return make(places_, "edge places", word * (head_words + places), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+    return make(places_, "subpixel places", word * (2 * list_words + places), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 
 Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Input& input,
@@ -93,14 +128,39 @@ Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
     add_clearing(graph);
     const Samples seen = add_samples(graph, scene, input, to);
     const Kernels& kernels = doubling ? doubling_ : any_;
-    const EnlargementConstants constants{{int(from.width), int(from.height)}, {int(to.width), int(to.height)}};
+    const EnlargementConstants sizes{{int(from.width), int(from.height)}, {int(to.width), int(to.height)}};
     gpu::ComputePass(graph, "enlargement", *kernels.enlargement)
         .storage_read(input.picture)
         .storage_write(target)
         .storage_read_write(places_)
-        .push(constants)
+        .sampled(input.g_buffer.albedo, sampler_)
+        .sampled(seen.surface, sampler_)
+        .push(sizes)
         .dispatch(divide_up(columns, 8), divide_up(rows, 8));
-    gpu::ComputePass(graph, "subpixel edges", *kernels.edges)
+    add_listed(graph, input, target, seen, kernels);
+    return {};
+}
+
+// What the enlargement has listed.
+void SubpixelEdges::add_listed(gpu::FrameGraph& graph, const Input& input, gpu::ResourceId target, const Samples& seen,
+                               const Kernels& kernels) const {
+    const gpu::ImageDescription from = graph.description(input.picture);
+    const bool gloss = input.specular.valid();
+    const gpu::ResourceId specular = gloss ? input.specular : input.irradiance;
+    const ListedConstants constants{{{int(from.width), int(from.height)}, {int(seen.width), int(seen.height)}},
+                                    shared::exposure_factor(input.ev100) / pi};
+    gpu::ComputePass(graph, "texture detail", *kernels.details[gloss])
+        .storage_read(input.picture)
+        .storage_write(target)
+        .storage_read(places_)
+        .sampled(input.g_buffer.surface, sampler_)
+        .sampled(seen.surface, sampler_)
+        .sampled(input.g_buffer.albedo, sampler_)
+        .sampled(input.irradiance, sampler_)
+        .sampled(specular, sampler_)
+        .push(constants)
+        .dispatch_indirect(places_, detail_list * list_words * word);
+    gpu::ComputePass(graph, "subpixel edges", *kernels.edges[gloss])
         .storage_read(input.picture)
         .storage_write(target)
         .storage_read(places_)
@@ -110,9 +170,11 @@ Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
         .sampled(seen.depth, sampler_)
         .sampled(seen.surface, sampler_)
         .uniform(input.camera)
+        .sampled(input.g_buffer.albedo, sampler_)
+        .sampled(input.irradiance, sampler_)
+        .sampled(specular, sampler_)
         .push(constants)
-        .dispatch_indirect(places_, 0);
-    return {};
+        .dispatch_indirect(places_, edge_list * list_words * word);
 }
 
 void SubpixelEdges::add_clearing(gpu::FrameGraph& graph) const {
@@ -122,9 +184,12 @@ void SubpixelEdges::add_clearing(gpu::FrameGraph& graph) const {
         .execute([this](gpu::PassContext& context) -> Status {
             const auto fill = context.device.vk.vkCmdFillBuffer;
             fill(context.commands, rows_.handle(), 0, VK_WHOLE_SIZE, 0);
-            fill(context.commands, places_.handle(), 0, word, 0); // groups: none by one by one
-            fill(context.commands, places_.handle(), word, 2 * word, 1);
-            fill(context.commands, places_.handle(), 3 * word, word, 0);
+            for (const VkDeviceSize list : {edge_list, detail_list}) {
+                const VkDeviceSize head = list * list_words * word; // groups: none by one by one
+                fill(context.commands, places_.handle(), head, word, 0);
+                fill(context.commands, places_.handle(), head + word, 2 * word, 1);
+                fill(context.commands, places_.handle(), head + 3 * word, word, 0);
+            }
             return {};
         });
 }
@@ -193,24 +258,29 @@ Status SubpixelEdges::draw(gpu::PassContext& context, const scene::GpuScene& sce
     shared::CameraRow row;
     std::memcpy(&row, camera.data, sizeof row);
     const std::vector<const scene::DrawItem*> items = visible_from(row, scene.draws());
-    for (const bool emits : {false, true}) // those that emit last: what hides them must not be drawn over them later
-        SUNFLECK_TRY(draw_items(context, scene, camera, items, emits));
+    for (const bool plain : {true, false}) // which write depth alone: they must not be drawn over others later
+        SUNFLECK_TRY(draw_items(context, scene, camera, items, plain));
     return {};
+}
+
+const gpu::Pipeline& SubpixelEdges::pipeline_of(const scene::DrawItem& item) const {
+    if (is_detailed(item))
+        return *detailed_[item.kind];
+    return *(emits(item) ? emitting_ : plain_)[has_holes(item)];
 }
 
 Status SubpixelEdges::draw_items(gpu::PassContext& context, const scene::GpuScene& scene,
                                  const gpu::UploadSlice& camera, std::span<const scene::DrawItem* const> items,
-                                 bool emits) const {
+                                 bool plain) const {
     const gpu::DeviceFunctions& vk = context.device.vk;
     shared::CameraRow row;
     std::memcpy(&row, camera.data, sizeof row);
     const gpu::Pipeline* bound = nullptr;
     for (const scene::DrawItem* item : items) {
-        if (((item->constants.surface & shared::surface_emits) != 0) != emits)
+        if ((!emits(*item) && !is_detailed(*item)) != plain)
             continue;
-        const bool has_holes = item->kind == scene::surface_kind_holes;
-        const gpu::Pipeline& pipeline = *samples_[has_holes][emits];
-        if (has_holes || bound != &pipeline)
+        const gpu::Pipeline& pipeline = pipeline_of(*item);
+        if (item->kind >= scene::surface_kind_textured || bound != &pipeline)
             SUNFLECK_TRY(
                 context.resources.bind(context.commands, pipeline, bindings_of(pipeline, *item, scene, camera)));
         bound = &pipeline;

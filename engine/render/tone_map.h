@@ -1,7 +1,7 @@
 // Filmic tone curve and sRGB transfer, shared by shaders and C++ (the reference writes PNGs too).
 #ifndef SUNFLECK_ENGINE_RENDER_TONE_MAP_H
 #define SUNFLECK_ENGINE_RENDER_TONE_MAP_H
-#include "engine/core/shader_language.h"
+#include "engine/core/srgb.h"
 SHARED_BEGIN
 
 // Factor from scene radiance, W/(sr m2), to the exposed value that the tone curve takes: luminous efficacy 683 lm/W
@@ -26,6 +26,10 @@ SHARED_FUNCTION float srgb_from_linear(float x) {
 
 SHARED_FUNCTION vec3 srgb_from_linear_colour(vec3 c) {
     return vec3(srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z));
+}
+
+SHARED_FUNCTION vec3 linear_from_srgb_colour(vec3 c) {
+    return vec3(linear_from_srgb(c.x), linear_from_srgb(c.y), linear_from_srgb(c.z));
 }
 
 SHARED_FUNCTION vec3 shown_from_radiance(vec3 radiance, float exposure) {

@@ -77,11 +77,9 @@ void describe_surface(const Drawable& drawable, DrawItem& item, shared::Instance
     std::fill(std::begin(item.textures), std::end(item.textures), -1);
     row.base_colour = vec4(material.base_colour, 0.0f);
     row.pattern = vec4(0.0f);
-    row.inverse_model = mat4(0.0f);
     if (drawable.has_pattern) {
         item.kind = std::uint32_t(drawable.pattern.kind);
         row.pattern = vec4(drawable.pattern.colour, drawable.pattern.scale);
-        row.inverse_model = glm::inverse(drawable.matrix);
     }
     row.emission = vec4(material.emission, drawable.is_lamp ? 1.0f : 0.0f);
     row.material.y = (material.unlit ? shared::material_unlit : 0) | (drawable.is_static ? 0 : shared::material_moves) |

@@ -11,8 +11,7 @@ struct InstanceRow {
     vec4 base_colour;    // 192: rgb
     vec4 emission;       // 208: rgb, radiance W/(sr m2); w: 1 for the surface of an AreaLight
     vec4 pattern;        // 224: rgb of the second colour; w: scale, m
-    mat4 inverse_model;  // 240: world to object, for patterns
-    uvec4 material;      // 304: x: row of the material buffer, for textured surfaces; y: material_unlit and the like;
+    uvec4 material;      // 240: x: row of the material buffer, for textured surfaces; y: material_unlit and the like;
                          // z: metallic and roughness, 16 bits each; w: bits of the coat's index of refraction, 0: none
 };
 
@@ -48,7 +47,7 @@ SHARED_FUNCTION vec3 base_colour_of(DrawConstants draw) {
 
 SHARED_END
 #ifdef __cplusplus
-static_assert(sizeof(sunfleck::shared::InstanceRow) == 320);
+static_assert(sizeof(sunfleck::shared::InstanceRow) == 256);
 static_assert(sizeof(sunfleck::shared::DrawConstants) == 120);
 #endif
 #endif

@@ -1,9 +1,8 @@
 // Textures, by index. Textures are added and never change, so a consumer that has seen the first N need not look again.
 #pragma once
 
-#include "engine/core/maths.h"
+#include "engine/core/srgb.h"
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -11,10 +10,7 @@ namespace sunfleck::scene {
 
 enum class TextureWrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 
-// IEC 61966-2-1: decodes a value from 0 to 1.
-inline float linear_from_srgb(float s) {
-    return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
-}
+using shared::linear_from_srgb;
 
 // One image as a sampler reads it.
 struct Texture {

@@ -26,9 +26,25 @@ scene::Material lamp_of(float radiance) {
     return material;
 }
 
+// Eight by eight tiles of two colours.
+scene::Texture tiles_texture() {
+    scene::Texture texture;
+    texture.name = "tiles";
+    texture.width = texture.height = 64;
+    for (std::uint32_t i = 0; i < 64 * 64; ++i) {
+        const std::uint8_t value = (i / 8 + i / 512) % 2 == 0 ? 230 : 40;
+        texture.pixels.insert(texture.pixels.end(), {value, std::uint8_t(value / 2), 20, 255});
+    }
+    return texture;
+}
+
 // Of 256x144 pixels, made of fewer.
 struct EnlargedScene : GpuWorld {
-    explicit EnlargedScene(void (*make)(assets::SceneBuilder&)) : GpuWorld(make, "view") {
+    explicit EnlargedScene(void (*make)(assets::SceneBuilder&)) {
+        renderer->textures().add(tiles_texture());
+        assets::SceneBuilder builder(renderer->registry(), renderer->meshes());
+        make(builder);
+        finish("view");
         request.view = shared::view_final;
         request.tone_map = true;
         request.camera.up = glm::normalize(vec3(0.07f, 1.0f, 0.03f)); // nothing runs along rows or columns
@@ -112,6 +128,85 @@ TEST_F(SubpixelEdges, WhatHasNoContrastIsAsWithoutThem) {
         same += with.pixels[i] == without.pixels[i];
     EXPECT_GT(same, with.pixels.size() * 9 / 10); // all but the corner's lines
     EXPECT_LT(same, with.pixels.size());
+}
+
+// Floors that a lamp lights, seen flatly.
+ecs::Entity make_floor(assets::SceneBuilder& s, const scene::Material& material, bool has_coordinates = false) {
+    s.point_light("lamp", vec3(0.3f, 1.5f, -0.5f), vec3(8.0f));
+    s.camera("view", vec3(0.1f, 0.7f, 2.0f), vec3(0, 0, -0.4f), 50.0f);
+    scene::Mesh floor;
+    floor.positions = {vec3(-8, 0, 6), vec3(8, 0, 6), vec3(8, 0, -14), vec3(-8, 0, -14)};
+    floor.normals.assign(4, vec3(0, 1, 0));
+    floor.indices = {0, 1, 2, 0, 2, 3};
+    for (const vec3 position : has_coordinates ? floor.positions : std::vector<vec3>()) // which leave no pattern
+        floor.texture_coordinates.emplace_back(position.x, position.z, 0, 0);
+    return s.add("floor", floor, material);
+}
+void make_checkers(assets::SceneBuilder& s) {
+    const scene::SurfacePattern pattern{scene::PatternKind::checker, vec3(0.05f, 0.1f, 0.2f), 0.12f};
+    s.registry().emplace<scene::SurfacePattern>(make_floor(s, assets::diffuse(vec3(0.7f, 0.5f, 0.3f))), pattern);
+}
+void make_bricks(assets::SceneBuilder& s) {
+    const scene::SurfacePattern pattern{scene::PatternKind::bricks, vec3(0.5f), 0.12f};
+    s.registry().emplace<scene::SurfacePattern>(make_floor(s, assets::diffuse(vec3(0.5f, 0.2f, 0.1f))), pattern);
+}
+scene::Material polished(vec3 colour) {
+    scene::Material material = assets::diffuse(colour);
+    material.specular = true;
+    material.roughness = 0.3f;
+    return material;
+}
+void make_polished_planks(assets::SceneBuilder& s) {
+    const scene::SurfacePattern pattern{scene::PatternKind::planks, vec3(0.05f, 0.1f, 0.2f), 0.12f};
+    s.registry().emplace<scene::SurfacePattern>(make_floor(s, polished(vec3(0.4f))), pattern);
+}
+void make_tiles(assets::SceneBuilder& s) {
+    scene::MaterialTextures textures;
+    textures.base_colour.texture = 0;
+    s.registry().emplace<scene::MaterialTextures>(make_floor(s, assets::diffuse(vec3(0.9f)), true), textures);
+}
+
+// Textures and patterns are as sharp as in a picture of the screen's size, against one of sixteen times the pixels.
+TEST_F(SubpixelEdges, TexturesHaveTheScreensSize) {
+    const std::pair<const char*, void (*)(assets::SceneBuilder&)> scenes[] = {{"checkers", make_checkers},
+                                                                              {"bricks", make_bricks},
+                                                                              {"polished planks", make_polished_planks},
+                                                                              {"tiles", make_tiles}};
+    for (const auto& [name, make] : scenes) {
+        EnlargedScene scene(make);
+        scene.request.ev100 = 8.0f;
+        const io::Picture truth = scene.truth();
+        const double whole = edge_error(scene.at(256, false), truth);
+        for (const std::uint32_t width : {128u, 160u, 208u}) {
+            const double without = edge_error(scene.at(width, false), truth);
+            const double with = edge_error(scene.at(width, true), truth);
+            std::printf("%s, from %u pixels: %.4f, without %.4f, at the screen's size %.4f\n", name, width, with,
+                        without, whole);
+            EXPECT_LT(with, 1.05 * whole) << name << " from " << width;
+            EXPECT_LT(whole, 0.7 * without) << name << " from " << width;
+        }
+    }
+}
+
+// Where the picture is as bright as can be, what is darker than its surroundings is not found by taking away more than
+// it shows.
+TEST_F(SubpixelEdges, TexturesThatAreTooBrightHaveNoBlackPixels) {
+    for (const float ev100 : {2.0f, 4.0f, 6.0f}) {
+        EnlargedScene scene(make_checkers);
+        scene.request.ev100 = ev100;
+        const io::Picture whole = scene.at(256, false);
+        for (const std::uint32_t width : {128u, 160u}) {
+            const io::Picture picture = scene.at(width, true);
+            std::size_t bright = 0, black = 0;
+            for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+                if (luminance(whole.pixels[i]) > 0.5f) {
+                    ++bright;
+                    black += luminance(picture.pixels[i]) < 0.1f;
+                }
+            EXPECT_GT(bright, whole.pixels.size() / 4);
+            EXPECT_EQ(black, 0u) << "EV " << ev100 << " from " << width;
+        }
+    }
 }
 
 scene::Mesh turned_inside_out(scene::Mesh mesh) {
