@@ -6,6 +6,17 @@
 #include <utility>
 
 namespace sunfleck::gpu {
+namespace {
+
+// What lies behind a texel buffer's last texel is only there for its size, where the device has room for that.
+VkDeviceSize padded_size(const Device& device, const BufferDescription& description, VkDeviceSize size) {
+    if (description.texel_format == VK_FORMAT_UNDEFINED)
+        return size;
+    const VkDeviceSize padded = texel_buffer_bytes(size);
+    return padded / texel_bytes(description.texel_format) > device.traits().max_texel_elements ? size : padded;
+}
+
+} // namespace
 
 Result<Buffer> Buffer::create(Device& device, const BufferDescription& description) {
     Buffer buffer;
@@ -18,7 +29,7 @@ Result<Buffer> Buffer::create(Device& device, const BufferDescription& descripti
                          " texels; this device's limit is " + std::to_string(device.traits().max_texel_elements),
                      ErrorCode::unsupported};
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-    info.size = buffer.size_;
+    info.size = padded_size(device, description, buffer.size_);
     info.usage = description.usage;
     SUNFLECK_VK(device.vk.vkCreateBuffer(device.handle(), &info, nullptr, &buffer.handle_),
                 "creating buffer '" + description.name + "'");

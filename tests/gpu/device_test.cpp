@@ -4,9 +4,11 @@
 
 #include "engine/core/jobs.h"
 #include "engine/core/random.h"
+#include "engine/gpu/texel_formats.h"
 #include "engine/shader_compiler/shader_compiler.h"
 #include "test_places.h"
 
+#include <bit>
 #include <fstream>
 #include <thread>
 #include <vector>
@@ -53,6 +55,27 @@ TEST_F(DeviceTest, TexelsOverTheDevicesLimitAreRefused) {
         EXPECT_NE(buffer.error().message.find("'many texels'"), std::string::npos) << buffer.error().message;
     }
     EXPECT_EQ(device().memory().total(), before);
+}
+
+// Else some drivers would compile kernels again where a buffer has another size.
+TEST_F(DeviceTest, SizesOfTexelBuffersAreOfOneKind) {
+    std::vector<std::uint64_t> sizes{16, 240, 255, 256, 257, 65536 - 256, 65536, 3 * 65536 + 200, 1 << 20, 5 << 20};
+    for (std::uint64_t size = 1; size <= std::uint64_t(1) << 33; size *= 2)
+        sizes.insert(sizes.end(), {size, size + 4});
+    for (const std::uint64_t size : sizes) {
+        const std::uint64_t made = gpu::texel_buffer_bytes(size);
+        EXPECT_GE(made, size);
+        EXPECT_LE(made, size + 272);
+        EXPECT_FALSE(std::has_single_bit(made)) << size;
+        EXPECT_NE(made & 0xff00u, 0u) << size;
+    }
+    gpu::BufferDescription description{"texels", 65536, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT};
+    description.texel_format = VK_FORMAT_R32_UINT;
+    const gpu::Buffer buffer = gpu::Buffer::create(device(), description).value();
+    EXPECT_EQ(buffer.size(), 65536u) << "whoever asked for so many sees no more";
+    VkMemoryRequirements needs;
+    device().vk.vkGetBufferMemoryRequirements(device().handle(), buffer.handle(), &needs);
+    EXPECT_GE(needs.size, gpu::texel_buffer_bytes(65536));
 }
 
 TEST_F(DeviceTest, MemoryIsHandedOutWithoutOverlapAndGivenBack) {
