@@ -55,8 +55,11 @@ Result<std::unique_ptr<Level>> Level::load(gpu::Device& device, const LevelSourc
 }
 
 Status Level::prepare(const DemoSettings& settings, const std::function<bool(float)>& progress) {
-    // Nothing that is kept depends on the picture.
-    return viewer::prepare_lighting(*renderer_, request(settings, 64, 36), {100.0, progress});
+    // Nothing that is kept depends on the picture. Hardly any side of the game's is a power of two.
+    const viewer::PictureSize small = viewer::small_picture({});
+    const auto of_screen = [&](std::uint32_t size) { return std::uint32_t(float(size) / settings.render_scale); };
+    return viewer::prepare_lighting(*renderer_, request(settings, of_screen(small.width), of_screen(small.height)),
+                                    {100.0, progress});
 }
 
 Status Level::move_to(gpu::Device& device, std::uint32_t frames_in_flight) {

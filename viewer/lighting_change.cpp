@@ -2,13 +2,10 @@
 
 #include "engine/core/caught.h"
 #include "engine/core/jobs.h"
-#include "viewer/preparation.h"
 
 namespace sunfleck::viewer {
 namespace {
 
-// What is kept does not depend on the picture.
-constexpr std::uint32_t small_width = 64, small_height = 36;
 // GPU time, ms: by so much may a portion delay a frame.
 constexpr double portion = 20.0;
 
@@ -16,7 +13,9 @@ constexpr double portion = 20.0;
 
 LightingChange::LightingChange(gpu::Device& device, SceneRenderer& renderer, const gi::Settings& settings,
                                Varying varying)
-    : device_(device), settings_(settings), copy_(renderer.copy_scene(SceneRenderer::CopyOf::all)) {
+    : device_(device), settings_(settings),
+      picture_(small_picture({renderer.shown_request().width, renderer.shown_request().height})),
+      copy_(renderer.copy_scene(SceneRenderer::CopyOf::all)) {
     if (varying == Varying::known)
         varying_lights_ = renderer.lighting().sample_set().varying_lights();
     thread_ = std::thread([this] { run_alone([this] { run(); }); });
@@ -59,8 +58,9 @@ void LightingChange::run() {
 Status LightingChange::light_copy() {
     SUNFLECK_TRY(renderer_->take_scene(std::move(copy_)));
     FrameRequest request;
-    request.width = small_width;
-    request.height = small_height;
+    request.width = picture_.width;
+    request.height = picture_.height;
+    request.picture = false; // what is kept does not depend on it
     request.simulate = false;
     const auto progress = [this](float share) {
         share_ = std::max(share_.load(), share);

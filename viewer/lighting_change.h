@@ -15,7 +15,7 @@
 // settings at once by gi::System::set_settings, and wait.
 #pragma once
 
-#include "viewer/scene_renderer.h"
+#include "viewer/preparation.h"
 
 #include <atomic>
 #include <chrono>
@@ -59,6 +59,7 @@ private:
 
     gpu::Device& device_;
     const gi::Settings settings_;
+    const PictureSize picture_;
     std::set<ecs::Entity> varying_lights_;
     std::unique_ptr<SceneCopy> copy_; // for the thread, in `preparing` and `catching_up`
     std::unique_ptr<SceneRenderer> renderer_;

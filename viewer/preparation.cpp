@@ -1,6 +1,7 @@
 #include "viewer/preparation.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace sunfleck::viewer {
 namespace {
@@ -16,6 +17,10 @@ double gpu_milliseconds(const FrameStatistics& statistics) {
 }
 
 } // namespace
+
+PictureSize small_picture(PictureSize shown) {
+    return {std::has_single_bit(shown.width) ? 64u : 60u, std::has_single_bit(shown.height) ? 32u : 36u};
+}
 
 Status prepare_lighting(SceneRenderer& renderer, FrameRequest request, const PreparationOptions& options) {
     // Pixels are lit at the end alone. Until then that would be done by kernels that no later frame may need, and some

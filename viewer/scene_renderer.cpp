@@ -243,8 +243,10 @@ shared::CameraRow SceneRenderer::camera_of_frame(const FrameRequest& request) {
 
 Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay) {
     const StageTimer timer(stages_, "recording");
-    SUNFLECK_TRY(make_output(request));
-    SUNFLECK_TRY(draw_lines(request));
+    if (request.picture) {
+        SUNFLECK_TRY(make_output(request));
+        SUNFLECK_TRY(draw_lines(request));
+    }
     SUNFLECK_ASSIGN(const gpu::UploadSlice camera_slice, resources_->upload_value(camera_of_frame(request)));
 
     graph_->reset();
@@ -253,11 +255,17 @@ Status SceneRenderer::record(VkCommandBuffer commands, const FrameRequest& reque
         g_buffer_pass_.add(*graph_, *gpu_scene_, camera_slice, request.width, request.height,
                            request.view == shared::view_motion || temporal_frame_ || compiles_temporal(request));
     SUNFLECK_ASSIGN(const Light light, add_lighting(request, g_buffer, camera_slice));
-    const gpu::ResourceId output = graph_->import_image(output_);
-    SUNFLECK_TRY(add_picture(request, g_buffer, light, camera_slice, output));
-    if (overlay)
-        SUNFLECK_TRY(overlay(*graph_, output, *resources_));
-    graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
+    if (request.picture) {
+        const gpu::ResourceId output = graph_->import_image(output_);
+        SUNFLECK_TRY(add_picture(request, g_buffer, light, camera_slice, output));
+        if (overlay)
+            SUNFLECK_TRY(overlay(*graph_, output, *resources_));
+        graph_->add_pass("hand over").read(output, gpu::Usage::transfer_source).keep();
+    } else if (request.light_pixels) {
+        graph_->mark_output(light.irradiance);
+        if (light.specular.valid())
+            graph_->mark_output(light.specular);
+    }
     SUNFLECK_TRY(graph_->compile());
     return graph_->execute(commands, *resources_, timers_.get());
 }

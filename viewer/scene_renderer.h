@@ -45,6 +45,7 @@ struct FrameRequest {
     std::uint32_t strength_budget = 0xffffffffu;   // gi::FrameInput::strength_budget
     std::uint32_t refinement_budget = 0xffffffffu; // gi::FrameInput::refinement_budget
     std::optional<double> milliseconds;            // gi::FrameInput::milliseconds
+    bool picture = true;                           // false: nothing is made but light, output() stays as it is
     bool light_pixels = true;                      // gi::FrameInput::light_pixels
     bool as_if_stale = false;                      // gi::FrameInput::as_if_stale
     bool keep_samples = false;                     // gi::FrameInput::keep_samples
@@ -124,6 +125,8 @@ public:
     using Overlay = std::function<Status(gpu::FrameGraph&, gpu::ResourceId target, gpu::FrameResources&)>;
     Status record(VkCommandBuffer commands, const FrameRequest& request, const Overlay& overlay = {});
     const gpu::Image& output() const { return output_; }
+    // Of the last picture.
+    const FrameRequest& shown_request() const { return previous_request_; }
 
     // update, record, submit and wait; fills the statistics.
     Status render_and_wait(const FrameRequest& request);

@@ -18,7 +18,6 @@ namespace {
 using CostClock = std::chrono::steady_clock;
 
 constexpr int warm_up_frames = 9;
-constexpr std::uint32_t small_width = 64, small_height = 36;
 // Of copies: for fewer samples, clipped_centre's intervals at 95 % are too narrow. Two at least, one in each order.
 constexpr std::size_t enough_pairs = 8, fewest_pairs = 2;
 constexpr double building_share = 0.5; // of the whole time, for more pairs than that; or as long as has been measured
@@ -285,9 +284,10 @@ Result<std::unique_ptr<SceneCopy>> CostThread::prepared_copy(const Work& work, c
     SUNFLECK_TRY(copy->apply(scene));
     viewer::PreparationOptions options;
     options.progress = [this](float) { return wait_for_turn(); };
+    const viewer::PictureSize size = viewer::small_picture({work.view.width, work.view.height});
     ViewRequest small = work.view; // what is kept does not depend on the picture
-    small.width = small_width;
-    small.height = small_height;
+    small.width = size.width;
+    small.height = size.height;
     SUNFLECK_TRY(viewer::prepare_lighting(copy->renderer(), request_of(small), options));
     std::map<std::string, double> unused;
     for (int i = 0; i < warm_up_frames && wait_for_turn(); ++i)

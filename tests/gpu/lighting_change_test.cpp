@@ -3,6 +3,8 @@
 #include "tests/support/system_frames.h"
 #include "viewer/lighting_change.h"
 
+#include <bit>
+
 namespace sunfleck::tests {
 namespace {
 
@@ -106,6 +108,32 @@ TEST_F(LightingChangeTest, MapsAreDrawnThoughNoPixelIsLit) {
     EXPECT_EQ(counter_of(world, "shadow_map_updates"), 0u) << "they are up to date";
     MovingBox fresh(lights(60));
     expect_same_picture(world.settled(37), fresh.settled(37));
+}
+
+// New light is made by the kernels of the shown one, as the driver has compiled them, and no others.
+TEST_F(LightingChangeTest, LightIsMadeWithoutAPicture) {
+    MovingBox world(lights(60));
+    world.settled(0);
+    const auto has = [&](const char* pass) { return world.renderer->print_graph().find(pass) != std::string::npos; };
+    EXPECT_TRUE(has("composition"));
+    world.request.picture = false;
+    world.render_step(37);
+    EXPECT_TRUE(has("low-resolution light"));
+    EXPECT_FALSE(has("composition") || has("hand over"));
+    world.request.light_pixels = false;
+    world.render_step(50);
+    EXPECT_TRUE(has("shadow maps"));
+    EXPECT_FALSE(has("low-resolution light"));
+    const auto sides = [](std::uint32_t width, std::uint32_t height) {
+        const viewer::PictureSize small = viewer::small_picture({width, height});
+        EXPECT_LT(small.width * small.height, 4096u);
+        return std::pair(std::has_single_bit(small.width), std::has_single_bit(small.height));
+    };
+    EXPECT_EQ(sides(640, 360), std::pair(false, false));
+    EXPECT_EQ(sides(1024, 720), std::pair(true, false));
+    EXPECT_EQ(sides(1000, 512), std::pair(false, true));
+    EXPECT_EQ(sides(2048, 1024), std::pair(true, true));
+    EXPECT_EQ(sides(0, 0), std::pair(false, false));
 }
 
 // A lamp that is known to vary only scales its samples; new lighting knows it, too.
