@@ -189,6 +189,7 @@ Status SceneThread::draw_picture() {
     picture->settled = frames_left_ <= 1 && !moves() && !light_comes();
     picture->ev100 = request.ev100;
     picture->frame_ms = 1e3 * seconds_since(began);
+    const bool first = longest_frame_ms_ == 0.0;
     longest_frame_ms_ = std::max(longest_frame_ms_, picture->frame_ms);
     if (picture->settled) // such frames make no light
         light_is_slow_ = light_is_slow_ || longest_frame_ms_ > longest_share * picture->frame_ms;
@@ -197,6 +198,11 @@ Status SceneThread::draw_picture() {
     if (view_.read_back && picture->settled) {
         SUNFLECK_ASSIGN(io::Picture pixels, copy_->renderer().read_back());
         picture->pixels = std::make_shared<io::Picture>(std::move(pixels));
+    }
+    if (first) { // kernels that the first mover needs are compiled now, not when it moves
+        request.as_if_stale = true;
+        request.refinement_budget = 0;
+        SUNFLECK_TRY(draw(request, nullptr));
     }
     publish(std::move(picture));
     return {};
