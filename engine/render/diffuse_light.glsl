@@ -18,6 +18,8 @@ struct FourPixels {
 void find_light(inout FourPixels pixels, int i, ivec2 pixel, vec3 shown) {
     const vec4 texel = texelFetch(albedo_image, pixel, 0);
     vec3 light = texelFetch(irradiance_image, pixel, 0).rgb * constants.exposed;
+    if (texel.a <= albedo_of_nothing)
+        light = vec3(0.0); // nobody says what the image holds there
     if (has_gloss != 0 && abs(texel.a - albedo_glossy) < albedo_step)
         light *= texelFetch(specular_image, pixel, 0).a;
     pixels.light[i] = light;

@@ -3,6 +3,7 @@
 #include "engine/core/divide_up.h"
 #include "engine/gpu/compute_pass.h"
 #include "engine/gpu/rendering.h"
+#include "engine/render/enlargement.h"
 #include "engine/render/tone_map.h"
 #include "engine/render/visible_draws.h"
 #include "engine/scene/pattern_shared.h"
@@ -18,11 +19,8 @@ constexpr VkFormat sample_surface_format = VK_FORMAT_R8G8B8A8_UNORM; // sample_s
 constexpr std::uint32_t shown_columns = 64, shown_run = 8;           // of shown_surfaces.comp
 constexpr VkDeviceSize word = 4, list_words = 4, edge_list = 0, detail_list = 1; // of subpixel_places.glsl
 
-struct EnlargementConstants {
-    glm::ivec2 source_size, target_size;
-};
 struct ListedConstants {
-    EnlargementConstants sizes;
+    EnlargementSizes sizes;
     float exposed; // from irradiance to what a white surface reflects of it, exposed
 };
 
@@ -120,15 +118,12 @@ Status SubpixelEdges::make_buffers(const scene::GpuScene& scene, std::uint32_t p
 
 Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Input& input,
                           gpu::ResourceId target, gpu::FrameResources& resources) {
-    const gpu::ImageDescription from = graph.description(input.picture), to = graph.description(target);
-    const bool doubling = to.width == 2 * from.width && to.height == 2 * from.height;
-    // Doubling: an invocation for each gap between source pixels, those outside the border included.
-    const std::uint32_t columns = doubling ? from.width + 1 : to.width, rows = doubling ? from.height + 1 : to.height;
-    SUNFLECK_TRY(make_buffers(scene, columns * rows, resources));
+    const EnlargementSizes sizes(graph.description(input.picture), graph.description(target));
+    const glm::uvec2 invocations = sizes.invocations(); // each lists one place at most
+    SUNFLECK_TRY(make_buffers(scene, invocations.x * invocations.y, resources));
     add_clearing(graph);
-    const Samples seen = add_samples(graph, scene, input, to);
-    const Kernels& kernels = doubling ? doubling_ : any_;
-    const EnlargementConstants sizes{{int(from.width), int(from.height)}, {int(to.width), int(to.height)}};
+    const Samples seen = add_samples(graph, scene, input, sizes.target);
+    const Kernels& kernels = sizes.doubles() ? doubling_ : any_;
     gpu::ComputePass(graph, "enlargement", *kernels.enlargement)
         .storage_read(input.picture)
         .storage_write(target)
@@ -136,7 +131,7 @@ Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
         .sampled(input.g_buffer.albedo, sampler_)
         .sampled(seen.surface, sampler_)
         .push(sizes)
-        .dispatch(divide_up(columns, 8), divide_up(rows, 8));
+        .dispatch(divide_up(invocations.x, 8), divide_up(invocations.y, 8));
     add_listed(graph, input, target, seen, kernels);
     return {};
 }
@@ -144,10 +139,9 @@ Status SubpixelEdges::add(gpu::FrameGraph& graph, const scene::GpuScene& scene, 
 // What the enlargement has listed.
 void SubpixelEdges::add_listed(gpu::FrameGraph& graph, const Input& input, gpu::ResourceId target, const Samples& seen,
                                const Kernels& kernels) const {
-    const gpu::ImageDescription from = graph.description(input.picture);
     const bool gloss = input.specular.valid();
     const gpu::ResourceId specular = gloss ? input.specular : input.irradiance;
-    const ListedConstants constants{{{int(from.width), int(from.height)}, {int(seen.width), int(seen.height)}},
+    const ListedConstants constants{{graph.description(input.picture), graph.description(target)},
                                     shared::exposure_factor(input.ev100) / pi};
     gpu::ComputePass(graph, "texture detail", *kernels.details[gloss])
         .storage_read(input.picture)
@@ -195,7 +189,7 @@ void SubpixelEdges::add_clearing(gpu::FrameGraph& graph) const {
 }
 
 SubpixelEdges::Samples SubpixelEdges::add_samples(gpu::FrameGraph& graph, const scene::GpuScene& scene,
-                                                  const Input& input, const gpu::ImageDescription& target) const {
+                                                  const Input& input, glm::ivec2 size) const {
     const GBuffer& g_buffer = input.g_buffer;
     gpu::ComputePass(graph, "shown surfaces", *shown_)
         .sampled(g_buffer.surface, sampler_)
@@ -203,8 +197,8 @@ SubpixelEdges::Samples SubpixelEdges::add_samples(gpu::FrameGraph& graph, const 
         .push(glm::ivec2(int(g_buffer.width), int(g_buffer.height)))
         .dispatch(divide_up(g_buffer.width, shown_columns), divide_up(g_buffer.height, shown_run));
     Samples seen;
-    seen.width = target.width;
-    seen.height = target.height;
+    seen.width = std::uint32_t(size.x);
+    seen.height = std::uint32_t(size.y);
     seen.depth = graph.create_image("depth samples", depth_format, seen.width, seen.height, 1, samples);
     seen.surface = graph.create_image("surface samples", sample_surface_format, seen.width, seen.height, 1, samples);
     graph.add_pass("subpixel samples")
@@ -230,7 +224,7 @@ Status SubpixelEdges::record(gpu::PassContext& context, const scene::GpuScene& s
     rendering.pColorAttachments = &surface;
     rendering.pDepthAttachment = &depth;
     gpu::begin_rendering(context.device.vk, context.commands, rendering, target.width, target.height);
-    const Status status = scene.draws().empty() ? Status() : draw(context, scene, camera);
+    Status status = scene.draws().empty() ? Status() : draw(context, scene, camera);
     context.device.vk.vkCmdEndRendering(context.commands);
     return status;
 }

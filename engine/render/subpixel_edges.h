@@ -47,7 +47,7 @@ private:
     void add_listed(gpu::FrameGraph& graph, const Input& input, gpu::ResourceId target, const Samples& seen,
                     const Kernels& kernels) const;
     Samples add_samples(gpu::FrameGraph& graph, const scene::GpuScene& scene, const Input& input,
-                        const gpu::ImageDescription& target) const;
+                        glm::ivec2 size) const;
     Status record(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera,
                   const Samples& target) const;
     Status draw(gpu::PassContext& context, const scene::GpuScene& scene, const gpu::UploadSlice& camera) const;

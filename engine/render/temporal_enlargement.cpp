@@ -3,18 +3,19 @@
 #include "engine/core/divide_up.h"
 #include "engine/core/maths.h"
 #include "engine/gpu/compute_pass.h"
+#include "engine/render/enlargement.h"
 
 namespace sunfleck::render {
 namespace {
 
 struct TemporalConstants {
-    glm::ivec2 source_size, target_size;
+    EnlargementSizes sizes;
     vec2 offset;
     std::uint32_t has_history;
 };
 
 struct StillConstants {
-    glm::ivec2 source_size, target_size;
+    EnlargementSizes sizes;
     vec2 offset;
     std::uint32_t first;
 };
@@ -110,30 +111,28 @@ Status TemporalEnlargement::add(gpu::FrameGraph& graph, const Input& input, gpu:
 
 void TemporalEnlargement::add_still(gpu::FrameGraph& graph, const gpu::Pipeline& kernel, const Input& input,
                                     gpu::ResourceId target) const {
-    const gpu::ImageDescription from = graph.description(input.picture), to = graph.description(target);
+    const EnlargementSizes sizes(graph.description(input.picture), graph.description(target));
+    const glm::uvec2 invocations(sizes.target);
     gpu::ComputePass(graph, "still picture", kernel)
         .storage_read(input.picture)
         .storage_read_write(graph.import_image(sums_))
         .storage_write(target)
-        .push(StillConstants{
-            {int(from.width), int(from.height)}, {int(to.width), int(to.height)}, offset(), summed_ == 0})
-        .dispatch(divide_up(to.width, 8), divide_up(to.height, 8));
+        .push(StillConstants{sizes, offset(), summed_ == 0})
+        .dispatch(divide_up(invocations.x, 8), divide_up(invocations.y, 8));
 }
 
 void TemporalEnlargement::add_moving(gpu::FrameGraph& graph, const Input& input, gpu::ResourceId target) const {
-    const gpu::ImageDescription from = graph.description(input.picture), to = graph.description(target);
-    const bool doubling = to.width == 2 * from.width && to.height == 2 * from.height;
-    const TemporalConstants constants{
-        {int(from.width), int(from.height)}, {int(to.width), int(to.height)}, offset(), has_history_};
-    gpu::ComputePass(graph, "temporal enlargement", doubling ? *doubling_ : *any_)
+    const EnlargementSizes sizes(graph.description(input.picture), graph.description(target));
+    const glm::uvec2 invocations(sizes.doubles() ? sizes.source : sizes.target);
+    gpu::ComputePass(graph, "temporal enlargement", sizes.doubles() ? *doubling_ : *any_)
         .storage_read(input.picture)
         .sampled(input.depth, sampler_)
         .sampled(input.motion, sampler_)
         .storage_read(graph.import_image(histories_[(frame_ + 1) % 2]))
         .storage_write(graph.import_image(histories_[frame_ % 2]))
         .storage_read_write(target)
-        .push(constants)
-        .dispatch(divide_up(doubling ? from.width : to.width, 8), divide_up(doubling ? from.height : to.height, 8));
+        .push(TemporalConstants{sizes, offset(), has_history_})
+        .dispatch(divide_up(invocations.x, 8), divide_up(invocations.y, 8));
 }
 
 } // namespace sunfleck::render
